@@ -78,7 +78,7 @@ def machine_html(machine: Machine) -> str:
         {
             "name": f"{pair.driver} → {pair.driven}",
             "teeth": f"{geometry.driver.teeth} : {geometry.driven.teeth}",
-            "ratio": float(geometry.ratio),
+            "ratio": abs(float(geometry.ratio)),
             "contact_ratio": float(geometry.total_contact_ratio),
             "mesh_frequency_hz": float(frequency),
         }

@@ -155,10 +155,14 @@ def hint_of_millimetres(value: object) -> str:
 
 @dataclass(frozen=True)
 class Whole:
-    """Validates a whole number within limits; to stand in `Annotated`."""
+    """Validates a whole number within limits; to stand in `Annotated`.
+
+    Where negative numbers of the same size stand for something, `negative` names it: "an internal gear".
+    """
 
     at_least: int
     at_most: int
+    negative: str = ""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         """Return pydantic's schema for validation of this field."""
@@ -173,6 +177,10 @@ class Whole:
         """Return the whole number, or raise pydantic's error with what was expected."""
         if isinstance(value, int) and not isinstance(value, bool) and self.at_least <= value <= self.at_most:
             return value
+        if self.negative and isinstance(value, int) and value < 0:
+            if self.at_least <= -value <= self.at_most:
+                return value
+            raise wrong(f"{self.expected}, or {-self.at_most} to {-self.at_least} of {self.negative}")
         raise wrong(self.expected)
 
 

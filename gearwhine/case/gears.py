@@ -6,10 +6,11 @@ The train lists pairs of shafts with their tooth numbers. Attributes are named a
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
@@ -272,9 +273,10 @@ ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
 class Gear(Table):
-    """`[[gear]]`: an external spur or helical gear, by module, diametral pitch or base radius.
+    """`[[gear]]`: an external or internal gear, spur or helical, by module, diametral pitch or base radius.
 
-    Sizes are those of the normal section, `base_radius` is of the transverse plane.
+    Sizes are those of the normal section, `base_radius` is of the transverse plane. An internal gear (ring gear) has a
+    negative number of teeth, as in ISO 21771, or `internal = true`; its sizes are given as positive lengths.
     """
 
     name: Name
@@ -283,8 +285,10 @@ class Gear(Table):
     """Name of its rotor; left out in a case without rotors."""
     at: LengthFromZero | None = None
     """Station on its rotor from the left end."""
-    teeth: Annotated[int, Whole(5, 2000)]
-    """Number of teeth."""
+    teeth: Annotated[int, Whole(5, 2000, negative="an internal gear")]
+    """Number of teeth, negative of an internal gear."""
+    internal: StrictBool | None = None
+    """Whether the teeth point inward, as a ring gear's. Default: where `teeth` is negative."""
     module: Module | None = None
     """Normal module. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     diametral_pitch: DiametralPitch | None = None
@@ -296,17 +300,18 @@ class Gear(Table):
     pressure_angle: PressureAngle = math.radians(20.0)
     """Pressure angle of the normal section."""
     helix_angle: HelixAngle = 0.0
-    """Helix angle, positive for a right hand; gears in mesh have opposite hands. A shaft moves along its axis where a
+    """Helix angle, positive for a right hand; gears in mesh have opposite hands, an internal gear and its pinion equal
+    ones. A shaft moves along its axis where a
     bearing's 5x5 `matrix` or `rolling` holds it there; else it is held rigidly."""
     profile_shift: Annotated[float, Quantity(units.RATIO, at_least=-2.0, at_most=2.0)] = 0.0
-    """Profile shift in modules, positive outward."""
+    """Profile shift in modules, positive outward, of an internal gear inward: a positive one makes teeth thicker."""
     addendum: ToothHeight = 1.0
     """Addendum in modules."""
     dedendum: ToothHeight = 1.25
     """Dedendum in modules."""
     root_radius: LengthFromZero | None = None
-    """Tip corner radius of the generating rack, which shapes the fillet. Default: the radius that ends the rack's flank
-    one addendum deep."""
+    """Tip corner radius of the generating rack, which shapes the fillet; of an internal gear the radius of the fillet.
+    Default: the radius that ends the rack's flank one addendum deep."""
     tooth_thinning: LengthFromZero = 0.0
     """Reduction of the tooth thickness along the reference circle beside that of the profile shift; the rack cuts
     deeper for it."""
@@ -317,7 +322,8 @@ class Gear(Table):
     what lies outside the shaft. A wheel on a shaft has a bore: its mesh is softer. See `stiffens_shaft` for how firmly
     it sits."""
     rim: PositiveLength | None = None
-    """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
+    """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face. Of an internal gear
+    that to the outside of its ring, by default 3.5 modules."""
     web: PositiveLength | None = None
     """Width of the disc from the rim to the hub, in the middle of the face. The wheel vibrates and tilts on it, see
     `gear_bodies` of `check`. Default: the rim weighs alone, and is held at its inside."""
@@ -347,6 +353,14 @@ class Gear(Table):
     fault: Annotated[tuple[Fault, ...], Field(max_length=100)] = ()
     """Damaged teeth: one table, or a list."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _signed(cls, values: object) -> object:
+        teeth = values.get("teeth") if isinstance(values, dict) else None
+        if isinstance(values, dict) and values.get("internal") is True and isinstance(teeth, int) and teeth > 0:
+            return {**values, "teeth": -teeth}
+        return values
+
     @field_validator("fault", mode="before")
     @classmethod
     def _one_or_more(cls, value: object) -> object:
@@ -360,6 +374,10 @@ class Gear(Table):
             raise wrong("the face width of a gear that is given by the size of its teeth", "face_width")
         if self.helix_angle != 0.0 and self.face_width is None:
             raise wrong("the face width of a helical gear, over which its teeth come into mesh", "face_width")
+        if self.internal is False and self.teeth < 0:
+            raise wrong("true, or left out, with a negative number of teeth", "internal")
+        if self.teeth < 0:
+            self._without_hub()
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:
@@ -369,11 +387,11 @@ class Gear(Table):
         if self.hub_width is not None and (self.hub_diameter is None or self.hub_width < (self.web or 0.0)):
             raise wrong("the width of a hub with a hub_diameter, at least that of the web", "hub_width")
         for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
-            if deviations and len(deviations) != self.teeth:
-                raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", key)
+            if deviations and len(deviations) != abs(self.teeth):
+                raise wrong(f"one deviation for each of {abs(self.teeth)} teeth, or none", "errors", key)
         for number, fault in enumerate(self.fault):
-            if fault.tooth is not None and fault.tooth >= self.teeth:
-                raise wrong(f"a tooth from 0 to {self.teeth - 1}", "fault", number, "tooth")
+            if fault.tooth is not None and fault.tooth >= abs(self.teeth):
+                raise wrong(f"a tooth from 0 to {abs(self.teeth) - 1}", "fault", number, "tooth")
         is_given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
         if any(is_given) and not all(is_given):
             raise wrong("all of 'mass', 'polar_inertia' and 'diametral_inertia', or none of them")
@@ -382,6 +400,13 @@ class Gear(Table):
         if (self.rotor is None) != (self.at is None):
             raise wrong("'rotor' and 'at' together, or neither in a case without rotors")
         return self
+
+    def _without_hub(self) -> None:
+        """Refuse a bore, web or hub of an internal gear, which is a ring outside its teeth."""
+        keys = ("bore", "web", "hub_diameter", "hub_width")
+        for key in keys:
+            if getattr(self, key):
+                raise wrong("none of an internal gear, a ring outside its teeth as thick as its 'rim'", key)
 
     @property
     def tooth_module(self) -> float:
@@ -393,7 +418,7 @@ class Gear(Table):
         if self.diametral_pitch is not None:
             return module_from_diametral_pitch(self.diametral_pitch)
         assert self.base_radius is not None
-        return module_from_base_radius(self.base_radius, self.teeth, self.pressure_angle, self.helix_angle)
+        return module_from_base_radius(self.base_radius, abs(self.teeth), self.pressure_angle, self.helix_angle)
 
     @property
     def base_circle_radius(self) -> float:
@@ -403,7 +428,7 @@ class Gear(Table):
         from gearwhine.coupling.gears.geometry.involute import module_from_base_radius
 
         # The module is proportional to the base radius.
-        return self.tooth_module / module_from_base_radius(1.0, self.teeth, self.pressure_angle, self.helix_angle)
+        return self.tooth_module / module_from_base_radius(1.0, abs(self.teeth), self.pressure_angle, self.helix_angle)
 
     def build(self, material: Material | None = None) -> BuiltGear:
         """Build the gear, of a material or by default of steel.
@@ -593,12 +618,46 @@ def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]])
     ]
 
 
-def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = ()) -> GearTrain:
+@dataclass(frozen=True)
+class TrainMembers:
+    """Members of a gear train beside its pairs: carriers of planets, held shafts, speeds and place of the drives.
+
+    Attributes
+    ----------
+    carriers : mapping of str to str
+        Carrier of each planet's shaft.
+    held : tuple of str
+    given : mapping of str to float
+        Speeds of further driven shafts over that of the first driver.
+    first : str or None
+        Shaft at which the torque comes in; None: that of the first pair's driver.
+    """
+
+    carriers: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    held: tuple[str, ...] = ()
+    given: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    first: str | None = None
+
+
+NO_MEMBERS = TrainMembers()
+
+
+def train_of_pairs(
+    pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = (), members: TrainMembers = NO_MEMBERS
+) -> GearTrain:
     """Return the gear train of pairs, see :func:`readable_pairs`; without pairs that of single shafts."""
     # The package brings numpy and scipy: only a case that turns waits for them.
-    from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
+    from gearwhine.coupling.description.gear_train import GearedShafts, drive_ratio, gear_train
 
+    carriers = members.carriers
     geared = [
-        GearedShafts(shaft_of(driver), shaft_of(driven), (driver.teeth, driven.teeth)) for _, driver, driven in pairs
+        GearedShafts(
+            shaft_of(driver),
+            shaft_of(driven),
+            (driver.teeth, driven.teeth),
+            carriers.get(shaft_of(driver)) or carriers.get(shaft_of(driven)),
+        )
+        for _, driver, driven in pairs
     ]
-    return gear_train(geared, shafts)
+    given = {name: drive_ratio(ratio) for name, ratio in members.given.items()}
+    return gear_train(geared, shafts, held=members.held, planets=list(carriers), given=given, first=members.first)

@@ -178,11 +178,11 @@ LOCATION = (
 PAIR = (
     Quantity("driver", "given.driver"),
     Quantity("driven", "given.driven"),
-    Quantity("ratio", "geometry.ratio"),
+    Quantity("ratio", lambda pair: abs(pair.geometry.ratio)),
     Quantity("contact_ratio", "geometry.contact_ratio"),
     Quantity("overlap_ratio", "geometry.overlap_ratio"),
     Quantity("total_contact_ratio", "geometry.total_contact_ratio"),
-    Quantity("centre_distance_m", "geometry.working_centre_distance"),
+    Quantity("centre_distance_m", lambda pair: abs(pair.geometry.working_centre_distance)),
     Quantity("working_pressure_angle_deg", "geometry.working_pressure_angle"),
     Quantity(
         "backlash_m",

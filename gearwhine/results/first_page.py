@@ -232,7 +232,7 @@ def _pair(pair: "CheckedPair") -> Document:
     return {
         "name": f"{pair.given.driver} → {pair.given.driven}",
         "teeth": f"{geometry.driver.teeth} : {geometry.driven.teeth}",
-        "ratio": float(geometry.ratio),
+        "ratio": abs(float(geometry.ratio)),
         "contact_ratio": float(geometry.total_contact_ratio),
         "mesh_frequency_hz": pair.mesh_frequency,
         "torque_n_m": pair.torque,

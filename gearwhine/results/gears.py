@@ -86,11 +86,14 @@ GEAR = (
     Quantity(
         "diameters_m",
         lambda row: {
-            "tip": 2.0 * row.gear.tip_radius,
-            "reference": 2.0 * row.gear.pitch_radius,
-            "base": 2.0 * row.gear.base_radius,
-            "form": 2.0 * row.gear.form_radius,
-            "root": 2.0 * row.gear.root_circle_radius,
+            name: 2.0 * abs(radius)
+            for name, radius in {
+                "tip": row.gear.tip_radius,
+                "reference": row.gear.pitch_radius,
+                "base": row.gear.base_radius,
+                "form": row.gear.form_radius,
+                "root": row.gear.root_circle_radius,
+            }.items()
         },
     ),
     Quantity(
@@ -133,9 +136,15 @@ _PATH_KEYS = {
 }
 
 
+def _of_point(path: PathOfContact, name: str) -> "npt.NDArray[np.float64]":
+    """Return an attribute of the points by name; radii as lengths, which are signed of internal gears."""
+    values: npt.NDArray[np.float64] = getattr(path, name)
+    return np.abs(values) if name.endswith("_radius") else values
+
+
 def _points(path: PathOfContact) -> list[dict[str, Any]]:
     return [
-        {"point": point} | {key: getattr(path, name)[row] for key, name in _PATH_KEYS.items()}
+        {"point": point} | {key: _of_point(path, name)[row] for key, name in _PATH_KEYS.items()}
         for row, point in enumerate(POINTS_OF_CONTACT)
     ]
 
@@ -144,7 +153,7 @@ def _of_sides(name: str, unit: str, quantity: str) -> Quantity:
     """Declare a quantity of the named points on both gears."""
     return Quantity(
         "",
-        lambda path: np.array([getattr(path, f"{side}_{name}") for side in ("driver", "driven")]),
+        lambda path: np.array([_of_point(path, f"{side}_{name}") for side in ("driver", "driven")]),
         f"contact_point_{name}",
         ("side", "contact_point"),
         unit,
@@ -224,7 +233,7 @@ _LOADS = ("harris_load",)
 HARRIS_MAP = (
     Quantity(
         "torque_n_m",
-        lambda pair: pair.harris.forces * pair.solved.geometry.driver.base_radius,
+        lambda pair: pair.harris.forces * abs(pair.solved.geometry.driver.base_radius),
         "harris_torque",
         _LOADS,
         long_name="torque on the driver",
@@ -239,7 +248,7 @@ HARRIS_MAP = (
         long_name="static transmission error under the torque",
     ),
     Quantity("peak_to_peak_m", "harris.peak_to_peak"),
-    Quantity("quietest_torque_n_m", lambda pair: pair.harris.quietest * pair.solved.geometry.driver.base_radius),
+    Quantity("quietest_torque_n_m", lambda pair: pair.harris.quietest * abs(pair.solved.geometry.driver.base_radius)),
 )
 """The transmission error over the mesh period for a range of torques."""
 
@@ -351,7 +360,7 @@ PAIR = (
     Quantity("contact_ratio", "solved.geometry.contact_ratio", heading="contact ratio", shown=".4f"),
     Quantity("overlap_ratio", "solved.geometry.overlap_ratio"),
     Quantity("total_contact_ratio", "solved.geometry.total_contact_ratio"),
-    Quantity("centre_distance_m", "solved.geometry.working_centre_distance"),
+    Quantity("centre_distance_m", lambda pair: abs(pair.solved.geometry.working_centre_distance)),
     Quantity("working_pressure_angle_rad", "solved.geometry.working_pressure_angle"),
     Part("backlash_m", lambda pair: _where(pair.solved.backlash, pair), BACKLASH),
     Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
@@ -393,7 +402,7 @@ PAIR = (
     Part("harris_map", lambda pair: _where(pair.harris, pair), HARRIS_MAP),
     Part("optimal_tip_relief", lambda pair: _where(pair.optimum, pair), RELIEF),
     Quantity(
-        "roll_angle_rad", lambda pair: 2.0 * np.pi * pair.solved.static.phases / pair.solved.geometry.driver.teeth
+        "roll_angle_rad", lambda pair: 2.0 * np.pi * pair.solved.static.phases / pair.solved.geometry.driver.tooth_count
     ),
     Quantity("stiffness"),
 )

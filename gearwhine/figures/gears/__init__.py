@@ -75,5 +75,7 @@ def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
     if best is not None or has_charts(geometry):
         yield "flanks", draw_flank_charts(f"{name}: flanks", geometry, best)
     if pair.harris is not None and np.ptp(pair.harris.forces) > 0.0:
-        sheet = draw_harris_map(f"{name}: Harris map", pair.harris, geometry.driver.base_radius, torque=solved.torque)
+        sheet = draw_harris_map(
+            f"{name}: Harris map", pair.harris, abs(geometry.driver.base_radius), torque=solved.torque
+        )
         yield "harris-map", sheet

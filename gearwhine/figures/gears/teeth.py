@@ -44,6 +44,7 @@ FloatArray = npt.NDArray[np.float64]
 _HEIGHT = 104.0  # height of the panel [mm of paper]
 _PITCHES = 5.6  # number of teeth side by side
 _POINTS = 60  # points on each curve of a tooth
+_AROUND = 721  # points around the outside of a ring
 _LETTERS = "ABCDE"  # usual names of points on the path of contact
 _UP = 0.5 * math.pi  # the driven gear stands above the driver
 _OUTLINES = (BLUE, SERIES[1])
@@ -51,7 +52,7 @@ _DASHES = {"pitch circles": (0, (8, 2, 1.5, 2)), "base circles": (0, (3, 2)), "t
 
 
 def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figure:
-    """Draw the teeth around the pitch point to one scale in both directions, the driver below.
+    """Draw the teeth around the pitch point to one scale in both directions, those of the driver below.
 
     Parameters
     ----------
@@ -78,15 +79,19 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
     pitch = np.array([0.0, pair.working_pitch_radii[0]])
     centres = -pitch, np.array([0.0, pair.working_centre_distance]) - pitch
     outlines = pair_outlines(pair, phase, centre_line_angle=_UP, points=_POINTS)
-    for outline, color in zip(outlines, _OUTLINES, strict=True):
+    drawn = zip(outlines, (pair.driver, pair.driven), centres, _OUTLINES, strict=True)
+    for outline, gear, centre, color in drawn:
+        body = outline - pitch
+        if gear.is_internal:
+            body = _ring(body, centre, gear.outer_radius)
         # Not as a patch: the axes would look for the limits of each of its sides, which takes longer than all the rest.
-        shape = Polygon(MILLI * (outline - pitch), fc=to_rgba(color, 0.12), ec=color, lw=1.0, label="_outline")
+        shape = Polygon(MILLI * body, fc=to_rgba(color, 0.12), ec=color, lw=1.0, label="_outline")
         axes.add_artist(shape)
     _circles(axes, pair, centres)
     _line_of_action(axes, pair, phase, centres[0])
-    _senses(axes, half)
+    _senses(axes, half, centres)
     for centre, gear in zip((-1.0, 1.0), (pair.driver, pair.driven), strict=True):
-        name = f"{shortened(gear.name, 24)}, {gear.teeth} teeth"
+        name = f"{shortened(gear.name, 24)}, {gear.tooth_count} teeth"
         side = "top" if centre > 0.0 else "bottom"
         place = (0.02, 0.5 + 0.47 * centre)
         axes.text(*place, name, va=side, transform=axes.transAxes, size=LABEL, color=INK, parse_math=False)
@@ -96,11 +101,21 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
     return figure
 
 
+def _ring(inside: FloatArray, centre: FloatArray, radius: float) -> FloatArray:
+    """Outline of a ring (n, 2) around its inside, joined on the side of the centre away from the pitch point [m]."""
+    away = math.atan2(centre[1], centre[0])
+    across = np.angle(np.exp(-1j * away) * ((inside - centre) @ np.array([1.0, 1j])))
+    inside = np.roll(inside, -int(np.argmin(np.abs(across))), axis=0)
+    around = away + np.linspace(0.0, 2.0 * math.pi, _AROUND)
+    outside = centre + radius * np.column_stack([np.cos(around), np.sin(around)])
+    return np.concatenate([outside, inside[:1], inside[::-1]])
+
+
 def _circles(axes: Axes, pair: GearPairGeometry, centres: tuple[FloatArray, FloatArray]) -> None:
     for gear, rolling, centre in zip((pair.driver, pair.driven), pair.working_pitch_radii, centres, strict=True):
         for radius, dashes in zip((rolling, gear.base_radius, gear.tip_radius), _DASHES.values(), strict=True):
             circle = Circle(
-                tuple(MILLI * centre), MILLI * radius, fill=False, ec=GREY, lw=0.6, ls=dashes, label="_circle"
+                tuple(MILLI * centre), MILLI * abs(radius), fill=False, ec=GREY, lw=0.6, ls=dashes, label="_circle"
             )
             axes.add_patch(circle)
 
@@ -116,7 +131,10 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
         distance = pair.start_distance + pair.base_pitch * np.asarray(position, dtype=np.float64)
         return np.asarray(MILLI * (tangent + distance[..., None] * along), dtype=np.float64)
 
-    ends = MILLI * np.array([tangent, tangent + pair.tangent_distance * along])
+    # Between the tangent points, outside of which an internal pair has its path of contact.
+    path = pair.start_distance, pair.start_distance + pair.path_length
+    limits = (0.0, pair.tangent_distance, *(path if pair.is_internal else ()))
+    ends = MILLI * (tangent + np.outer([min(limits), max(limits)], along))
     axes.plot(*ends.T, color=INK, lw=0.7, zorder=3, label="_line of action")
     axes.plot(*place([0.0, pair.contact_ratio]).T, color=INK, lw=1.8, zorder=3, label="_path of contact")
     # Letters on either side in turn: B, C and D may be near to each other.
@@ -131,11 +149,15 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
     axes.plot(*touching.T, ls="none", marker="o", ms=4.5, color=RED, mec="white", mew=0.6, zorder=5, label="_contact")
 
 
-def _senses(axes: Axes, half: float) -> None:
-    """Arrows of rotation: the driver counter-clockwise, the driven clockwise."""
+def _senses(axes: Axes, half: float, centres: tuple[FloatArray, FloatArray]) -> None:
+    """Arrows of rotation: the driver counter-clockwise, the driven clockwise or, of an internal pair, alike."""
     reach, height = 0.12 * half, 0.62 * half * _HEIGHT / PANEL_WIDTH
-    for level, bend in ((-height, 0.18), (height, -0.18)):
+    rightward = bool(centres[0][1] > 0.0)
+    for level, centre in zip((-height, height), centres, strict=True):
         start, end = (0.9 * half, level), (0.9 * half - 2.0 * reach, level)
+        if rightward:
+            start, end = end, start
+        bend = 0.18 if bool(centre[1] < 0.0) is not rightward else -0.18
         arrow = FancyArrowPatch(
             start, end, connectionstyle=f"arc3,rad={bend}", arrowstyle="-|>", mutation_scale=8, color=INK, lw=0.9
         )
@@ -226,7 +248,7 @@ def _draw_profile(axes: Axes, gear: Gear, active: FloatArray, best: TipRelief | 
         axes.plot(degrees, -MICRO * depth, color=SERIES[1], lw=1.2, ls=(0, (4, 2)), zorder=2, label="_best")
     axes.plot(degrees, MICRO * deviation, color=BLUE, lw=1.3, zorder=3, label="_profile")
     for begin, end in ((degrees[0], np.degrees(active[0])), (np.degrees(active[1]), degrees[-1])):
-        if end - begin > 1e-6:
+        if gear.sign * (end - begin) > 1e-6:
             axes.axvspan(begin, end, color=PALE, lw=0.0, zorder=0.2, label="_inactive")
     axes.set(xlabel="profile: roll angle from form circle to tip [°]", xlim=(degrees[0], degrees[-1]))
 
@@ -239,6 +261,6 @@ def _draw_helix(axes: Axes, gear: Gear) -> None:
 
 
 def _draw_pitch(axes: Axes, gear: Gear) -> None:
-    deviations = MICRO * np.array(gear.pitch_deviations or np.zeros(gear.teeth))
-    axes.bar(np.arange(gear.teeth), deviations, 0.8, color=BLUE, label="_pitch")
-    axes.set(xlabel="pitch: number of the tooth", xlim=(-0.7, gear.teeth - 0.3))
+    deviations = MICRO * np.array(gear.pitch_deviations or np.zeros(gear.tooth_count))
+    axes.bar(np.arange(gear.tooth_count), deviations, 0.8, color=BLUE, label="_pitch")
+    axes.set(xlabel="pitch: number of the tooth", xlim=(-0.7, gear.tooth_count - 0.3))

@@ -108,10 +108,11 @@ def _drawn_gears(gears: Sequence[ShaftGear], rotor: Rotor) -> list[DrawnGear]:
             name=mounted.name,
             at=mounted.at,
             face_width=mounted.gear.face_width,
-            tip_diameter=2.0 * mounted.gear.tip_radius,
-            pitch_diameter=2.0 * mounted.gear.pitch_radius,
-            root_diameter=2.0 * mounted.gear.root_circle_radius,
-            teeth=mounted.gear.teeth,
+            # The teeth of a ring are inside its body.
+            tip_diameter=2.0 * mounted.gear.outer_radius,
+            pitch_diameter=2.0 * abs(mounted.gear.pitch_radius),
+            root_diameter=2.0 * max(mounted.gear.root_circle_radius, -(mounted.gear.rim_outer_radius or 0.0)),
+            teeth=mounted.gear.tooth_count,
             disc=gear_disc(mounted, rotor),
         )
         for mounted in gears
