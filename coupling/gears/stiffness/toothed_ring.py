@@ -270,7 +270,7 @@ def _by_bolts(
             among[first, :, second] = own + yielding if same else apart[:, :, (first - second) % bolts]
     among = among.reshape(bolts * unknowns, -1)
     lifted = np.swapaxes(lever.conj(), 1, 2)
-    to_teeth = np.hstack(_loads(z).conj().swapaxes(1, 2) @ stiff @ lifted)
+    to_teeth = np.concatenate(list(_loads(z).conj().swapaxes(1, 2) @ stiff @ lifted), axis=1)
     inner = lever @ stiff @ lifted - softness
     pitch = 2.0 * math.pi / z
     on_teeth = np.column_stack([_balance(np.eye(3), 0.0), _balance(np.eye(3), pitch), [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
