@@ -225,7 +225,7 @@ class _Expansion:
         for place, bearing in self.entries("bearing"):
             if bearing.get("rotor") in rotors and "seat" not in bearing:
                 self.document["bearing"][place] = {**bearing, "seat": carrier}
-        self._pair_gears(index, one)
+        unpaired = not self._has_pairs(planets)
         try:
             turns = self._angles(one)
             errors = self._pin_errors(one, len(turns))
@@ -236,6 +236,8 @@ class _Expansion:
             self._copy(one, [str(name) for name in rotors], turns, errors, places)
             for key in ("count", "angles", "pin_errors"):
                 one.pop(key, None)
+        if unpaired:
+            self._pair_gears(index, one, len(planets) if turns else 1)
 
     def _fixed(self, one: Mapping[str, Any]) -> Any:
         """Return what holds a member as a table, where it is given by a seat or a stiffness."""
@@ -252,26 +254,30 @@ class _Expansion:
             return {"member": one.get("ring"), "stiffness": fixed}
         return fixed
 
-    def _pair_gears(self, index: int, one: Mapping[str, Any]) -> None:
-        """Add the pairs of a set between sun, planets and ring where the file has none of them."""
-        planets = list(one["planets"])
-        listed = self.document.setdefault("gear_pair", [])
+    def _has_pairs(self, planets: Sequence[Any]) -> bool:
+        """Whether the file has pairs with gears of a set's planets."""
+        return any({pair.get("driver"), pair.get("driven")} & set(planets) for _, pair in self.entries("gear_pair"))
+
+    def _way(self, one: Mapping[str, Any], planets: Sequence[Any]) -> list[tuple[str, str]]:
+        """Return driver and driven gear of each mesh between sun, one planet and ring, in the order of the power.
+
+        One gear of each rotor meshes with its neighbours; both gears of a stepped planet are on one rotor.
+        """
+        way = [name for name in (one.get("sun"), *planets, one.get("ring")) if isinstance(name, str)]
+        if self._drives_from_ring(one):
+            way.reverse()
+        return [ends for ends in pairwise(way) if self._rotor_of(ends[0]) != self._rotor_of(ends[1])]
+
+    def _pair_gears(self, index: int, one: Mapping[str, Any], of_each: int) -> None:
+        """Add the pairs of a set between sun, planets and ring, ``of_each`` gears of every planet."""
+        listed, planets = self.document.setdefault("gear_pair", []), list(one["planets"])
         if not isinstance(listed, list):
             return
-        if any({pair.get("driver"), pair.get("driven")} & set(planets) for _, pair in self.entries("gear_pair")):
-            return
-        written_once = "count" in one or "angles" in one
-        chains = [planets] if written_once else [[name] for name in planets]
-        ends = (one.get("sun"), one.get("ring"))
-        for chain in chains:
-            # One gear of each rotor meshes with its neighbours; both gears of a stepped planet are on one.
-            way = [name for name in (ends[0], *chain, ends[1]) if isinstance(name, str)]
-            if self._drives_from_ring(one):
-                way.reverse()
-            for driver, driven in pairwise(way):
-                if self._rotor_of(driver) != self._rotor_of(driven):
-                    self.origins["gear_pair", len(listed)] = ("planetary", index)
-                    listed.append({"driver": driver, "driven": driven})
+        ways = [self._way(one, planets[place : place + of_each]) for place in range(0, len(planets), of_each)]
+        for meshes in zip(*ways, strict=False):
+            for driver, driven in meshes:
+                self.origins["gear_pair", len(listed)] = ("planetary", index)
+                listed.append({"driver": driver, "driven": driven})
 
     def _rotor_of(self, gear: str) -> object:
         entry = self.named("gear", gear)
@@ -330,8 +336,8 @@ class _Expansion:
         from gearwhine.coupling.gears import GearError, GearPairGeometry
 
         central = one.get("sun") or one.get("ring")
-        for _, pair in self.entries("gear_pair"):
-            names = pair.get("driver"), pair.get("driven")
+        written = [(pair.get("driver"), pair.get("driven")) for _, pair in self.entries("gear_pair")]
+        for names in [*written, *self._way(one, one["planets"])]:
             others = [name for name in names if name != central]
             if central not in names or len(others) != 1 or self._rotor_of(str(others[0])) != rotor:
                 continue
