@@ -9,7 +9,8 @@ each which table it is a copy of, so that findings name what stands in the file.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,7 +19,7 @@ from pydantic import Discriminator, Field, Tag, ValidationError, field_validator
 from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
-from gearwhine.case.errors import Finding, Location, look_up
+from gearwhine.case.errors import UNSAID, Finding, Location, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Angle, Length, LengthFromZero, Name, Quantity, Table, Whole, wrong
 from gearwhine.case.gears import Gear, TrainMembers
 from gearwhine.case.operation import Operation
@@ -143,6 +144,9 @@ def train_members(
     return TrainMembers(carriers, tuple(dict.fromkeys(name for name in held if name is not None)), given, first)
 
 
+_NUMBER_OF_COPY = re.compile(r" \d+(?=['\"])")
+
+
 @dataclass(frozen=True)
 class PlanetCopies:
     """Origin of the tables that were made of others: place in a list to place in that list of the file."""
@@ -155,8 +159,19 @@ class PlanetCopies:
         origin = self.origins.get((str(kind), place)) if isinstance(place, int) else None
         if origin is None:
             return finding
-        rest = finding.location[2:] if origin[0] == kind else ()
-        return replace(finding, location=(*origin, *rest))
+        if origin[0] == kind:
+            return replace(finding, location=(*origin, *finding.location[2:]))
+        return replace(finding, location=origin, value=UNSAID)
+
+    def as_written(self, findings: Iterable[Finding]) -> Iterator[Finding]:
+        """Yield findings at the tables of the file, that of each copy of a planet once."""
+        seen = set[tuple[Location, str]]()
+        for finding in findings:
+            placed = self.in_file(finding)
+            key = placed.location, _NUMBER_OF_COPY.sub("", placed.expected)
+            if not self.origins or key not in seen:
+                seen.add(key)
+                yield placed
 
 
 def with_planets(document: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[dict[str, Any], PlanetCopies]:
