@@ -311,6 +311,8 @@ class _Expansion:
     def _angles(self, one: Mapping[str, Any]) -> list[float]:
         angles, count = one.get("angles"), one.get("count")
         if angles is not None:
+            if count is not None and (not isinstance(angles, list | tuple) or count != len(angles)):
+                raise ValueError
             return [_ANGLE.validate(angle) for angle in angles] if isinstance(angles, list | tuple) else []
         if count is None:
             return []
