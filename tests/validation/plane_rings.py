@@ -208,6 +208,5 @@ def ring_deflections(
 
 
 def loaded_radii(ring: Ring, count: int) -> np.ndarray:
-    """From two strips beyond the tip to just inside the form circle."""
-    strip = 2.0 * STRIP * ring.module
-    return np.linspace(ring.tip + strip, ring.form - strip, count)
+    """From two strips beyond the tip to a quarter of a module from the form circle, as far as pinions' tips reach."""
+    return np.linspace(ring.tip + 2.0 * STRIP * ring.module, ring.form - 0.25 * ring.module, count)

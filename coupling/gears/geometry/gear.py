@@ -46,6 +46,7 @@ from gearwhine.coupling.gears.errors import GearError, PointedToothError, ThinTi
 from gearwhine.coupling.gears.geometry.involute import involute
 from gearwhine.coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
+from gearwhine.coupling.gears.geometry.ring_support import RingSupport
 from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
 from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
@@ -179,6 +180,8 @@ class Gear:
         Outer diameter of the hub around the bore [m]; None for a web that begins at the bore.
     hub_width : float or None
         Width of the hub [m]; None for that of the face.
+    ring_support : RingSupport or None
+        What holds the outside of an internal gear's rim; None for a clamped one.
     tooth_thinning : float
         Reduction of the tooth thickness below that of the profile shift, for backlash: in the normal section, along
         the reference circle [m].
@@ -221,6 +224,7 @@ class Gear:
     allow_undercut: bool = False
     hub_diameter: float | None = None
     hub_width: float | None = None
+    ring_support: RingSupport | None = None
 
     def __post_init__(self) -> None:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
@@ -547,7 +551,11 @@ def _check_body(gear: Gear) -> None:
                     f"{label}an internal gear is a ring outside its teeth, without {quantity}; its rim_thickness says "
                     "how far it reaches beyond its root circle, and a disc of the shaft may carry it"
                 )
+        if gear.ring_support is not None:
+            gear.ring_support.require_fit(gear.name, gear.outer_radius)
         return
+    if gear.ring_support is not None:
+        raise GearError(f"{label}ring_support is of internal gears; an external one is held at its bore or rim")
     if gear.root_circle_radius <= 0.5 * gear.bore:
         raise GearError(
             f"{label}the bore ({gear.bore * 1e3:.4g} mm) must be smaller than the root circle "

@@ -29,9 +29,10 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Gear
-from gearwhine.coupling.gears.geometry.profile import load_angle, root_half_angle
+from gearwhine.coupling.gears.geometry.profile import root_half_angle
+from gearwhine.coupling.gears.stiffness.elastic_ring import root_stamp
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
-from gearwhine.coupling.gears.stiffness.ring_body import SOLID_HOLD, Annulus, body_rings, kolosov, root_stamp
+from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, root_loads, solid_rings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,7 +54,7 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
     radius : float
         Radius of the loaded points [m].
     width : float
-        Face width over the root radius.
+        Face width over the root radius, positive.
     twists : bool
         Whether the twist of the whole body about its bore is shared, as for
         `gearwhine.coupling.gears.stiffness.ring_body.neighbour_compliance`.
@@ -65,13 +66,12 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
     """
     nu = gear.poisson_ratio
     twists = twists and held_radius(gear) is not None
-    rings = body_rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
-    stamp = root_stamp(rings, root_half_angle(gear), nu, kolosov(gear, "plane-strain"))
-    over_face = wave_flexibility_over_face(rings[0].inner, width, nu)
-    beta = float(load_angle(gear, np.array(radius)))
-    load = np.array([math.cos(beta), gear.base_radius / gear.root_circle_radius, -math.sin(beta)])
+    rings = body_rings(gear) if twists else solid_rings(gear)
+    stamp = root_stamp(rings, abs(root_half_angle(gear)), nu, kolosov(gear, "plane-strain"))
+    over_face = wave_flexibility_over_face(rings[0].held, width, nu)
+    load = root_loads(gear, np.array(radius))
     waves, uniform = np.einsum("j,jna->na", load, stamp.waves), load @ stamp.uniform
-    phase = np.exp(-2j * math.pi / gear.teeth * np.arange(1, waves.shape[0] + 1))
+    phase = np.exp(-2j * math.pi / abs(gear.teeth) * np.arange(1, waves.shape[0] + 1))
     # Hermitian, as the tangential traction of the plane ring is a quarter wave behind the radial one.
     work = np.einsum("na,nb,ab,n->nab", waves.conj(), waves, np.array([[1.0, 1j], [-1j, 1.0]]), phase).real / math.pi
     long = work[:_WAVES]
@@ -87,13 +87,13 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
 
 
 @lru_cache(maxsize=32)
-def wave_flexibility_over_face(inner: float, width: float, poisson_ratio: float) -> FloatArray:
+def wave_flexibility_over_face(held: float, width: float, poisson_ratio: float) -> FloatArray:
     """Displacement (u_r, u_t) of the root circle, times 2 mu, by waves around the ring and polynomials over the face.
 
     Parameters
     ----------
-    inner, width : float
-        Radius where the ring is held, and its width, in root circle radii.
+    held, width : float
+        Radius where the ring is held, inside the root circle or outside it, and its width, in root circle radii.
     poisson_ratio : float
 
     Returns
@@ -106,7 +106,7 @@ def wave_flexibility_over_face(inner: float, width: float, poisson_ratio: float)
     n = np.arange(_WAVES + 1.0)[:, None, None]
     for parity in (0, 1):
         # Quadratic in n, so that three waves give the energy of all.
-        none, single, double = (_elastic_energy(inner, width, poisson_ratio, parity, wave) for wave in (0.0, 1.0, 2.0))
+        none, single, double = (_elastic_energy(held, width, poisson_ratio, parity, wave) for wave in (0.0, 1.0, 2.0))
         second = 0.5 * (double - 2.0 * single + none)
         energy = none + n * (single - none - second) + n**2 * second
         shapes = np.arange(parity, count, 2)
@@ -123,10 +123,10 @@ def wave_flexibility_over_face(inner: float, width: float, poisson_ratio: float)
     return flexibility
 
 
-def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: int, n: float) -> FloatArray:
+def _elastic_energy(held: float, width: float, poisson_ratio: float, parity: int, n: float) -> FloatArray:
     """Elastic energy by the coefficients of U, V and W, times 2, with 2 mu = 1; U and V even over the face or odd."""
     x, weight, value, slope = _legendre(_OVER_RADIUS + 10, _OVER_RADIUS)
-    depth = math.log(1.0 / inner)
+    depth = math.log(1.0 / held)
     radius = np.exp(-0.5 * depth * (1.0 - x))
     per_x = 0.5 * depth * radius
     rotation = 0.5 * value * (1.0 + x)[:, None]
@@ -135,7 +135,7 @@ def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: in
     _, z_weight, face, face_slope = _legendre(_OVER_FACE + 2, _OVER_FACE + 1)
     scale = np.sqrt(2.0 * np.arange(_OVER_FACE + 1) + 1.0)
     face, face_slope = face * scale, face_slope * scale * 2.0 / width
-    measure = np.outer(0.5 * z_weight, weight * per_x * radius).ravel()
+    measure = np.outer(0.5 * z_weight, weight * np.abs(per_x) * radius).ravel()
     across, along = slice(parity, _OVER_FACE, 2), slice(1 - parity, None, 2)
     p, q, p_slope, q_slope = face[:, across], face[:, along], face_slope[:, across], face_slope[:, along]
     p_over, p_rise = _products(p, over), _products(p, rise)

@@ -20,6 +20,9 @@ A new tooth model is one subclass of `CompliantTeeth`: it gives the compliance o
 neighbouring teeth share a body, that body (`shared_body`).  Its name in cases comes from the list in
 :mod:`gearwhine.coupling.gears.stiffness.models`.
 
+The ring of an internal gear is clamped at its outside; what its support yields between bolts, on pins or springs adds
+to the compliance of its teeth and of their neighbours, as the mean over the places between two bolts.
+
 Helical teeth are treated in their normal section (:mod:`gearwhine.coupling.gears.stiffness.normal_section`).
 """
 
@@ -28,7 +31,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import ClassVar, Literal, NamedTuple
 
@@ -45,7 +48,7 @@ from gearwhine.coupling.gears.stiffness.body_over_face import FACE_SHAPES, uneve
 from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance, line_contact
 from gearwhine.coupling.gears.stiffness.normal_section import Compliance, largest_section, transverse_compliance
 from gearwhine.coupling.gears.stiffness.rim_on_hub import shift_compliance
-from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance, twist_compliance
+from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance, support_compliance, twist_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -67,7 +70,8 @@ class ToothCompliance:
     bending, shear, axial, foundation : ndarray
         Compliance of the tooth as a beam, and of the body under it; arrays of the shape of the loads' radii.
     rim : ndarray
-        Additional compliance of a rim on a thinner web, compared with a body of the teeth's full width.
+        Additional compliance of a rim on a thinner web, compared with a body of the teeth's full width; of an internal
+        gear that of its ring's support, compared with a clamped outside.
     """
 
     bending: FloatArray
@@ -179,7 +183,11 @@ class CompliantTeeth(ABC):
         StiffnessModelError
             For a body outside the range of the model.
         """
-        return self.solve_tooth(gear)(np.asarray(radius, dtype=np.float64))
+        places = np.asarray(radius, dtype=np.float64)
+        tooth = self.solve_tooth(gear)(places)
+        if gear.ring_support is None:
+            return tooth
+        return replace(tooth, rim=self._on_support(gear, lambda radius: tooth.rim)(places))
 
     def shared_compliance(self, geometry: GearPairGeometry) -> float:
         """Compliance that pairs of teeth in contact at once share, of both gears [m/N].
@@ -201,8 +209,13 @@ class CompliantTeeth(ABC):
             if body is None or not body.twists or shared <= 0.0:
                 compliances.append(RimCompliance())
                 continue
-            twist = min(_anywhere(gear, twist_compliance), shared)
-            shift = min(_anywhere(gear, partial(shift_compliance, state=body.state)), shared - twist)
+            if gear.is_internal:  # of the transverse section
+                twist, shift = twist_compliance(gear), shift_compliance(gear, body.state)
+            else:
+                twist = _anywhere(gear, twist_compliance)
+                shift = _anywhere(gear, partial(shift_compliance, state=body.state))
+            twist = min(twist, shared)
+            shift = min(shift, shared - twist)
             compliances.append(RimCompliance(twist, shift, body.state))
         return compliances[0], compliances[1]
 
@@ -220,21 +233,23 @@ class CompliantTeeth(ABC):
         total = np.zeros((FACE_SHAPES, FACE_SHAPES))
         middle = 0.5 * geometry.contact_ratio
         radii = geometry.driver_radius(middle), geometry.driven_radius(middle)
-        for gear, radius, shared in zip(geometry.carrying_gears, radii, self._shared_by_gear(geometry), strict=True):
+        # What a ring's support yields is plane, of an even load; the tilt of a rim between its bolts is left out.
+        shares = self._shared_by_gear(geometry, supported=False)
+        for gear, radius, shared in zip(geometry.carrying_gears, radii, shares, strict=True):
             body = self.shared_body(gear)
             if body is None or shared == 0.0:
                 continue
             spur, spur_radius = largest_section(gear)
             at = spur_radius(np.asarray(radius, dtype=np.float64))
-            width = geometry.face_width / gear.root_circle_radius
+            width = geometry.face_width / abs(gear.root_circle_radius)
             total += shared * uneven_shares(spur, float(at), width, twists=body.twists)
         return total
 
-    def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
+    def _shared_by_gear(self, geometry: GearPairGeometry, *, supported: bool = True) -> tuple[float, float]:
         """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
         # Helical teeth with less than one pair in a plane share their bodies along the face: as at a ratio of one.
         both = max(geometry.contact_ratio - 1.0, 0.0)
-        driver, driven = map(self._neighbours, geometry.carrying_gears)
+        driver, driven = (self._neighbours(gear, supported) for gear in geometry.carrying_gears)
         if driver is None or driven is None or (both == 0.0 and geometry.driver.helix_angle == 0.0):
             return 0.0, 0.0
         nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
@@ -245,11 +260,15 @@ class CompliantTeeth(ABC):
         of_driven = driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
         return float(0.5 * weights @ of_driver), float(0.5 * weights @ of_driven)
 
-    def _neighbours(self, gear: Gear) -> Compliance | None:
+    def _neighbours(self, gear: Gear, supported: bool) -> Compliance | None:
         body = self.shared_body(gear)
         if body is None:
             return None
-        return transverse_compliance(gear, lambda spur: neighbour_compliance(spur, body.state, twists=body.twists))
+        teeth = transverse_compliance(gear, lambda spur: neighbour_compliance(spur, body.state, twists=body.twists))
+        if gear.ring_support is None or not supported:
+            return teeth
+        support = support_compliance(gear, body.state).beside
+        return lambda behind, ahead: teeth(behind, ahead) + support(behind, ahead)
 
     def teeth_compliance(self, geometry: GearPairGeometry) -> Compliance:
         """Compliance of both teeth without their contact [m/N], as a function of the position in base pitches."""
@@ -258,8 +277,18 @@ class CompliantTeeth(ABC):
             tooth = self.solve_tooth(spur)
             return lambda radius: tooth(radius).total
 
-        driver, driven = (transverse_compliance(gear, total) for gear in geometry.carrying_gears)
+        driver, driven = (
+            self._on_support(gear, transverse_compliance(gear, total)) for gear in geometry.carrying_gears
+        )
         return lambda position: driver(geometry.driver_radius(position)) + driven(geometry.driven_radius(position))
+
+    def _on_support(self, gear: Gear, teeth: Compliance) -> Compliance:
+        """Add the compliance of the support of an internal gear's rim to that of its teeth."""
+        if gear.ring_support is None:
+            return teeth
+        body = self.shared_body(gear)
+        support = support_compliance(gear, body.state if body is not None else "plane-stress").own
+        return lambda radius: teeth(radius) + support(radius)
 
     def contact_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None

@@ -60,7 +60,12 @@ _SOLID_THICKNESS = 3.0
 
 
 def held_radius(gear: Gear) -> float | None:
-    """Radius at which the body is held [m]: the bore or the inside of a rim without web; None for neither."""
+    """Radius at which the body is held [m]: the bore or the inside of a rim without web; None for neither.
+
+    An internal gear is held at its outside; the radius is negative as its others.
+    """
+    if gear.is_internal:
+        return gear.rim_outer_radius
     if gear.rim_inner_radius is not None and gear.web_thickness is None:
         return gear.rim_inner_radius
     return 0.5 * gear.bore if gear.bore > 0.0 else None

@@ -4,8 +4,8 @@ The theoretical single stiffness c'_th is one over (Eq. 81, constants of Table 9
 
     q' = C1 + C2/z_n1 + C3/z_n2 + C4 x_1 + C5 x_1/z_n1 + C6 x_2 + C7 x_2/z_n2 + C8 x_1^2 + C9 x_2^2
 
-in mm um/N, gear 1 the smaller, ``z_n`` the teeth of the equivalent spur gear.  The maximum of a pair is
-``c' = c'_th C_M C_R C_B cos(beta)`` with
+in mm um/N, gear 1 the smaller, ``z_n`` the teeth of the equivalent spur gear; an internal gear 2 has ``1/z_n2 = 0``,
+and C_R = 1.  The maximum of a pair is ``c' = c'_th C_M C_R C_B cos(beta)`` with
 
     C_M = 0.8                                                            from theory to measurement
     C_R = 1 + ln(b_s/b) / (5 exp(s_R / (5 m_n)))                         blank of a web b_s and a rim s_R
@@ -71,13 +71,13 @@ def iso6336_stiffness(geometry: GearPairGeometry, specific_load: float | None = 
     StiffnessModelError
         Outside the norm's range (profile shifts, load not positive).
     """
-    pinion, wheel = sorted((geometry.driver, geometry.driven), key=lambda gear: gear.teeth)
+    pinion, wheel = sorted((geometry.driver, geometry.driven), key=lambda gear: (gear.is_internal, gear.teeth))
     x1, x2 = pinion.profile_shift, wheel.profile_shift
     if not -0.5 <= x1 + x2 <= 2.0:
         raise StiffnessModelError(
             f"{geometry.label}: ISO 6336-1 covers sums of profile shifts from -0.5 to 2, got {x1 + x2:g}"
         )
-    z1, z2 = pinion.virtual_teeth, wheel.virtual_teeth
+    z1, z2 = pinion.virtual_teeth, math.inf if wheel.is_internal else wheel.virtual_teeth
     flexibility = (
         0.04723
         + 0.15551 / z1
@@ -104,7 +104,7 @@ def iso6336_stiffness(geometry: GearPairGeometry, specific_load: float | None = 
 
 def blank_factor(gear: Gear) -> float:
     """Gear blank factor C_R, 1 for a disc and for a rim alone (which the norm does not cover)."""
-    if gear.rim_thickness is None or gear.web_thickness is None:
+    if gear.is_internal or gear.rim_thickness is None or gear.web_thickness is None:
         return 1.0
     web = min(max(gear.web_thickness / gear.face_width, 0.2), 1.2)
     rim = max(gear.rim_thickness / gear.module, 1.0)

@@ -232,7 +232,8 @@ def require_model_fit(name: str, geometry: GearPairGeometry) -> None:
     """
     if name == PotentialEnergyStiffness.name:
         for gear in (geometry.driver, geometry.driven):
-            require_thick_ring(gear)
+            if not gear.is_internal:
+                require_thick_ring(gear)
     elif name == Iso6336Stiffness.name:
         iso6336_stiffness(geometry)
 

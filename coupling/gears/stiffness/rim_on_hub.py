@@ -23,6 +23,9 @@ w = 1 and the mass m of the blank, S = ∫ ½ (U - V) dm and M_r = ∫ ½ (U² +
 single tooth moves the root circle beyond w, the rim's own deformation, stays with the teeth.
 
 The teeth move with the root circle.
+
+An internal gear is held at its outside; a and b are then outside and root circle. What its support yields moves the
+ring as a whole, s = 1, in proportion to its part of the compliance.
 """
 
 from __future__ import annotations
@@ -35,8 +38,10 @@ import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.stiffness.beam import PlaneState
+from gearwhine.coupling.gears.stiffness.elastic_ring import ring_motions, root_motion
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
-from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, ring_motions, root_motion
+from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, ring_section, twist_compliance
+from gearwhine.coupling.gears.stiffness.toothed_ring import ring_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -71,23 +76,25 @@ def rotation_shares(gear: Gear) -> RimShares:
     """
     if held_radius(gear) is None:
         return RimShares(1.0, 1.0)
-    root, rings = gear.root_circle_radius, body_rings(gear)
-    softness = [(ring.inner**-2 - ring.outer**-2) / ring.width for ring in rings]
+    root, rings = abs(gear.root_circle_radius), body_rings(gear)
+    softness = [(ring.held**-2 - ring.loaded**-2) / ring.width for ring in rings]
     # Inertias over 2 π ρ, radii in root circle radii; the teeth first.
-    toothed = 0.25 * gear.face_width * ((gear.pitch_radius / root) ** 4 - 1.0)
+    sign = gear.sign
+    toothed = sign * 0.25 * gear.face_width * ((gear.pitch_radius / root) ** 4 - 1.0)
     whole = coupling = rim = toothed
     before = 0.0
     for ring, ring_softness in zip(rings, softness, strict=True):
-        a, b = ring.inner, ring.outer
+        a, b = ring.held, ring.loaded
         # s = p - q / r² on this ring.
         q = 1.0 / (ring.width * sum(softness))
         p = before / sum(softness) + q / a**2
-        fourth, square = 0.25 * (b**4 - a**4), 0.5 * (b**2 - a**2)
+        fourth, square = sign * 0.25 * (b**4 - a**4), sign * 0.5 * (b**2 - a**2)
         whole += ring.width * fourth
         coupling += ring.width * (p * fourth - q * square)
-        rim += ring.width * (p**2 * fourth - 2.0 * p * q * square + q**2 * math.log(b / a))
+        rim += ring.width * (p**2 * fourth - 2.0 * p * q * square + sign * q**2 * math.log(b / a))
         before += ring_softness
-    return RimShares(coupling / whole, rim / whole)
+    support = 1.0 - twist_compliance(gear, supported=False) / twist_compliance(gear) if gear.ring_support else 0.0
+    return _with_support(RimShares(coupling / whole, rim / whole), support)
 
 
 def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
@@ -100,26 +107,42 @@ def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
     """
     if held_radius(gear) is None:
         return RimShares(1.0, 1.0)
-    root, rings = gear.root_circle_radius, body_rings(gear)
-    places = [ring.inner + 0.5 * (ring.outer - ring.inner) * (1.0 + _NODES) for ring in rings]
+    root, rings = abs(gear.root_circle_radius), body_rings(gear)
+    places = [ring.held + 0.5 * (ring.loaded - ring.held) * (1.0 + _NODES) for ring in rings]
     fields = ring_motions(rings, 1, kolosov(gear, state), _RIGID_MOTION_TRACTIONS, places)
     at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID_MOTION_TRACTIONS)
     shift = 0.5 * float(_RIGID_MOTION_TRACTIONS @ at_root)
     # Masses over π ρ, radii in root circle radii; the teeth first.
-    whole = coupling = gear.face_width * ((gear.pitch_radius / root) ** 2 - 1.0)
+    sign = gear.sign
+    whole = coupling = sign * gear.face_width * ((gear.pitch_radius / root) ** 2 - 1.0)
     rim = 0.5 * whole * float(at_root @ at_root) / shift**2
     for ring, radius, field in zip(rings, places, fields, strict=True):
-        mass = ring.width * (ring.outer - ring.inner) * _WEIGHTS * radius
+        mass = sign * ring.width * (ring.loaded - ring.held) * _WEIGHTS * radius
         whole += float(mass.sum())
         coupling += float(mass @ (field @ _RIGID_MOTION_TRACTIONS)) * 0.5 / shift
         rim += float(mass @ (field**2).sum(axis=1)) * 0.5 / shift**2
-    return RimShares(coupling / whole, rim / whole)
+    support = 1.0 - shift_compliance(gear, state, supported=False) / shift_compliance(gear, state)
+    return _with_support(RimShares(coupling / whole, rim / whole), support if gear.ring_support else 0.0)
 
 
-def shift_compliance(gear: Gear, state: PlaneState) -> float:
-    """Shift of a spur gear's rim on its hub under a force across the shaft [m/N]; 0 in one piece with its shaft."""
+def _with_support(shares: RimShares, support: float) -> RimShares:
+    """Shares of a ring whose support has this part of its compliance: so far it moves as a whole, s = 1."""
+    coupling = support + (1.0 - support) * shares.coupling
+    rim = support**2 + 2.0 * support * (1.0 - support) * shares.coupling + (1.0 - support) ** 2 * shares.rim
+    return RimShares(coupling, rim)
+
+
+def shift_compliance(gear: Gear, state: PlaneState, *, supported: bool = True) -> float:
+    """Shift of a spur gear's rim on its hub under a force across the shaft [m/N]; 0 in one piece with its shaft.
+
+    Of an internal gear it is that of the ring with its teeth and, unless it is not counted, its support, in the
+    transverse section.
+    """
     if held_radius(gear) is None:
         return 0.0
+    if gear.is_internal:
+        section = ring_section(gear, state, supported=supported)
+        return ring_flexibility(section).shift / (gear.youngs_modulus * gear.face_width)
     rings, nu = body_rings(gear), gear.poisson_ratio
     at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID_MOTION_TRACTIONS)
     # Times 2 mu, under a traction of 1 whose resultant is 2 pi times the width; E / (2 mu) = 1 + nu.

@@ -1,26 +1,7 @@
 r"""Gear body compliance by an exact elastic ring under the teeth, with the additional compliance of a rim on a web.
 
-The body is a flat ring between the root circle (radius 1 here) and a circle where it is held.  Tractions on the root
-circle are split into waves ``n`` around it.  In one wave the displacements are combinations of powers of ``r`` that
-follow from the complex potentials ``z^k`` (Kolosov; Muskhelishvili 1953), with ``kappa = (3 - nu)/(1 + nu)`` in plane
-stress, ``3 - 4 nu`` in plane strain:
-
-    2 mu (u_r + i u_t) = e^{-i t} (kappa phi(z) - z conj(phi'(z)) - conj(psi(z)))
-    s_r - i s_rt       = phi' + conj(phi') - e^{2 i t} (conj(z) phi'' + psi')
-
-so that each wave has four coefficients: two conditions at the held circle, two at the root circle.  A rim on a thinner
-web is two such rings, one in the other: the flexibility of the web at its outer circle is the condition at the rim's
-inner one.
-
-The tooth stands on the arc ``|t| < theta``.  A beam's sections stay plane, so the arc moves as a rigid one, and the
-tractions under it are those that make the energy least among all that carry the load (Castigliano): those of a rigid
-stamp.  They are sought as ``T_k(t/theta) / sqrt(1 - (t/theta)^2)``, whose waves are Bessel functions,
-``pi theta J_k(n theta)``; a few terms give all digits that matter.
-
-The arc of another tooth, an angle away on the same ring, moves with the ring.  Tractions ``s`` of waves ``s_n`` shifted
-by the angle D do the work ``1/pi sum_n Re(conj(s_n) H_n s'_n e^{-i n D})`` on the displacement of the tractions ``s'``,
-H_n the wave's flexibility, Hermitian in this form.  With the tractions of each arc alone this is the cross flexibility
-of two teeth; with the flexibility of each it is the energy of real tractions, so positive definite.
+The body is the ring of :mod:`gearwhine.coupling.gears.stiffness.elastic_ring` between the root circle and the circle
+where it is held, under teeth whose root arcs stay rigid.
 
 The load of a tooth is carried to the root circle as a force ``cos(beta)`` across the tooth's axis, ``sin(beta)`` along
 it, and the torque ``rb`` about the gear's centre. The gear body compliance follows from the flexibility L of the rigid
@@ -35,359 +16,41 @@ A rim with a web of another width is two rings.  Its share is their compliance l
 width down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  The model is plane: a
 web off the middle of the face, and spokes, also tilt the rim, which is left out.  A rim alone (no web) is held at its
 inside.
+
+An internal gear is a ring that is held at its outside, with all its teeth as rigid arcs
+(:mod:`gearwhine.coupling.gears.stiffness.toothed_ring`). Here it is clamped there, as a tooth feels it in its normal
+section. What a yielding support adds moves the ring in its plane: `support_compliance`, of the transverse section.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import StiffnessModelError
 from gearwhine.coupling.gears.geometry.gear import Gear
-from gearwhine.coupling.gears.geometry.profile import load_angle, root_half_angle
+from gearwhine.coupling.gears.geometry.profile import load_angle, root_half_angle, tooth_side
 from gearwhine.coupling.gears.stiffness.beam import PlaneState, plane_modulus
+from gearwhine.coupling.gears.stiffness.elastic_ring import (
+    Annulus,
+    neighbour_flexibility,
+    root_flexibility,
+    twist_flexibility,
+)
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
+from gearwhine.coupling.gears.stiffness.toothed_ring import RingSection, ring_flexibility
 
 FloatArray = npt.NDArray[np.float64]
 
-_SHAPES = 8
-"""Chebyshev polynomials in each traction: the compliance is within 1e-4 of its limit."""
-_WAVES_ACROSS = 60.0
-"""Value n theta of the last wave that is summed; shorter waves act on a half plane and are summed in closed form."""
-
-_POINTS = 100
-"""Points of quadrature on the arc, an even number, enough beyond `_WAVES_ACROSS` for all digits."""
-_FADED = 25.0
-"""A wave n with n ln(outer / inner) above this has decayed to 1e-11 at the inside."""
-
-
-@dataclass(frozen=True)
-class Annulus:
-    """A flat ring of one width.
-
-    Attributes
-    ----------
-    inner, outer : float
-        Radii, in root circle radii.
-    width : float
-        Width, in the unit of the other rings' widths.
-    """
-
-    inner: float
-    outer: float
-    width: float
-
-
-@dataclass(frozen=True, eq=False)
-class RootFlexibility:
-    """Flexibility of the rigid root arc, times E and width.
-
-    Attributes
-    ----------
-    lateral : ndarray, shape (2, 2)
-        Flexibility under (force across the tooth's axis, torque about the gear's centre over root radius).
-    radial : float
-        Flexibility under a force along the tooth's axis.
-    """
-
-    lateral: FloatArray
-    radial: float
-
-
-@dataclass(frozen=True, eq=False)
-class RootStamp:
-    """The tractions under a rigid root arc, for unit resultants (across, torque, along).
-
-    Attributes
-    ----------
-    waves : ndarray of complex, shape (3, n, 2)
-        ``int s e^{-i n t} dt`` of the radial and the tangential traction, n = 1, 2, ...
-    uniform : ndarray, shape (3, 2)
-        The integral for n = 0.
-    flexibility : ndarray, shape (n, 2, 2)
-        Flexibility of each wave, see `_wave_flexibility`.
-    even : ndarray, shape (2,)
-        Breathing and twist: displacement under uniform tractions.
-    own : RootFlexibility
-    """
-
-    waves: npt.NDArray[np.complex128]
-    uniform: FloatArray
-    flexibility: FloatArray
-    even: FloatArray
-    own: RootFlexibility
-
-
-def root_flexibility(
-    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float
-) -> RootFlexibility:
-    """Flexibility of the arc that one tooth stands on.
-
-    Parameters
-    ----------
-    rings : tuple of Annulus
-        Rings from the held circle outward, each beginning where the last ends; the last ends at the root circle, 1.
-    half_angle : float
-        Half angle of the tooth on the root circle [rad].
-    poisson_ratio, kappa : float
-        Poisson's ratio of the material, and Kolosov's constant.
-
-    Returns
-    -------
-    RootFlexibility
-    """
-    return root_stamp(rings, half_angle, poisson_ratio, kappa).own
-
-
-def neighbour_flexibility(
-    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float, angle: float
-) -> FloatArray:
-    """Motion of one root arc under loads on another one of the same ring, times E and width.
-
-    Parameters
-    ----------
-    rings, half_angle, poisson_ratio, kappa
-        As for `root_flexibility`.
-    angle : float
-        Angle from the middle of the first arc to that of the second [rad], in the sense of the force across.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Row: motion of the first arc in the sense of (force across the tooth's axis, torque about the gear's centre over
-        root radius, force outward along the axis); column: these loads on the second arc.
-    """
-    stamp = root_stamp(rings, half_angle, poisson_ratio, kappa)
-    numbers = np.arange(1, stamp.waves.shape[1] + 1)
-    hermitian = stamp.flexibility.astype(np.complex128)
-    hermitian[:, 0, 1] *= 1j
-    hermitian[:, 1, 0] *= -1j
-    moved = np.einsum("nab,jnb,n->jna", hermitian, stamp.waves, np.exp(-1j * numbers * angle))
-    work = np.einsum("ina,jna->ij", stamp.waves.conj(), moved).real / math.pi
-    work += (stamp.uniform * stamp.even) @ stamp.uniform.T / (2.0 * math.pi)
-    return np.asarray((1.0 + poisson_ratio) * work, dtype=np.float64)
-
-
-@lru_cache(maxsize=16)
-def root_stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float) -> RootStamp:
-    """Solve the rigid stamp on a ring."""
-    last = math.ceil(_WAVES_ACROSS / half_angle)
-    waves = np.arange(1, last + 1)
-    # Waves much shorter than the thickness of the outermost ring do not reach its inside.
-    deep = math.ceil(_FADED / math.log(rings[-1].outer / rings[-1].inner))
-    flexibility = np.concatenate(
-        [
-            _wave_flexibility(rings, waves[:1], kappa),
-            _wave_flexibility(rings, waves[1:deep], kappa),
-            _short_wave_flexibility(waves[max(1, deep) :], kappa),
-        ]
-    )
-    even, odd = np.arange(0, _SHAPES, 2), np.arange(1, _SHAPES, 2)
-    # int f_k cos(n t) dt for even k, int f_k sin(n t) dt for odd k, by Gauss and Chebyshev: many times faster than jv.
-    # Shape times wave is even in t, so half the points do.
-    phase = math.pi * (np.arange(_POINTS // 2) + 0.5) / _POINTS
-    turns, weight = _multiples(last, half_angle * np.cos(phase)), 2.0 * math.pi * half_angle / _POINTS
-    content = [
-        weight * np.cos(np.outer(even, phase)) @ turns.real.T,
-        weight * np.cos(np.outer(odd, phase)) @ turns.imag.T,
-    ]
-    # Beyond, J_k J_l averages to +-1 / (pi n theta) and the flexibility falls as 1/n: all terms of a block alike.
-    tail = half_angle * last / (last + 0.5) * np.diagonal(flexibility[-1])
-    twist, breathing = twist_flexibility(rings), _breathing(rings, kappa)
-    # Across the axis: radial tractions odd, tangential ones even.  Shifted by a quarter wave, tangential changes sign.
-    lateral = _energy(content[1], content[0], flexibility, -1.0, tail)
-    whole = np.where(even == 0, math.pi * half_angle, 0.0)
-    lateral[odd.size :, odd.size :] += np.outer(whole, whole) / (2.0 * math.pi) * twist
-    radial = _energy(content[0], content[1], flexibility, 1.0, tail)
-    radial[: even.size, : even.size] += np.outer(whole, whole) / (2.0 * math.pi) * breathing
-    first_even, first_odd = content[0][:, 0], content[1][:, 0]
-    across = np.array([np.concatenate([first_odd, first_even]), np.concatenate([np.zeros(odd.size), whole])])
-    along = np.concatenate([first_even, -first_odd])[None, :]
-    scale = 1.0 + poisson_ratio  # E / (2 mu)
-    least, sideways = _least_work(lateral, across)
-    outward, upright = _least_work(radial, along)
-    lateral_flexibility = np.asarray(scale * least, dtype=np.float64)
-    lateral_flexibility.setflags(write=False)
-    # Of even shapes e^{-i n t} leaves the cosine, of odd ones -i times the sine; across the axis the radial are odd.
-    waves = np.array(
-        [
-            *([-1j * tractions[: odd.size] @ content[1], tractions[odd.size :] @ content[0]] for tractions in sideways),
-            [upright[0, : even.size] @ content[0], -1j * upright[0, even.size :] @ content[1]],
-        ]
-    )
-    uniform = np.zeros((3, 2))
-    uniform[:2, 1], uniform[2, 0] = sideways[:, odd.size :] @ whole, upright[0, : even.size] @ whole
-    return RootStamp(
-        waves=np.ascontiguousarray(waves.swapaxes(1, 2), dtype=np.complex128),
-        uniform=uniform,
-        flexibility=flexibility,
-        even=np.array([breathing, twist]),
-        own=RootFlexibility(lateral=lateral_flexibility, radial=float(scale * outward[0, 0])),
-    )
-
-
-def _multiples(last: int, angle: FloatArray) -> npt.NDArray[np.complex128]:
-    """``e^{i n angle}`` for n = 1 ... `last`, (last, points), as products of few exponentials."""
-    few = math.ceil(math.sqrt(last))
-    ones, tens = np.outer(np.arange(1, few + 1), angle), np.outer(few * np.arange(few), angle)
-    turns = np.exp(1j * tens)[:, None] * np.exp(1j * ones)
-    return np.asarray(turns.reshape(-1, angle.size)[:last], dtype=np.complex128)
-
-
-def _energy(
-    radial: FloatArray, tangential: FloatArray, flexibility: FloatArray, sign: float, tail: FloatArray
-) -> FloatArray:
-    """Work of each traction on each other's displacement, radial shapes first, waves of n >= 1."""
-    blocks = [
-        [np.einsum("in,n,jn->ij", a, flexibility[:, i, j], b) / math.pi for j, b in enumerate((radial, tangential))]
-        for i, a in enumerate((radial, tangential))
-    ]
-    return np.block([[blocks[0][0] + tail[0], sign * blocks[0][1]], [sign * blocks[1][0], blocks[1][1] + tail[1]]])
-
-
-def _least_work(energy: FloatArray, resultants: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Flexibility (r, r) under r resultants with the tractions of least energy, and those of unit resultants (r, k)."""
-    free = np.linalg.solve(energy, resultants.T)
-    flexibility = np.asarray(np.linalg.inv(resultants @ free), dtype=np.float64)
-    return flexibility, np.asarray((free @ flexibility).T, dtype=np.float64)
-
-
-def root_motion(rings: tuple[Annulus, ...], wave: int, kappa: float, tractions: FloatArray) -> FloatArray:
-    """Displacement (u_r, u_t) of the root circle, times 2 mu, under (s_r cos n t, s_rt sin n t) on it, n from 1."""
-    return np.asarray(_wave_flexibility(rings, np.array([wave]), kappa)[0] @ tractions)
-
-
-def ring_motions(
-    rings: tuple[Annulus, ...], wave: int, kappa: float, tractions: FloatArray, places: Sequence[FloatArray]
-) -> list[FloatArray]:
-    """Displacement (u_r, u_t) within each ring, times 2 mu, under (s_r cos n t, s_rt sin n t) on the root circle.
-
-    Parameters
-    ----------
-    rings, kappa
-        As for `root_flexibility`.
-    wave : int
-        n, from 1.
-    tractions : ndarray, shape (2,)
-        s_r and s_rt.
-    places : sequence of ndarray
-        Radii in each of the rings, in root circle radii.
-
-    Returns
-    -------
-    list of ndarray, shape (places, 2) each
-    """
-    n, load, motions = np.array([wave]), np.asarray(tractions, dtype=np.float64), list[FloatArray]()
-    for number in range(len(rings) - 1, -1, -1):
-        ring, inside = rings[number], rings[:number]
-        support = _wave_flexibility(inside, n, kappa) if inside else np.zeros((1, 2, 2))
-        ratio = ring.width / inside[-1].width if inside else 1.0
-        motion, stress = _fields(ring.inner, ring, n, kappa)
-        conditions = np.vstack([(motion - ratio * support @ stress)[0], _fields(ring.outer, ring, n, kappa)[1][0]])
-        solution = np.linalg.solve(conditions, np.concatenate([np.zeros(2), load]))
-        motions.append(np.array([_fields(r, ring, n, kappa)[0][0] @ solution for r in places[number].tolist()]))
-        load = ratio * stress[0] @ solution
-    return motions[::-1]
-
-
-def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
-    """Displacement (u_r, u_t), times 2 mu, under unit tractions (s_r cos n t, s_rt sin n t) on the last ring's outside.
-
-    Shape (waves, 2, 2).
-    """
-    support = np.zeros((waves.size, 2, 2))
-    for ring, inside in zip(rings, (None, *rings[:-1]), strict=True):
-        inner_motion, inner_stress = _fields(ring.inner, ring, waves, kappa)
-        motion, stress = _fields(ring.outer, ring, waves, kappa)
-        ratio = 1.0 if inside is None else ring.width / inside.width
-        support_conditions = inner_motion - ratio * support @ inner_stress
-        conditions = np.concatenate([support_conditions, stress], axis=1)
-        loads = np.broadcast_to(np.vstack([np.zeros((2, 2)), np.eye(2)]), (waves.size, 4, 2))
-        support = motion @ np.linalg.solve(conditions, loads)
-    return support
-
-
-def _short_wave_flexibility(waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
-    """`_wave_flexibility` of a full disc of radius 1: of the growing solutions alone."""
-    n = waves.astype(np.float64)
-    # Rows: weights of z^(n+1) and z^(n-1) under each traction, from the inverse of their two tractions.
-    determinant = 2.0 * (n**2 - 1.0)
-    first = np.array([n - 1.0, n - 1.0]) / determinant
-    second = np.array([-(n + 1.0) * n, (n + 1.0) * (2.0 - n)]) / determinant
-    radial = (kappa - n - 1.0) * first - second
-    tangential = (kappa + n + 1.0) * first + second
-    return np.moveaxis(np.array([radial, tangential]), 2, 0)
-
-
-def _fields(radius: float, ring: Annulus, waves: npt.NDArray[np.int64], kappa: float) -> tuple[FloatArray, FloatArray]:
-    """Displacements and tractions of the four solutions of a wave at `radius`, each shape (waves, 2, 4).
-
-    Two grow outward and are one at the ring's outside, two fade outward and are one at its inside, so that no power
-    overflows.
-    """
-    n = waves.astype(np.float64)
-    ones, zeros = np.ones_like(n), np.zeros_like(n)
-    outward, inward = radius / ring.outer, ring.inner / radius
-    grow, fade = outward**n, inward**n
-    r = radius
-    if waves.size == 1 and waves[0] == 1:
-        # z^0 is the rigid-body motion of the ring, and the resultant force of wave 1 needs a logarithm.
-        log, inside = math.log(outward), inward**2
-        columns = [
-            _potential(2.0 * ones, grow * outward, grow * outward / r, kappa, 1.0),
-            (
-                (2.0 * kappa * log - 1.0) * ones,
-                -(2.0 * kappa * log + 1.0) * ones,
-                (3.0 + kappa) / r * ones,
-                (1.0 - kappa) / r * ones,
-            ),
-            (-inside * ones, -inside * ones, 2.0 * inside / r * ones, 2.0 * inside / r * ones),
-            (ones, -ones, zeros, zeros),
-        ]
-    else:
-        columns = [
-            _potential(n + 1.0, grow * outward, grow * outward / r, kappa, 1.0),
-            _potential(1.0 - n, fade / inward, fade / inward / r, kappa, -1.0),
-            (-grow / outward, grow / outward, -(n - 1.0) * grow / outward / r, (n - 1.0) * grow / outward / r),
-            (-fade * inward, -fade * inward, (n + 1.0) * fade * inward / r, (n + 1.0) * fade * inward / r),
-        ]
-    table = np.moveaxis(np.array(columns), 0, -1)  # (4 quantities, waves, 4 solutions)
-    return np.moveaxis(table[:2], 0, 1), np.moveaxis(table[2:], 0, 1)
-
-
-def _potential(
-    k: FloatArray, power: FloatArray, rate: FloatArray, kappa: float, side: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Fields of ``phi = z^k``: `power` is r^k, `rate` r^(k-1), `side` +1 for k > 0 and -1 for k < 0."""
-    return (kappa - k) * power, side * (kappa + k) * power, k * (3.0 - k) * rate, side * k * (k - 1.0) * rate
-
-
-def twist_flexibility(rings: tuple[Annulus, ...]) -> float:
-    """Rotation of the root circle (times 2 mu) under a uniform tangential traction 1 on it."""
-    outermost = rings[-1].width
-    return sum(outermost / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
-
-
-def _breathing(rings: tuple[Annulus, ...], kappa: float) -> float:
-    """Radial displacement of the root circle (times 2 mu) under a uniform radial traction 1 on it."""
-    support, width = 0.0, rings[0].width
-    for ring in rings:
-        a, b = ring.inner, ring.outer
-        inner_condition = np.array([(kappa - 1.0) * a, -1.0 / a]) - ring.width / width * support * np.array(
-            [2.0, a**-2]
-        )
-        amplitude = np.linalg.solve(np.array([inner_condition, [2.0, b**-2]]), np.array([0.0, 1.0]))
-        support, width = float(np.array([(kappa - 1.0) * b, -1.0 / b]) @ amplitude), ring.width
-    return support
-
-
+_OUTLINE = 40
+"""Points on each curve of an internal tooth's outline."""
 SOLID_HOLD = 1.0 / 3.0
-"""Radius at which a gear without a bore is held, in root circle radii."""
+"""Radius at which a gear without a bore is held, in root circle radii; an internal one at its inverse."""
 
 
 BodyCompliance = Callable[[FloatArray], FloatArray]
@@ -404,7 +67,9 @@ def ring_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompl
     gear : Gear
     state : {"plane-stress", "plane-strain"}
     """
-    return _solved(gear, (Annulus(_hold(gear), 1.0, gear.face_width),), state, twists=held_radius(gear) is not None)
+    if gear.is_internal:
+        return _alone(work_of_loads(gear, ring_flexibility(ring_section(gear, state, supported=False)).own[0]))
+    return _solved(gear, (Annulus(held_at(gear), 1.0, gear.face_width),), state, twists=held_radius(gear) is not None)
 
 
 def rim_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
@@ -420,7 +85,7 @@ def rim_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompli
     if gear.rim_inner_radius is None or gear.web_thickness is None:
         return lambda radius: np.zeros(np.shape(radius))
     rings = body_rings(gear)
-    plain = (Annulus(_hold(gear), 1.0, gear.face_width),)
+    plain = (Annulus(held_at(gear), 1.0, gear.face_width),)
     with_rim, without = (_solved(gear, body, state, twists=True) for body in (rings, plain))
     return lambda radius: with_rim(radius) - without(radius)
 
@@ -446,41 +111,147 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twis
         Maps radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
         the compliance.
     """
-    rings = body_rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
+    if gear.is_internal and twists:
+        return work_of_loads(gear, ring_flexibility(ring_section(gear, state, supported=False)).beside[0])
+    rings = body_rings(gear) if twists else solid_rings(gear)
     nu, kappa = gear.poisson_ratio, kolosov(gear, state)
-    cross = neighbour_flexibility(rings, root_half_angle(gear), nu, kappa, 2.0 * math.pi / gear.teeth)
+    cross = neighbour_flexibility(rings, abs(root_half_angle(gear)), nu, kappa, abs(2.0 * math.pi / gear.teeth))
     if not (twists and held_radius(gear) is not None):
         cross = cross.copy()
         cross[1, 1] -= _whole_twist(rings, nu)
-    torque = gear.base_radius / gear.root_circle_radius
+    return work_of_loads(gear, cross)
 
-    def loads(radius: FloatArray) -> FloatArray:
-        beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
-        return np.array([np.cos(beta), np.full(beta.shape, torque), -np.sin(beta)])
+
+def work_of_loads(gear: Gear, flexibility: FloatArray) -> CrossCompliance:
+    """Compliance [m/N] from the flexibility of two root arcs under `root_loads`, times E and width, (3, 3)."""
 
     def compliance(behind: FloatArray, ahead: FloatArray) -> FloatArray:
-        work = np.einsum("i...,ij,j...->...", loads(behind), cross, loads(ahead))
+        work = np.einsum("i...,ij,j...->...", root_loads(gear, behind), flexibility, root_loads(gear, ahead))
         return np.asarray(work / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
 
     return compliance
 
 
-def twist_compliance(gear: Gear) -> float:
+def root_loads(gear: Gear, radius: FloatArray) -> FloatArray:
+    """Resultants on the root arc of unit loads at radii [m] on the flank: the loads of `neighbour_flexibility`.
+
+    Returns
+    -------
+    ndarray, shape (3, ...)
+        Force across the tooth's axis, torque about the gear's centre over the root radius, and force outward along the
+        axis: a load presses an external tooth to the centre, an internal one outward.
+    """
+    beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
+    torque = gear.base_radius / gear.root_circle_radius
+    return np.array([np.cos(beta), np.full(beta.shape, torque), -gear.sign * np.sin(beta)])
+
+
+def _alone(compliance: CrossCompliance) -> BodyCompliance:
+    return lambda radius: compliance(radius, radius)
+
+
+class SupportCompliance(NamedTuple):
+    """Compliance that the support of an internal gear's rim adds to a clamped one.
+
+    Attributes
+    ----------
+    own, beside : callable
+        Of a tooth, and between it and the next one in the sense of the loads, see `neighbour_compliance`.
+    """
+
+    own: BodyCompliance
+    beside: CrossCompliance
+
+
+def support_compliance(gear: Gear, state: PlaneState = "plane-stress", place: float | None = None) -> SupportCompliance:
+    """Compliance that the support of an internal gear's rim adds to a clamped outside; zero for external gears.
+
+    It is that of the transverse section, of helical teeth too: along the transverse line of action.
+
+    Parameters
+    ----------
+    gear : Gear
+    state : {"plane-stress", "plane-strain"}
+    place : float or None
+        Angle of the loaded tooth from a bolt or pin, in the sense of the load [rad]; None for the mean over all places.
+    """
+    if gear.ring_support is None or gear.ring_support.kind in ("clamped", "housing"):
+        return SupportCompliance(lambda radius: np.zeros(np.shape(radius)), _no_cross)
+    held, clamped = (ring_flexibility(ring_section(gear, state, supported=there)) for there in (True, False))
+    bolts = gear.ring_support.count
+    own, beside = (
+        _at_place(matrices, place, bolts) - still[0]
+        for matrices, still in ((held.own, clamped.own), (held.beside, clamped.beside))
+    )
+    return SupportCompliance(_alone(work_of_loads(gear, own)), work_of_loads(gear, beside))
+
+
+def _no_cross(behind: FloatArray, ahead: FloatArray) -> FloatArray:
+    return np.zeros(np.broadcast_shapes(np.shape(behind), np.shape(ahead)))
+
+
+def _at_place(matrices: FloatArray, place: float | None, bolts: int | None) -> FloatArray:
+    """Mean over the places between two bolts, or the value at an angle from a bolt by the harmonics of their number."""
+    if place is None or bolts is None:
+        return np.asarray(matrices.mean(axis=0), dtype=np.float64)
+    count = len(matrices)
+    harmonics = np.fft.fft(matrices, axis=0) / count
+    phases = np.exp(1j * bolts * place * np.fft.fftfreq(count, 1.0 / count))
+    return np.asarray(np.tensordot(phases, harmonics, axes=1).real, dtype=np.float64)
+
+
+def ring_section(gear: Gear, state: PlaneState, *, supported: bool = True) -> RingSection:
+    """Ring of an internal gear with its support; clamped at its outside where the support is not counted."""
+    width, outside = gear.face_width, held_at(gear)
+    across, along = tooth_side(gear, _OUTLINE)
+    outline = np.array([np.hypot(across, along) / abs(gear.root_circle_radius), np.arctan2(across, -along)]).T
+    clamped = RingSection(
+        abs(gear.teeth),
+        abs(root_half_angle(gear)),
+        outside,
+        tuple((radius, angle) for radius, angle in outline.tolist()),
+        gear.poisson_ratio,
+        kolosov(gear, state),
+    )
+    support = gear.ring_support
+    if support is None or not supported or support.kind in ("clamped", "housing"):
+        return clamped
+    stiffness = support.radial_stiffness, support.tangential_stiffness
+    radial, tangential = (0.0 if each is None else gear.youngs_modulus * width / each for each in stiffness)
+    if support.kind == "springs":
+        around = 2.0 * math.pi * outside
+        return replace(clamped, bed=(around * radial, around * tangential))
+    assert support.count is not None
+    assert support.seat_width is not None
+    return replace(
+        clamped,
+        bolts=support.count,
+        seat=0.5 * support.seat_width / (abs(gear.root_circle_radius) * outside),
+        bolt=(radial, tangential),
+        pinned=support.kind == "pins",
+    )
+
+
+def twist_compliance(gear: Gear, *, supported: bool = True) -> float:
     """Twist of a spur gear's body between the circle where it is held and the root circle [m/N].
 
     Along the line of action, by the torque of a unit load alone: ``rb^2 sum (1/a^2 - 1/b^2) / (4 pi G w)`` over the
-    rings from a to b of width w. Zero for a gear in one piece with its shaft.
+    rings from a to b of width w. Zero for a gear in one piece with its shaft. Of an internal gear it is that of the
+    ring with its teeth and, unless it is not counted, its support, in the transverse section.
     """
     if held_radius(gear) is None:
         return 0.0
     torque = gear.base_radius / gear.root_circle_radius
+    if gear.is_internal:
+        section = ring_section(gear, "plane-stress", supported=supported)
+        return torque**2 * ring_flexibility(section).twist / (gear.youngs_modulus * gear.face_width)
     return torque**2 * _whole_twist(body_rings(gear), gear.poisson_ratio) / (gear.youngs_modulus * gear.face_width)
 
 
 def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: bool) -> BodyCompliance:
     """Work of a unit load on the root arc; `twists` keeps the twist of the whole body."""
     nu = gear.poisson_ratio
-    arc = root_flexibility(rings, root_half_angle(gear), nu, kolosov(gear, state))
+    arc = root_flexibility(rings, abs(root_half_angle(gear)), nu, kolosov(gear, state))
     torque = gear.base_radius / gear.root_circle_radius
     twist = 0.0 if twists else _whole_twist(rings, nu)
 
@@ -509,12 +280,15 @@ def kolosov(gear: Gear, state: PlaneState) -> float:
 def body_rings(gear: Gear) -> tuple[Annulus, ...]:
     """Divide the gear body into annuli, from the radius where it is held to the root circle.
 
+    An internal gear is clamped at its outside here; what its support yields is in
+    `support_compliance`.
+
     Raises
     ------
     StiffnessModelError
         For a web that begins inside the bore's circle.
     """
-    hub = _hold(gear)
+    hub = held_at(gear)
     if gear.rim_inner_radius is None or gear.web_thickness is None:
         return (Annulus(hub, 1.0, gear.face_width),)
     inside = gear.rim_inner_radius / gear.root_circle_radius
@@ -531,7 +305,12 @@ def body_rings(gear: Gear) -> tuple[Annulus, ...]:
     return boss, Annulus(around, inside, gear.web_thickness), rim
 
 
-def _hold(gear: Gear) -> float:
+def solid_rings(gear: Gear) -> tuple[Annulus, ...]:
+    """Ring in place of a half plane: of the teeth's width, held far from the root circle."""
+    return (Annulus(1.0 / SOLID_HOLD if gear.is_internal else SOLID_HOLD, 1.0, gear.face_width),)
+
+
+def held_at(gear: Gear) -> float:
     """Radius at which the body is held, in root circle radii."""
     radius = held_radius(gear)
     return SOLID_HOLD if radius is None else radius / gear.root_circle_radius

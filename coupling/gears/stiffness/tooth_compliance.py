@@ -69,6 +69,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -120,10 +121,12 @@ class PotentialEnergyStiffness(CompliantTeeth):
     def solve_tooth(self, gear: Gear) -> SolvedTooth:
         """See `CompliantTeeth`."""
         rim = rim_compliance(gear)
+        # Sainsot's constants are of discs: internal teeth stand on their exact ring instead.
+        disc = partial(foundation_compliance, gear, root_section=self.root_section)
+        body = ring_compliance(gear) if gear.is_internal else disc
 
         def tooth(radius: FloatArray) -> ToothCompliance:
-            foundation = foundation_compliance(gear, radius, self.root_section)
-            return ToothCompliance(*beam_compliance(gear, radius), foundation=foundation, rim=rim(radius))
+            return ToothCompliance(*beam_compliance(gear, radius), foundation=body(radius), rim=rim(radius))
 
         return tooth
 

@@ -8,8 +8,8 @@ import pytest
 
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.stiffness import elastic_ring
 from gearwhine.coupling.gears.stiffness import foundation as sainsot
-from gearwhine.coupling.gears.stiffness import ring_body
 from gearwhine.coupling.gears.stiffness.ring_body import (
     Annulus,
     neighbour_flexibility,
@@ -29,13 +29,13 @@ def ring(thickness: float) -> tuple[Annulus]:
 
 def waves_of(rings: tuple[Annulus, ...], count: int, kappa: float) -> np.ndarray:
     first, others = np.arange(1, 2), np.arange(2, count + 1)
-    return np.concatenate([ring_body._wave_flexibility(rings, numbers, kappa) for numbers in (first, others)])
+    return np.concatenate([elastic_ring.wave_flexibility(rings, numbers, kappa) for numbers in (first, others)])
 
 
 @pytest.mark.parametrize("kappa", [STRESS, STRAIN])
 def test_short_waves_see_a_half_plane(kappa: float) -> None:
     # exp(i n x) on a half plane: 2 mu n u = (kappa + 1)/2 on the diagonal, (kappa - 1)/2 beside it.
-    found = 4000.0 * ring_body._short_wave_flexibility(np.array([4000]), kappa)[0]
+    found = 4000.0 * elastic_ring._short_wave_flexibility(np.array([4000]), kappa)[0]
     np.testing.assert_allclose(np.diag(found), (kappa + 1.0) / 2.0, rtol=1e-3)
     np.testing.assert_allclose(abs(found[[0, 1], [1, 0]]), (kappa - 1.0) / 2.0, rtol=2e-3)
 
@@ -45,8 +45,10 @@ def test_waves_obey_reciprocity_and_store_energy(thickness: float) -> None:
     flexibility = waves_of(ring(thickness), 60, STRESS)
     np.testing.assert_allclose(flexibility, np.swapaxes(flexibility, 1, 2), rtol=1e-9, atol=1e-12)
     assert np.all(np.linalg.eigvalsh(flexibility) > 0.0)
-    long = ring_body._short_wave_flexibility(np.array([2000]), STRESS)
-    np.testing.assert_allclose(ring_body._wave_flexibility(ring(thickness), np.array([2000]), STRESS), long, rtol=1e-9)
+    long = elastic_ring._short_wave_flexibility(np.array([2000]), STRESS)
+    np.testing.assert_allclose(
+        elastic_ring.wave_flexibility(ring(thickness), np.array([2000]), STRESS), long, rtol=1e-9
+    )
 
 
 def test_uniform_tractions_are_lames_and_the_twist_of_a_tube() -> None:
@@ -55,8 +57,10 @@ def test_uniform_tractions_are_lames_and_the_twist_of_a_tube() -> None:
     modulus, shear = 1.0, 1.0 / (2.0 * (1.0 + NU))
     system = np.array([[inner, 1.0 / inner], [modulus / (1.0 - NU), -modulus / (1.0 + NU)]])
     a, b = np.linalg.solve(system, [0.0, 1.0])
-    assert ring_body._breathing(ring(1.0 / inner), STRESS) == pytest.approx(2.0 * shear * (a + b), rel=1e-12)
-    assert ring_body.twist_flexibility(ring(1.0 / inner)) == pytest.approx(1.0 / inner**2 - 1.0, rel=1e-12)
+    assert elastic_ring.breathing_flexibility(ring(1.0 / inner), STRESS) == pytest.approx(
+        2.0 * shear * (a + b), rel=1e-12
+    )
+    assert elastic_ring.twist_flexibility(ring(1.0 / inner)) == pytest.approx(1.0 / inner**2 - 1.0, rel=1e-12)
 
 
 def test_a_bonded_stamp_on_an_incompressible_half_plane_turns_by_a_known_angle() -> None:
@@ -73,9 +77,9 @@ def test_more_shapes_and_waves_change_nothing(theta: float, monkeypatch: pytest.
     # A force at one root thickness above the root circle.
     load = np.array([1.0, 1.0 + 2.0 * theta])
     coarse = root_flexibility(ring(2.0), theta, NU, STRESS)
-    monkeypatch.setattr(ring_body, "_SHAPES", 16)
-    monkeypatch.setattr(ring_body, "_WAVES_ACROSS", 240.0)
-    monkeypatch.setattr(ring_body, "_POINTS", 300)
+    monkeypatch.setattr(elastic_ring, "_SHAPES", 16)
+    monkeypatch.setattr(elastic_ring, "_WAVES_ACROSS", 240.0)
+    monkeypatch.setattr(elastic_ring, "_POINTS", 300)
     fine = root_flexibility(ring(2.0), theta, NU, STRESS)
     assert load @ coarse.lateral @ load == pytest.approx(load @ fine.lateral @ load, rel=2e-3)
     assert coarse.radial == pytest.approx(fine.radial, rel=2e-3)
@@ -98,7 +102,9 @@ def test_sainsots_polynomials_are_the_middle_of_the_arc_in_plane_strain(thicknes
     even = np.cos(np.outer(n, t)) @ (w * constant) / math.pi
     turn = -np.sum(n * flexibility[:, 0, 0] * odd) * 2.0 * theta
     shear = np.sum(flexibility[:, 1, 1] * even) + (thickness**2 - 1.0) / (2.0 * math.pi)
-    push = np.sum(flexibility[:, 0, 0] * even) + ring_body._breathing(ring(thickness), STRAIN) / (2.0 * math.pi)
+    push = np.sum(flexibility[:, 0, 0] * even) + elastic_ring.breathing_flexibility(ring(thickness), STRAIN) / (
+        2.0 * math.pi
+    )
     found = (1.0 + NU) * np.array([turn, shear, push])
     np.testing.assert_allclose(found, [turning, shearing, shearing * radial], rtol=0.04)
 
