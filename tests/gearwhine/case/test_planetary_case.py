@@ -60,7 +60,7 @@ def test_check_tells_members_places_and_phases(case: Case) -> None:
     assert one["assembly_number"] == 108
     assert one["clearance_m"] == pytest.approx(0.054 * math.sqrt(3.0) - 0.064, rel=1e-9)
     assert [row["suppressed_modes"] for row in one["mesh_harmonics"]] == [["translational"]] * 6
-    text = "\n".join(line for section in sections(document) for line in section.lines)
+    text = "\n".join(str(line) for section in sections(document) for line in (section.note, *section.content))
     assert "ring held, +0 rpm, +175 N·m; carrier driven, +666.667 rpm, -225 N·m" in text
     assert "planets at 0, 120, 240°, of 108 places at which teeth fit; neighbours 29.53 mm clear" in text
     assert "mesh harmonics 1, 2, 3, 4, 5, 6 excite rotational modes" in text
