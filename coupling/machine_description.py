@@ -33,6 +33,7 @@ from gearwhine.coupling.description.gear_train import (
     GivenSpeed,
     Output,
     carrying_flanks,
+    drive_ratio,
     gear_train,
     geometry_on_axes,
     imbalances_of_shafts,
@@ -129,8 +130,6 @@ from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
-
-_LARGEST_TERM = 1_000_000  # of a speed ratio of two drives, which no teeth fix
 
 
 @dataclass(frozen=True, repr=False)
@@ -315,7 +314,7 @@ class Machine:
             part = ("given speed", given.shaft)
             expected = "a speed of the first driver other than 0, over which a second speed is taken"
             refuse([Finding(part, "speed", given.speed, expected)], CouplingError)
-        return Fraction(given.speed / self.speed).limit_denominator(_LARGEST_TERM)
+        return drive_ratio(given.speed / self.speed)
 
     @cached_property
     def speeds(self) -> dict[str, float]:

@@ -121,6 +121,7 @@ class Study(StudiedMachine):
         sensitivity: bool = False,
         line: str | None = None,
         rigid_seats: bool = False,
+        carrier_turn: bool = False,
     ) -> "Result[SolvedLoad]":
         """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
 
@@ -136,6 +137,8 @@ class Study(StudiedMachine):
             sound, 'sound@1377'. By default the highest, and the A-weighted sum of the loudest.
         rigid_seats : bool
             Hold the bearings in rigid seats; leave the housing out.
+        carrier_turn : bool
+            Also solve over a turn of each planet carrier.
 
         Raises
         ------
@@ -157,6 +160,7 @@ class Study(StudiedMachine):
             self.progress,
             over_torque=over_torque,
             over_hunting_period=True,
+            carrier_turn=carrier_turn,
             aligned_by_default=self.aligned_by_default,
         )
         if ranked:

@@ -222,6 +222,22 @@ def _over_speed(
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)
 
 
+def turning_warnings(machine: CoupledMachine) -> list[ResultWarning]:
+    """Warn of natural modes of a machine whose directions turn: they are those of a frozen picture."""
+    if not machine.system.turns:
+        return []
+    named = [one.name for one in machine.system.linear if one.turning]
+    named += [one.name for one in machine.system.contacts if one.turning]
+    message = (
+        f"natural modes and damping ratios are those with the carriers frozen at their first angle, as {named[0]}"
+        + (f" and {len(named) - 1} more connectors turn" if len(named) > 1 else " turns")
+        + " against parts that are not alike all round; responses are those at the frequency of the excitation, its "
+        "sidebands by the turning of the carriers are solved with them and left out here, and motions over time have "
+        "them all"
+    )
+    return [warning("carrier frozen", message, turning=named)]
+
+
 def unstable_modes_warnings(stability: Stability) -> list[ResultWarning]:
     """One warning for each growing mode, the fastest first; beyond a few they are counted."""
     warnings = []

@@ -204,6 +204,11 @@ class GearTrain:
         """What the mean force of each pair follows from: the torques alone, or in a loop of pairs `EQUAL_MESHES`."""
         return tuple(EQUAL_MESHES if shares else "torques" for shares in self.shares_torque)
 
+    @property
+    def turns(self) -> bool:
+        """Whether the speed of every connected shaft follows from the drives, and none is driven against another."""
+        return not self.contradictions and not any(self.drive_problems())
+
     @cached_property
     def shares_torque(self) -> tuple[bool, ...]:
         """Whether the share of each pair is statically indeterminate: it is in a loop of pairs, as of a power split.
@@ -243,12 +248,7 @@ class GearTrain:
     def problems(self, shafts: Sequence[str], labels: Sequence[str]) -> Iterator[str]:
         """Yield sentences on what keeps a train from turning, as :meth:`turning_ratios`."""
         if self.first in (*self.planets, *self.held):
-            why = "a planet, whose axis turns with its carrier" if self.first in self.planets else "held"
-            candidates = [name for name in shafts if name not in (*self.planets, *self.held)]
-            yield (
-                f"the torque comes in on shaft {self.first!r}, which is {why}; expected an input on a shaft that turns "
-                f"about a fixed axis, one of {', '.join(map(repr, candidates))}"
-            )
+            yield from self.drive_problems()
             return
         for wrong in self.contradictions:
             yield self.sentence(wrong, "gear pairs" if wrong.pair is None else labels[wrong.pair])
@@ -259,6 +259,19 @@ class GearTrain:
                 f"no gear pair leads from shaft {self.first!r}, the first driver, to "
                 f"{', '.join(map(repr, idle))}; expected a pair that turns each shaft"
             )
+        yield from self.drive_problems()
+
+    def drive_problems(self) -> Iterator[str]:
+        """Yield a sentence on a drive where none can be, or on speeds that are left open."""
+        if self.first in (*self.planets, *self.held):
+            why = "a planet, whose axis turns with its carrier" if self.first in self.planets else "held"
+            candidates = [name for name in self.ratios if name not in (*self.planets, *self.held)]
+            candidates += [name for name in self.open_shafts if name not in self.planets]
+            yield (
+                f"the torque comes in on shaft {self.first!r}, which is {why}; expected an input on a shaft that turns "
+                f"about a fixed axis, one of {', '.join(map(repr, candidates))}"
+            )
+            return
         if self.open_shafts:
             drives = ", ".join(map(repr, (self.first, *self.given)))
             candidates = [name for name in self.open_shafts if name not in self.planets] or list(self.open_shafts)
@@ -462,6 +475,14 @@ class GearTrain:
         for torque in applied:
             along[torque.rotor] += torque.value * self.rotation_sense(torque.rotor, speed)
         return along
+
+
+_LARGEST_TERM = 1_000_000  # of a speed ratio of two drives, which no teeth fix
+
+
+def drive_ratio(ratio: float) -> Fraction:
+    """Return the speed ratio of two drives as a fraction of terms below a million."""
+    return Fraction(ratio).limit_denominator(_LARGEST_TERM)
 
 
 def gear_train(

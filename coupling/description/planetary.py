@@ -33,7 +33,6 @@ from gearwhine.coupling.description.gear_train import LARGEST_MISFIT, LARGEST_OF
 from gearwhine.coupling.description.parts import Shaft, ShaftGear
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
-from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.numerics.findings import (
     Finding,
@@ -90,6 +89,20 @@ class PlanetarySet:
         return tuple(name for name in (self.sun, *self.planets, self.ring) if name is not None)
 
 
+class MeshingPair(Protocol):
+    """Two gears in mesh, by name."""
+
+    @property
+    def driver(self) -> str:
+        """Name of the driver."""
+        ...
+
+    @property
+    def driven(self) -> str:
+        """Name of the driven gear."""
+        ...
+
+
 class PlanetaryParts(Protocol):
     """The parts of a machine among which planetary sets stand, see :class:`gearwhine.coupling.Machine`."""
 
@@ -104,7 +117,7 @@ class PlanetaryParts(Protocol):
         ...
 
     @property
-    def gear_pairs(self) -> Sequence[GearPair]:
+    def gear_pairs(self) -> Sequence[MeshingPair]:
         """Gear pairs in mesh."""
         ...
 
@@ -112,6 +125,16 @@ class PlanetaryParts(Protocol):
     def bearings(self) -> Sequence[MountedBearing]:
         """Bearings of the shafts."""
         ...
+
+
+@dataclass(frozen=True)
+class SetParts:
+    """Parts of planetary sets where there is no machine yet, see :class:`PlanetaryParts`."""
+
+    shafts: Sequence[Shaft]
+    gears: Sequence[ShaftGear]
+    gear_pairs: Sequence[MeshingPair]
+    bearings: Sequence[MountedBearing]
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.linear.planetary_modes import planetary_kinds
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
@@ -228,6 +229,9 @@ class CoupledModes:
     certificate : ModesCertificate
     pairs : Eigenpairs
         All 2n eigenpairs, for superposition.
+    planetary : tuple of str
+        Kind of each mode in a planetary set, such as ``rotational: carrier``, see
+        :mod:`gearwhine.coupling.linear.planetary_modes`; empty for modes of other parts.
     """
 
     eigenvalues: ComplexArray
@@ -240,6 +244,7 @@ class CoupledModes:
     whirl: FloatArray
     certificate: ModesCertificate
     pairs: Eigenpairs
+    planetary: tuple[str, ...] = ()
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -306,6 +311,7 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
             sum_rule=pairs.sum_rule,
         ),
         pairs=pairs,
+        planetary=planetary_kinds(system, shares.moving),
     )
 
 

@@ -111,15 +111,20 @@ def excitation_lines(
         for multiple in load_multiples
     ]
     for mesh in machine.meshes:
-        teeth = mesh.geometry.driver.teeth * ratios[mesh.driver.rotor]
+        frame = 0.0 if mesh.carrier is None else speeds[mesh.carrier]
+        turns = {gear.rotor: abs(speeds[gear.rotor] - frame) / leading for gear in (mesh.driven, mesh.driver)}
+        teeth = abs(mesh.geometry.driver.teeth) * turns[mesh.driver.rotor]
         name = mesh.name
         # A modulation of the mesh mixes with itself: every number of sidebands comes from the first order alone.
         shafts = {
-            round(ratios[rotor], 12): rotor
-            for rotor in (mesh.driven.rotor, mesh.driver.rotor)
-            if excited is None or rotor in excited
+            round(ratio, 12): (rotor if frame == 0.0 else f"{rotor} in {mesh.carrier}", ratio)
+            for rotor, ratio in turns.items()
+            if ratio > 0.0 and (excited is None or rotor in excited)
         }
-        modulations = [*((rotor, ratios[rotor]) for rotor in shafts.values()), *loads]
+        modulations = [*shafts.values(), *loads]
+        if frame != 0.0 and mesh.carrier is not None:
+            # A mesh that circles modulates what stands still, whatever the quality of its teeth.
+            modulations.insert(0, (mesh.carrier, abs(frame) / leading))
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
             for source, ratio in modulations:

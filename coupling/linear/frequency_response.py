@@ -37,7 +37,7 @@ from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
-from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.turning_response import Excitation, TurningResponse
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
@@ -108,17 +108,14 @@ def response(
     w = np.asarray(frequencies, dtype=np.float64)
     if not np.all(np.isfinite(w)) or np.any(w == 0.0):
         raise CouplingError("frequencies that are 0 or not finite; expected others: a free machine drifts at 0")
-    state = mean_contact(system) if contact is None else contact
     if system.turns:
-        model = TurningResponse(system, state)
-        columns = [
-            model.respond(at, [({model.still: f}, {}) for f in load], [model.still])
-            for at, load in zip(w, loads, strict=True)
-        ]
-        return np.array([each[model.still] for each in columns]).reshape(loads.shape)
+        model = TurningResponse(system, mean_contact(system) if contact is None else contact)
+        excitations_at: list[list[Excitation]] = [[({model.still: load}, {}) for load in at] for at in loads]
+        moved = [model.respond(at, each, [model.still]) for at, each in zip(w.tolist(), excitations_at, strict=True)]
+        return np.array([each[model.still] for each in moved]).reshape(loads.shape)
     if pairs is not None:
         return superposed(pairs, loads, w)
-    stiffness, damping = linear_matrices(system, state)
+    stiffness, damping = linear_matrices(system, mean_contact(system) if contact is None else contact)
     amplitudes = np.empty(loads.shape, dtype=np.complex128)
     for number, (frequency, load) in enumerate(zip(w, loads, strict=True)):
         dynamic = stiffness + 1j * frequency * damping

@@ -30,6 +30,8 @@ from gearwhine.coupling.statics.mean_mesh import ContactState
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Order = tuple[int, ...]
+Excitation = tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]
+"""Loads on the coordinates by the order of their frequency, and errors of contacts that turn by their number [m]."""
 
 SIDEBANDS = 6
 """Number of multiples of each rate of turning on either side of an excitation."""
@@ -207,7 +209,7 @@ class TurningResponse:
             return np.asarray(np.linalg.solve(self._dynamic(w), loads))
         return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
 
-    def mesh_error(self, number: int, frequency: float) -> tuple[dict[Order, ComplexArray], dict[int, complex]]:
+    def mesh_error(self, number: int, frequency: float) -> Excitation:
         """Load of a unit transmission error of a contact at ω [rad/s]: on coordinates by order, or as its own error.
 
         The error of flanks that turn is a deflection of their own connector; that of others is a load (k + iωc) d.
@@ -221,7 +223,7 @@ class TurningResponse:
     def respond(
         self,
         frequency: float,
-        excitations: Sequence[tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]],
+        excitations: Sequence[Excitation],
         orders: Sequence[Order] | None = None,
     ) -> dict[Order, ComplexArray]:
         """Solve the motions at ω + m·f of excitations at ω.
@@ -272,8 +274,8 @@ class TurningResponse:
             for row, deflected in seen:
                 if alone is not None:
                     free[deflected] += alone[row]
-                for column, other in acting:
-                    between[deflected, :, other, :] += compliance[row, :, column, :]
+                for column, force in acting:
+                    between[deflected, :, force, :] += compliance[row, :, column, :]
         free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
         matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
         deflections = np.linalg.solve(np.eye(count * width) + matrix, free.reshape(count * width, -1))
@@ -291,7 +293,7 @@ class TurningResponse:
     def at_excitation(
         self,
         frequencies: FloatArray,
-        excitation: Callable[[float], tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]],
+        excitation: Callable[[float], Excitation],
     ) -> ComplexArray:
         """Coordinates (f, n) at each frequency ω by an excitation at ω alone, without the sidebands ω + m·f."""
         moved = [self.respond(w, [excitation(w)], [self.still])[self.still][0] for w in frequencies.tolist()]

@@ -16,6 +16,12 @@ from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, taken_misa
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+from gearwhine.coupling.load_analysis.planetary_load import (
+    CarrierTurn,
+    PlanetaryLoad,
+    over_carrier_turn,
+    planetary_load,
+)
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.numerics.progress import Progress, silent
@@ -110,6 +116,10 @@ class SolvedLoad:
         Equilibria by the torque of the first driver [N m], where they are asked for.
     sensitivity : LoadSensitivity or None
         Gradients, where they are asked for.
+    planetary : tuple of PlanetaryLoad
+        Load sharing of each planetary set that carries a load.
+    carrier_turns : tuple of CarrierTurn
+        Equilibria over a turn of each planet carrier, where they are asked for.
     """
 
     machine: Machine
@@ -118,6 +128,8 @@ class SolvedLoad:
     pairs: tuple[LoadedPair, ...]
     over_torque: dict[float, OperatingPoint]
     sensitivity: LoadSensitivity | None = None
+    planetary: tuple[PlanetaryLoad, ...] = ()
+    carrier_turns: tuple[CarrierTurn, ...] = ()
 
     @property
     def on_housing(self) -> bool:
@@ -179,6 +191,7 @@ def solve_load(
     *,
     over_torque: bool = False,
     over_hunting_period: bool = False,
+    carrier_turn: bool = False,
     aligned_by_default: Collection[str] = (),
 ) -> SolvedLoad:
     """Find the static equilibrium of a machine under its torques and its weight.
@@ -191,6 +204,8 @@ def solve_load(
         Whether to solve for the equilibria at `TORQUES` as well.
     over_hunting_period : bool
         Whether to solve pairs with pitch deviations or damaged teeth over their hunting period, too.
+    carrier_turn : bool
+        Whether to solve for the equilibria over a turn of each planet carrier as well.
     aligned_by_default : collection of str
         Labels of the pairs that are aligned because nothing is said of their misalignment.
 
@@ -226,7 +241,13 @@ def solve_load(
         pairs = tuple(
             replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)
         )
-    return SolvedLoad(machine, point, bearings, pairs, points)
+    loaded_sets = [
+        placed for placed in machine.placed_sets if any(point.pairs[one.number].force > 0.0 for one in placed.meshes)
+    ]
+    planetary = tuple(planetary_load(machine, placed, point) for placed in loaded_sets)
+    carriers = dict.fromkeys(placed.of.carrier for placed in loaded_sets) if carrier_turn else {}
+    turns = tuple(over_carrier_turn(machine, carrier, progress=progress) for carrier in carriers)
+    return SolvedLoad(machine, point, bearings, pairs, points, planetary=planetary, carrier_turns=turns)
 
 
 def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:

@@ -18,6 +18,7 @@ from gearwhine.coupling.analyses.modes_and_responses import (
     SolvedSystem,
     machine_warnings,
     solve_system,
+    turning_warnings,
     unstable_modes_warnings,
 )
 from gearwhine.coupling.analyses.motion import MachineMotion
@@ -191,6 +192,7 @@ def system_result(machine: MachineUnderLoad, solved: SolvedSystem, progress: Pro
     """Return the result of the modes and responses of a coupled machine, with its operating point."""
     document = system_document(solved, machine.origin.housing)
     add_warnings(document, unstable_modes_warnings(solved.stability))
+    add_warnings(document, turning_warnings(solved.machine))
     machine.add_to(document, progress)
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:

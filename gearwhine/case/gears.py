@@ -6,10 +6,11 @@ The train lists pairs of shafts with their tooth numbers. Attributes are named a
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
@@ -617,12 +618,46 @@ def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]])
     ]
 
 
-def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = ()) -> GearTrain:
+@dataclass(frozen=True)
+class TrainMembers:
+    """Members of a gear train beside its pairs: carriers of planets, held shafts, speeds and place of the drives.
+
+    Attributes
+    ----------
+    carriers : mapping of str to str
+        Carrier of each planet's shaft.
+    held : tuple of str
+    given : mapping of str to float
+        Speeds of further driven shafts over that of the first driver.
+    first : str or None
+        Shaft at which the torque comes in; None: that of the first pair's driver.
+    """
+
+    carriers: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    held: tuple[str, ...] = ()
+    given: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    first: str | None = None
+
+
+NO_MEMBERS = TrainMembers()
+
+
+def train_of_pairs(
+    pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = (), members: TrainMembers = NO_MEMBERS
+) -> GearTrain:
     """Return the gear train of pairs, see :func:`readable_pairs`; without pairs that of single shafts."""
     # The package brings numpy and scipy: only a case that turns waits for them.
-    from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
+    from gearwhine.coupling.description.gear_train import GearedShafts, drive_ratio, gear_train
 
+    carriers = members.carriers
     geared = [
-        GearedShafts(shaft_of(driver), shaft_of(driven), (driver.teeth, driven.teeth)) for _, driver, driven in pairs
+        GearedShafts(
+            shaft_of(driver),
+            shaft_of(driven),
+            (driver.teeth, driven.teeth),
+            carriers.get(shaft_of(driver)) or carriers.get(shaft_of(driven)),
+        )
+        for _, driver, driven in pairs
     ]
-    return gear_train(geared, shafts)
+    given = {name: drive_ratio(ratio) for name, ratio in members.given.items()}
+    return gear_train(geared, shafts, held=members.held, planets=list(carriers), given=given, first=members.first)

@@ -25,6 +25,7 @@ from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
+from gearwhine.case.planetary import with_planets
 from gearwhine.numerics.names import did_you_mean
 
 _SUFFIX = ".toml"
@@ -315,18 +316,19 @@ def parse_case(
     _check_depth(document, source)
     context = {"folder": Path(folder), "files": InputFiles() if files is None else files}
     findings: list[Finding] = []
+    whole, copies = with_planets(document, context)
     try:
-        case = Case.model_validate(dict(document), context=context)
-        draft = draft_of_case(case, document)
+        case = Case.model_validate(whole, context=context)
+        draft = draft_of_case(case, whole)
     except ValidationError as error:
         findings += findings_of(error)
         broken = frozenset(str(finding.location[0]) for finding in findings if finding.location)
-        draft = draft_of_document(document, broken, context)
+        draft = draft_of_document(whole, broken, context)
     findings += check(draft)
     if not findings:
         findings += [finding for finding in library_findings(case) if not finding.warns]
     if findings:
-        raise CaseError(_in_words(findings, document, source, sources or {}))
+        raise CaseError(_in_words(map(copies.in_file, findings), document, source, sources or {}))
     return case
 
 

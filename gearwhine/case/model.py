@@ -26,6 +26,7 @@ from gearwhine.case.housing import Housing, Material, Seat, Sensor, Support
 from gearwhine.case.input_files import InputFiles, files_of, paths_in
 from gearwhine.case.measured import Measured, Update
 from gearwhine.case.operation import Operation, Sweep, Transient
+from gearwhine.case.planetary import Planetary, train_members
 from gearwhine.case.rotors import Rotor, RotorAnalysis
 
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ class Case(Table):
     """Gears, `[[gear]]`."""
     gear_pair: tuple[GearPair, ...] = Field(default=(), max_length=1000)
     """Gear pairs, `[[gear_pair]]`."""
+    planetary: tuple[Planetary, ...] = Field(default=(), max_length=100)
+    """Planetary sets, `[[planetary]]`."""
     operation: Operation | None = None
     """Speed and torque."""
     transient: Transient | None = None
@@ -130,6 +133,7 @@ class Case(Table):
             self.operation,
             self.input_files,
             limit or 0.0,
+            self.planetary,
         )
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Case:
@@ -184,6 +188,7 @@ class Draft:
     bearings: Entries[Bearing]
     gears: Entries[Gear]
     gear_pairs: Entries[GearPair]
+    planetary: Entries[Planetary]
     operation: Operation | None
     transient: Transient | None
     sweep: Sweep | None
@@ -199,7 +204,13 @@ class Draft:
     @cached_property
     def train(self) -> GearTrain | None:
         """The gear train of these pairs; None where there are none."""
-        return train_of_pairs(self.readable_pairs) if self.readable_pairs else None
+        if not self.readable_pairs:
+            return None
+        gears = [gear for _, gear in self.gears]
+        members = train_members(
+            [rotor for _, rotor in self.rotors], gears, [one for _, one in self.planetary], self.operation
+        )
+        return train_of_pairs(self.readable_pairs, members=members)
 
     def rotor(self, name: str | None) -> Rotor | None:
         """Return the rotor of this name, if it could be read."""
@@ -241,6 +252,7 @@ _DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "bearings": (Bearing, ("bearing",)),
     "gears": (Gear, ("gear",)),
     "gear_pairs": (GearPair, ("gear_pair",)),
+    "planetary": (Planetary, ("planetary",)),
 }
 """Where the tables and lists of a draft stand in a case, and the class of each."""
 
@@ -284,7 +296,7 @@ def _read(kind: type[AnyTable], raw: object, context: Mapping[str, Any]) -> AnyT
         return None
 
 
-_LISTS = ("rotor", "bearing", "gear", "gear_pair")
+_LISTS = ("rotor", "bearing", "gear", "gear_pair", "planetary")
 _PURPOSES = {
     "housing": "the box, CAD or mesh file whose modes are wanted",
     "rotor": "at least one shaft",

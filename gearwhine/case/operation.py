@@ -31,7 +31,7 @@ from gearwhine.case.fields import (
 )
 
 if TYPE_CHECKING:
-    from gearwhine.coupling import BaseMotion
+    from gearwhine.coupling import BaseMotion, GivenSpeed
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking as BuiltTracking
     from gearwhine.coupling.description.gear_train import GearTrain
@@ -333,6 +333,23 @@ class Output(Table):
         return BuiltOutput(self.rotor, self.torque, self.at, history, [ripple.build() for ripple in self.ripple])
 
 
+class Drive(Table):
+    """`[[operation.drive]]`: a further rotor that turns at a given speed [rad/s]."""
+
+    rotor: Name
+    """Name of the rotor."""
+    speed: Speed
+    """Speed, positive counter-clockwise seen from +z; that of the first driver is `[operation] speed`."""
+    at: LengthFromZero | None = None
+    """Station of its torque on the rotor. Default: the right end."""
+
+    def build(self) -> GivenSpeed:
+        """Build the drive of the gear train."""
+        from gearwhine.coupling import GivenSpeed
+
+        return GivenSpeed(self.rotor, self.speed, self.at)
+
+
 class ShaftForce(Table):
     """`[[operation.force]]`: a constant force on a rotor [N], at a station [m], such as the pull of a belt."""
 
@@ -359,6 +376,9 @@ class Operation(Table):
 
     speed: Speed
     """Speed of the first driver's rotor, positive counter-clockwise seen from +z."""
+    rotor: Name | None = None
+    """Rotor that turns at `speed` and takes `torque` in. Default: that of the first `gear_pair`'s driver, or where this
+    one is held or a planet, its carrier."""
     torque: SignedTorque = 0.0
     """Torque on the first driver's rotor in the direction of rotation. A negative one brakes: every pair then starts on
     its back flanks, for which it needs a `backlash`."""
@@ -379,6 +399,8 @@ class Operation(Table):
     output: tuple[Output, ...] = Field(default=(), max_length=1000)
     """Torques taken off, in proportion to `torque`, without which none can be given. Default: the rotors that drive no
     other share the power equally."""
+    drive: tuple[Drive, ...] = Field(default=(), max_length=1000)
+    """Further rotors of given speed, as the second input of a differential; their torques follow from the balance."""
     force: tuple[ShaftForce, ...] = Field(default=(), max_length=1000)
     """Constant forces on the shafts, such as the pull of a belt."""
 
@@ -393,7 +415,8 @@ class Operation(Table):
         """
         outputs = [output.build() for output in self.output]
         ends = dict.fromkeys(train.ratios, 0.0) | dict(lengths)
-        return train.applied_torques(self.torque, self.speed, outputs, self.at or 0.0, ends=ends)
+        given = [drive.build() for drive in self.drive]
+        return train.applied_torques(self.torque, self.speed, outputs, self.at or 0.0, ends=ends, given=given)
 
     def loaded_rotors(self, names: Iterable[str], *, geared: bool) -> frozenset[str]:
         """Return the rotors that gear pairs, weight or forces load across their axis or along it."""

@@ -6,7 +6,7 @@ the machine's operating point has no stiffness yet.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -27,17 +27,20 @@ from gearwhine.case.gears import Gear, GearPair, distance_of_axes, readable_pair
 from gearwhine.case.housing import Material
 from gearwhine.case.input_files import ChangedFileError, InputFiles
 from gearwhine.case.operation import Operation
+from gearwhine.case.planetary import Planetary, train_members
 from gearwhine.case.rotors import Rotor
-from gearwhine.coupling import Machine, MountedBearing, RollingLaw, Shaft, ShaftGear
+from gearwhine.coupling import Machine, MountedBearing, RollingLaw, Shaft, ShaftGear, TorqueSupport
 from gearwhine.coupling.description.axial_location import AxialLocation, axial_support
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain
 from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ, inertia_with_discs, rotor_with_gears
+from gearwhine.coupling.description.planetary import PlacedSet, SetParts, placed_set, set_findings
 from gearwhine.coupling.gears import Gear as BuiltGear
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
 from gearwhine.coupling.gears.geometry.pair import signed_distance
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair as BuiltPair
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
 from gearwhine.coupling.machine.loads import Torque
+from gearwhine.numerics.findings import Finding as PartFinding
 from gearwhine.rotors import Bearing as RotorBearing
 from gearwhine.rotors import EquilibriumError
 from gearwhine.rotors import Rotor as BuiltRotor
@@ -65,6 +68,7 @@ class Parts:
         The files that the case names.
     housing_limit_hz : float
         Frequency limit of the housing's modes [Hz]; 0 without one.
+    planetary : sequence of Planetary
     """
 
     material: Mapping[str, Material]
@@ -75,6 +79,7 @@ class Parts:
     operation: Operation | None
     files: InputFiles
     housing_limit_hz: float = 0.0
+    planetary: Sequence[Planetary] = ()
 
     @cached_property
     def train(self) -> GearTrain:
@@ -83,7 +88,8 @@ class Parts:
         Its shafts have the names of rotors, or in a case without rotors those of gears.
         """
         shafts = [rotor.name for rotor in self.rotor] or [gear.name for gear in self.gear]
-        return train_of_pairs(readable_pairs(self.gear, enumerate(self.gear_pair)), shafts)
+        members = train_members(self.rotor, self.gear, self.planetary, self.operation)
+        return train_of_pairs(readable_pairs(self.gear, enumerate(self.gear_pair)), shafts, members)
 
     @cached_property
     def speeds(self) -> dict[str, float]:
@@ -164,6 +170,8 @@ class Parts:
                 rotor.build_unbalance(),
                 rotor.build_bow(),
                 *_retained_modes(rotor, self.housing_limit_hz),
+                carrier=rotor.carrier,
+                pin_error=rotor.pin_error,
             )
             for rotor in self.rotor
         )
@@ -398,6 +406,25 @@ class Parts:
         return next(rotor for rotor in self.rotor if rotor.name == name)
 
     @cached_property
+    def placed_sets(self) -> tuple[PlacedSet, ...]:
+        """Planetary sets with their gears at their places."""
+        return tuple(placed_set(one.build(), self._set_parts) for one in self.planetary)
+
+    def set_findings(self) -> Iterator[PartFinding]:
+        """Yield what is wrong or unlikely of the planetary sets and their carriers."""
+        yield from set_findings([one.build() for one in self.planetary], self._set_parts)
+
+    @property
+    def _set_parts(self) -> SetParts:
+        return SetParts(self.shafts, self.shaft_gears, self.gear_pair, self.unloaded_bearings)
+
+    @cached_property
+    def torque_supports(self) -> tuple[TorqueSupport, ...]:
+        """Supports that hold members of planetary sets from turning."""
+        supports = (one.build_support(self.gear) for one in self.planetary)
+        return tuple(support for support in supports if support is not None)
+
+    @cached_property
     def machine(self) -> Machine | None:
         """The machine with all that loads it, on rigid seats; None without rotors or an operation.
 
@@ -417,6 +444,10 @@ class Parts:
             speed=operation.speed,
             torque=operation.torque,
             outputs=[output.build() for output in operation.output],
+            torque_supports=[replace(support, seat=None) for support in self.torque_supports],
+            planetary_sets=[one.build() for one in self.planetary],
+            input_shaft=operation.rotor,
+            given_speeds=[drive.build() for drive in operation.drive],
             torque_at=operation.at or 0.0,
             forces=[force.build() for force in operation.force],
             torque_over_time=None if operation.over_time is None else operation.over_time.build(),

@@ -315,6 +315,11 @@ class Rotor(Table):
     """Name of the rotor."""
     axis: tuple[Length, Length] = (0.0, 0.0)
     """x and y of the shaft line."""
+    carrier: Name | None = None
+    """Rotor with which the shaft line turns, as that of a planet with its carrier; `axis` is then its place at t = 0,
+    and its bearings sit on the carrier. Planets of a `[[planetary]]` have it from there."""
+    pin_error: tuple[Length, Length] = (0.0, 0.0)
+    """Offset of a planet's pin from `axis`, outward from the carrier's axis and counter-clockwise about it."""
     start: Length = 0.0
     """z of its left end."""
     file: CaseFile | None = None

@@ -38,7 +38,10 @@ def describe_machine(case: Case, housing: HousingModes | HousingComponent | None
     machine = case.parts.machine
     if machine is None:
         raise lacking(case, "rotor", "operation", command="system")
-    return machine if housing is None else replace(machine, bearings=case.parts.bearings, housing=housing)
+    if housing is None:
+        return machine
+    parts = case.parts
+    return replace(machine, bearings=parts.bearings, torque_supports=parts.torque_supports, housing=housing)
 
 
 def rotor_bearings(parts: Parts) -> dict[str, BearingsUnderLoad]:

@@ -487,6 +487,70 @@ def _meaning(outcome: Quantity) -> str:
 _OF_SENSORS = ("amplitude of acceleration", "m/s2", "sensor_changes", "sensor_line")
 _OF_SOUND = ("sound power", "W", "sound_changes", "loudest_line")
 
+_RPM = 30.0 / np.pi
+MEMBER = (
+    Quantity("role"),
+    Quantity("name", "shaft", heading="member"),
+    Quantity("speed_rpm", lambda member: member.speed * _RPM, heading="speed\n[rpm]", shown=".5g"),
+    Quantity("relative_speed_rpm", lambda member: member.relative_speed * _RPM),
+    Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".5g"),
+    Quantity("power_w", "power", heading="power\n[kW]", shown=".4g"),
+    Quantity("state", heading="is"),
+)
+"""Quantities of a member of a planetary set; a row is a :class:`SetMember`."""
+
+PLANET = (
+    Quantity("name", "shaft", heading="planet"),
+    Quantity("angle_rad", "angle"),
+    Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".4g"),
+    Quantity("load_share", heading="load share", shown=".4f"),
+    Quantity("bearing_force_n", "bearing_force", heading="on its pin\n[N]", shown=".0f"),
+    Quantity("pin_error_m", "pin_error", document=list),
+)
+"""Quantities of a planet at the operating point; a row is a :class:`PlanetLoad`."""
+
+PLANETARY = (
+    Quantity("name"),
+    Quantity("mesh_load_factor"),
+    Rows("members", "members", MEMBER),
+    Rows("planets", "planets", PLANET),
+)
+"""Quantities of a planetary set at the operating point; a row is a :class:`PlanetaryLoad`."""
+
+
+def _over_turns(solved: "SolvedLoad") -> Any:
+    """Load shares, mesh forces and misalignments over the turn of each carrier, where they are asked for."""
+    return [
+        {
+            "carrier": turn.carrier,
+            "angle_rad": turn.angles.tolist(),
+            "sets": [{"name": one.name, "load_share": turn.load_shares(one.name).T.tolist()} for one in turn.sets[0]],
+            "mesh_force_n": {name: force.tolist() for name, force in turn.mesh_forces.items()},
+            "misalignment_rad": {name: angle.tolist() for name, angle in turn.misalignments.items()},
+            "bearing_force_n": {name: force.tolist() for name, force in turn.bearing_forces.items()},
+        }
+        for turn in solved.carrier_turns
+    ] or ABSENT
+
+
+def _of_planets(name: str, of: Callable[[Any], Any], unit: str, long_name: str) -> Quantity:
+    """Declare a quantity of the planets of all sets, for the file."""
+
+    def values(solved: "SolvedLoad") -> Any:
+        found = [of(planet) for one in solved.planetary for planet in one.planets]
+        return (np.array(found) if unit else found) if found else None
+
+    return Quantity("", values, name, ("loaded_planet",), unit, long_name=long_name)
+
+
+def _shares_over_turn(solved: "SolvedLoad") -> Any:
+    """Load shares of the planets of all sets over the turns of their carriers, where they are asked for."""
+    if not solved.carrier_turns:
+        return None
+    turns = {one.name: turn for turn in solved.carrier_turns for one in turn.sets[0]}
+    return np.concatenate([turns[one.name].load_shares(one.name).T for one in solved.planetary])
+
+
 LOAD: Fields = (
     Quantity("speed_rpm", lambda solved: solved.machine.speed * 30.0 / np.pi),
     Quantity("torque_n_m", "machine.torque"),
@@ -500,6 +564,27 @@ LOAD: Fields = (
     Rows("shafts", "shafts", SHAFT, "deflected_shaft"),
     Rows("bearings", "bearings", BEARING, "loaded_bearing"),
     Rows("gear_pairs", "pairs", (Part("", "load", PAIR), *TAKEN), "loaded_pair"),
+    Rows("planetary", lambda solved: list(solved.planetary) or ABSENT, PLANETARY),
+    Quantity("carrier_turns", _over_turns),
+    _of_planets("loaded_planet", lambda planet: planet.shaft, "", ""),
+    _of_planets("planet_load_share", lambda planet: planet.load_share, "1", "part of the set's torque"),
+    _of_planets("planet_bearing_force", lambda planet: planet.bearing_force, "N", "force of the planet on its pin"),
+    Quantity(
+        "",
+        lambda solved: solved.carrier_turns[0].angles if solved.carrier_turns else None,
+        "carrier_angle",
+        ("carrier_angle",),
+        "rad",
+        long_name="angle by which the carrier has turned",
+    ),
+    Quantity(
+        "",
+        _shares_over_turn,
+        "planet_load_share_over_turn",
+        ("loaded_planet", "carrier_angle"),
+        "1",
+        long_name="part of the set's torque over a turn of the carrier",
+    ),
     Rows("over_torque", lambda solved: [_Torque(*each) for each in solved.over_torque.items()] or ABSENT, TORQUE),
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
     Rows("loudest_lines", _loudest_lines, SOUND_LINE, "loudest_line"),
@@ -560,6 +645,7 @@ def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
 
 LOAD_OPTIONS = (
     Option(("over_torque",), ("load_torque",), "load-over-torque.png"),
+    Option(("carrier_turns",), ("carrier_angle",), "load-carrier-turn-*.png"),
     Option(
         ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "lines_without"),
         ("influence", "sensor_line", "loudest_line"),
@@ -658,6 +744,8 @@ _PICTURES = (
     Picture(
         "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
     ),
+    Picture("load-planetary", "Front view of the set: mesh forces on the planets and their forces on the pins."),
+    Picture("load-carrier-turn", "Load share of each planet over a turn of the carrier."),
     Picture("load-over-torque", "Misalignment, K_Hβ, mesh stiffness and transmission error over the torque."),
 )
 
@@ -790,6 +878,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     )
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _misalignments(document)
+    yield from _planetary(document)
     rows = [
         {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
         for point in document.get("over_torque", ())
@@ -803,6 +892,21 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:
         yield f"Free motions, which nothing holds and no load drives: {_grouped(document['free_motions'])}"
+
+
+def _planetary(document: Document) -> Iterator[str | Table]:
+    """Yield the members of every planetary set, and how its planets share the load."""
+    turns = {one["name"]: one for turn in document.get("carrier_turns", ()) for one in turn["sets"]}
+    for one in document.get("planetary", ()):
+        yield from table_of(columns_of(MEMBER), one["members"], f"Members of planetary set {one['name']}")
+        yield from table_of(columns_of(PLANET), one["planets"], f"Planets of {one['name']} under load")
+        yield f"Mesh load factor K_γ of {one['name']}: {one['mesh_load_factor']:.4f} (1 where all planets carry alike)"
+        if one["name"] in turns:
+            shares = np.array(turns[one["name"]]["load_share"])
+            yield (
+                f"Over a turn of the carrier the load shares are {shares.min():.4f} to {shares.max():.4f}, K_γ at most "
+                f"{len(shares) * shares.max():.4f}"
+            )
 
 
 def _grouped(motions: list[str]) -> str:

@@ -58,6 +58,11 @@ class _Mode(NamedTuple):
         return self.system.modes.kinds[self.mode]
 
     @property
+    def planetary(self) -> str:
+        """Kind of the mode in a planetary set, and the set's carrier; empty for other modes."""
+        return self.system.modes.planetary[self.mode]
+
+    @property
     def where(self) -> str:
         """Where it moves most."""
         return self.system.modes.where[self.mode]
@@ -115,6 +120,7 @@ MODE = (
     Quantity("damped_frequency_hz"),
     Quantity("kind", "kind", "system_kind", heading="kind", shown=lambda row: _named(row)),
     Quantity("where", "where", "system_where"),
+    Quantity("planetary", lambda row: row.planetary or ABSENT),
     Quantity("energy"),
     Quantity("strained_most"),
     Quantity("whirl", optional=True),
@@ -618,6 +624,9 @@ def _share(kind: str, mode: Document) -> str:
 def _named(mode: Document) -> str:
     """Return a mode's kind, its place, and the sense of its whirl about z."""
     kind, where = mode["kind"], mode.get("where")
+    if "planetary" in mode and kind != "rigid":
+        in_set, _, carrier = mode["planetary"].partition(": ")
+        return f"{in_set} (planetary set of {carrier})"
     if not where or where == kind or kind in ("rigid", "mesh", "residual"):
         return str(kind)
     whirl = mode.get("whirl", 0.0)

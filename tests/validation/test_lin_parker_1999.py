@@ -70,6 +70,15 @@ def test_natural_frequencies_and_their_multiplicities_are_the_printed_ones(count
         assert np.count_nonzero(np.abs(found / one - 1.0) < 1e-9) == 2
 
 
+@pytest.mark.parametrize("count", [3, 4])
+def test_modes_are_named_by_their_kind_in_the_set(count: int) -> None:
+    _, modes = _set(count)
+    for kind, frequencies in PRINTED[count].items():
+        for frequency in frequencies:
+            number = int(np.argmin(np.abs(modes.frequencies_hz - frequency)))
+            assert modes.planetary[number] == f"{kind}: carrier"
+
+
 def test_planet_modes_leave_sun_ring_and_carrier_at_rest() -> None:
     system, modes = _set(4)
     for frequency in PRINTED[4]["planet"]:

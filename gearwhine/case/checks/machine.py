@@ -131,6 +131,10 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
     bearings = [bearing for _, bearing in draft.bearings]
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
+        rotor = draft.rotor(bearing.rotor)
+        if rotor is not None and rotor.carrier is not None and bearing.seat != rotor.carrier:
+            expected = f'"{rotor.carrier}", the carrier with which the axis of "{rotor.name}" turns'
+            yield Finding(("bearing", index, "seat"), expected)
         if bearing.pedestal is not None and not bearing.grounded:
             from gearwhine.coupling.description.arrangement import pedestal_finding
 
@@ -241,14 +245,19 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
         yield from unequal
         if not unequal and driver.name in built and driven.name in built:
             yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
-    for wrong in draft.train.contradictions if draft.train is not None else ():
+    train = draft.train
+    for wrong in train.contradictions if train is not None else ():
         if wrong.pair is None:
             continue
+        index, *gears = draft.readable_pairs[wrong.pair]
         expected = (
             f'pairs in a loop that can turn; "{wrong.shaft}" would turn at {float(wrong.ratio):.6g} of the first '
             f"driver's speed by the other pairs, and at {float(wrong.other):.6g} by this one"
         )
-        yield Finding(("gear_pair", draft.readable_pairs[wrong.pair][0]), expected, UNSAID)
+        if train is not None and train.held:
+            label = " -> ".join(gear.name for gear in gears)
+            expected = f"members that are not held or driven against each other; {train.sentence(wrong, label)}"
+        yield Finding(("gear_pair", index), expected, UNSAID)
 
 
 def _check_pair(
@@ -419,16 +428,17 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     if draft.gear_pairs:
         ratios = {} if train is None else dict(train.ratios)
     first = next(iter(ratios), None)
+    yield from _check_drives(operation, train)
     for index, shaft in enumerate(shafts):
-        if shaft not in ratios:
+        if shaft not in ratios and not (train is not None and shaft in train.open_shafts):
             kind = "rotor" if draft.rotors else "gear"
             expected = f'a gear pair that turns it: no pair leads here from "{first}", the first driver'
             yield Finding((kind, index, "name"), expected)
-    if any(not 1.0 / LARGEST_RATIO <= abs(ratio) <= LARGEST_RATIO for ratio in ratios.values()):
+    if any(ratio and not 1.0 / LARGEST_RATIO <= abs(ratio) <= LARGEST_RATIO for ratio in ratios.values()):
         expected = f"pairs that gear no shaft up or down more than {LARGEST_RATIO:g} times in all"
         yield Finding(("gear_pair",), expected, UNSAID)
         return
-    if train is not None and train.contradictions:
+    if train is not None and not train.turns:
         return
     rotor = draft.rotor(first) if draft.gear_pairs else None
     if rotor is not None and operation.at is not None:
@@ -441,6 +451,10 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
                 yield Finding(("operation", "output", place, "rotor"), output_elsewhere(first))
     if any(output.rotor not in ratios for output in operation.output):
         return
+    for place, output in enumerate(operation.output):
+        if not ratios[output.rotor] or (train is not None and output.rotor in train.planets):
+            yield Finding(("operation", "output", place, "rotor"), "a rotor that turns about an axis of its own")
+            return
     if _lacks_input(operation):
         expected = (
             "the torque that drives the outputs; where they drive each other, list first a gear_pair whose driver is "
@@ -455,6 +469,20 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     yield from imbalances
     if train is not None and not imbalances and all(shaft in ratios for shaft in shafts):
         yield from _check_flow(draft, operation, train)
+
+
+def _check_drives(operation: Operation, train: GearTrain | None) -> Iterator[Finding]:
+    """Yield why the drives of a train do not give the speeds of its shafts, or contradict each other."""
+    for place, drive in enumerate(operation.drive):
+        if operation.speed == 0.0:
+            expected = "no further drive of a case whose first driver stands still: its speed is taken over that one's"
+            yield Finding(("operation", "drive", place), expected, UNSAID)
+        wrong = next((one for one in train.contradictions if one.shaft == drive.rotor), None) if train else None
+        if train is not None and wrong is not None and wrong.pair is None:
+            yield Finding(("operation", "drive", place, "rotor"), f"a rotor that is free; {train.sentence(wrong, '')}")
+    if train is not None:
+        for sentence in train.drive_problems():
+            yield Finding(("planetary",) if train.planets else ("gear_pair",), sentence, UNSAID)
 
 
 def _lacks_input(operation: Operation) -> bool:

@@ -49,6 +49,7 @@ def library_findings(case: Case) -> Iterator[Finding]:
         yield from _of_gears(case.gear, case.parts.gears)
         yield from _of_pairs(case.parts)
     if case.rotor:
+        yield from _of_sets(case)
         yield from _of_machine(case)
 
 
@@ -132,6 +133,14 @@ def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterato
                 finding.attribute == "face_width" and gear.face_width is None
             ):
                 yield placed(("gear", index), finding, key_in_gear(gear, finding.attribute))
+
+
+def _of_sets(case: Case) -> Iterator[Finding]:
+    """Yield findings of planetary sets, and of the rotors that are their carriers and planets."""
+    numbers = {one.name: index for index, one in enumerate(case.planetary)}
+    for finding in case.parts.set_findings():
+        found = placed(("planetary", numbers[finding.part[1]]), finding)
+        yield replace(found, value=UNSAID) if finding.attribute == "planets" else found
 
 
 def _of_machine(case: Case) -> Iterator[Finding]:

@@ -27,6 +27,7 @@ _KEYS_OF_NAMED_PARTS = (
     ("rotor",),
     ("bearing",),
     ("gear",),
+    ("planetary",),
     ("housing", "seat"),
     ("housing", "support"),
     ("housing", "mount"),
@@ -45,12 +46,27 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     yield from _check_unique(draft)
     yield from _check_materials(draft)
     rotors, gears, seats = draft.names("rotor"), draft.names("gear"), draft.names("housing", "seat")
+    carriers = {str(rotor["carrier"]) for _, rotor in draft.raw_entries("rotor") if "carrier" in rotor}
     for index, rotor in draft.raw_entries("rotor"):
         if rotor.get("name") == "housing":
             yield Finding(("rotor", index, "name"), "another name than 'housing', which stands for the housing itself")
+        yield from _check_reference(rotor, ("rotor", index, "carrier"), "rotor", rotors)
+    for index, one in draft.raw_entries("planetary"):
+        for key, kind, names in (("carrier", "rotor", rotors), ("sun", "gear", gears), ("ring", "gear", gears)):
+            yield from _check_reference(one, ("planetary", index, key), kind, names)
+        planets = one.get("planets")
+        for place, name in enumerate(planets if isinstance(planets, (list, tuple)) else ()):
+            yield from _check_reference({place: name}, ("planetary", index, "planets", place), "gear", gears)
+        fixed = one.get("fixed")
+        if isinstance(fixed, Mapping):
+            at = ("planetary", index, "fixed")
+            yield from _check_reference(fixed, (*at, "member"), "gear or rotor", (*gears, *rotors))
+            yield from _check_reference(fixed, (*at, "seat"), "seat", seats)
+        else:
+            yield from _check_reference(one, ("planetary", index, "fixed"), "gear or rotor", (*gears, *rotors))
     for index, bearing in draft.raw_entries("bearing"):
         yield from _check_reference(bearing, ("bearing", index, "rotor"), "rotor", rotors)
-        yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground"))
+        yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground", *carriers))
     for index, gear in draft.raw_entries("gear"):
         yield from _check_reference(gear, ("gear", index, "rotor"), "rotor", rotors)
         if rotors and "rotor" not in gear:
@@ -68,6 +84,9 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     for index, output in draft.raw_entries("operation", "output"):
         shafts = rotors or gears
         yield from _check_reference(output, ("operation", "output", index, "rotor"), "rotor", shafts)
+    yield from _check_reference(draft.document.get("operation"), ("operation", "rotor"), "rotor", rotors)
+    for index, drive in draft.raw_entries("operation", "drive"):
+        yield from _check_reference(drive, ("operation", "drive", index, "rotor"), "rotor", rotors)
     for index, force in draft.raw_entries("operation", "force"):
         yield from _check_reference(force, ("operation", "force", index, "rotor"), "rotor", rotors)
 

@@ -14,6 +14,7 @@ from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 from gearwhine.coupling.load_analysis.solved_load import DeflectedShaft, SolvedLoad
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.figures.gears.contact import draw_contact_pattern
+from gearwhine.figures.machine.planetary_sets import draw_carrier_turn, draw_planetary_set
 from gearwhine.figures.rotors import shaft_assembly
 from gearwhine.figures.rotors.assembly import RotorAssembly
 from gearwhine.figures.rotors.shaft import MM, ShaftView
@@ -482,8 +483,8 @@ def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     Yields
     ------
     str
-        Name of the figure: ``load-shaft-NAME``, ``load-misalignment``, ``load-face-PAIR``, ``load-pattern-PAIR`` and
-        ``load-over-torque``.
+        Name of the figure: ``load-shaft-NAME``, ``load-misalignment``, ``load-face-PAIR``, ``load-pattern-PAIR``,
+        ``load-over-torque``, ``load-planetary-SET`` and ``load-carrier-turn-CARRIER``.
     matplotlib.figure.Figure
     """
     acting: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
@@ -517,3 +518,10 @@ def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
         )
     if solved.over_torque and solved.point.pairs:
         yield "load-over-torque", draw_over_torque("Gear pairs over torque", solved)
+    sets = file_stems([one.name for one in solved.planetary], "load-planetary-")
+    placed = {one.of.name: one for one in solved.machine.placed_sets}
+    for stem, one in zip(sets, solved.planetary, strict=True):
+        yield stem, draw_planetary_set(f"Planetary set {shortened(one.name, 20)}", placed[one.name], one, solved)
+    turns = file_stems([turn.carrier for turn in solved.carrier_turns], "load-carrier-turn-")
+    for stem, turn in zip(turns, solved.carrier_turns, strict=True):
+        yield stem, draw_carrier_turn(f"Load shares over a turn of {shortened(turn.carrier, 20)}", turn)

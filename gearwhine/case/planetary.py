@@ -1,0 +1,428 @@
+"""`[[planetary]]`: planetary sets; planets written once are made `count` times before a case is read.
+
+A planet that is written once has one `[[rotor]]`, its gears, bearings and gear pairs. :func:`with_planets` replaces
+each of these tables by one for every planet, with a number behind its name, at its angle around the carrier's axis. The
+first copy stands in the place of the table, further ones at the end of the list, and :class:`PlanetCopies` knows of
+each which table it is a copy of, so that findings name what stands in the file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Discriminator, Field, Tag, ValidationError, field_validator, model_validator
+from pydantic_core import PydanticCustomError
+
+from gearwhine.case import units
+from gearwhine.case.errors import Finding, Location, look_up
+from gearwhine.case.fields import MOST_ENTRIES, Angle, Length, LengthFromZero, Name, Quantity, Table, Whole, wrong
+from gearwhine.case.gears import Gear, TrainMembers
+from gearwhine.case.operation import Operation
+from gearwhine.case.overrides import parse_key_path
+from gearwhine.case.rotors import Rotor
+
+if TYPE_CHECKING:
+    from gearwhine.coupling import PlanetarySet, TorqueSupport
+
+_LENGTH, _ANGLE = Quantity(units.LENGTH), Quantity(units.ANGLE)
+_TORSION = Quantity(units.TILT_STIFFNESS, above=0.0)
+TorsionalStiffness = Annotated[float, _TORSION]
+MOST_PLANETS = 24
+
+
+def _error_form(value: object) -> str:
+    return "~list" if isinstance(value, list | tuple) else "~length"
+
+
+PinError = Annotated[
+    Annotated[Length, Tag("~length")] | Annotated[tuple[Length, Length], Tag("~list")], Discriminator(_error_form)
+]
+
+
+class Fixed(Table):
+    """`fixed` of a `[[planetary]]`: the member that is held from turning, and by what."""
+
+    member: Name
+    """Gear or rotor that is held, by its name."""
+    stiffness: TorsionalStiffness | None = None
+    """Torque over rotation. Default: rigid."""
+    seat: Name | None = None
+    """Seat of the housing that takes the torque. Default: the ground."""
+    at: LengthFromZero | None = None
+    """Station on the rotor. Default: that of the gear; of a rotor its left end."""
+    damping_time: Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e-2)] = 0.0
+    """Damping over stiffness."""
+
+
+class Planetary(Table):
+    """`[[planetary]]`: a planetary set by the names of its gears and its carrier.
+
+    Planets are named each, on rotors with this `carrier`; or one planet is written once and mounted `count` times.
+    """
+
+    name: Name
+    """Name of the set."""
+    sun: Name | None = None
+    """Sun, a gear."""
+    ring: Name | None = None
+    """Ring, an internal gear."""
+    planets: tuple[Name, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+    """Planets, gears by name: all of them, or with `count` or `angles` those of one planet."""
+    carrier: Name
+    """Rotor that carries the planets."""
+    count: Annotated[int, Whole(1, MOST_PLANETS)] | None = None
+    """Number of planets that are made of one. Their rotors, gears and bearings get a number behind their names: `p 1`,
+    `p 2`, ..."""
+    angles: tuple[Angle, ...] | None = Field(default=None, min_length=1, max_length=MOST_PLANETS)
+    """Angle of each planet about the carrier's axis, from the place of the one that is written. Default: equal ones."""
+    fixed: Fixed | None = None
+    """Member that is held from turning: a gear or a rotor by its name; the name of a seat or a stiffness such as
+    "1e7 N*m/rad", by which the ring is held; or a table. Default: none, as of a differential."""
+    pin_errors: tuple[PinError, ...] | None = Field(default=None, max_length=MOST_PLANETS)
+    """Offset of each pin from its place, counter-clockwise about the carrier's axis; or a list of two, outward and
+    counter-clockwise."""
+
+    @field_validator("fixed", mode="before")
+    @classmethod
+    def _by_name(cls, value: object) -> object:
+        return {"member": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _complete(self) -> Planetary:
+        if self.sun is None and self.ring is None:
+            raise wrong("a 'sun' or a 'ring', or both", "sun")
+        if self.count is not None and self.angles is not None and self.count != len(self.angles):
+            raise wrong(f"as many planets as angles, {len(self.angles)}", "count")
+        number = self.count or len(self.angles or ())
+        if self.pin_errors is not None and len(self.pin_errors) != number:
+            expected = f"one for each of {number} planets" if number else "none beside planets that are named each"
+            raise wrong(f"{expected}; a [[rotor]] has its own 'pin_error'", "pin_errors")
+        return self
+
+    def build(self) -> PlanetarySet:
+        """Build the description of the set."""
+        from gearwhine.coupling import PlanetarySet
+
+        return PlanetarySet(self.name, self.planets, self.carrier, self.sun, self.ring)
+
+    def held_rotor(self, gears: Sequence[Gear]) -> str | None:
+        """Return the rotor that is held; None where none is."""
+        if self.fixed is None:
+            return None
+        gear = next((gear for gear in gears if gear.name == self.fixed.member), None)
+        return self.fixed.member if gear is None or gear.rotor is None else gear.rotor
+
+    def build_support(self, gears: Sequence[Gear]) -> TorqueSupport | None:
+        """Build what holds the fixed member."""
+        from gearwhine.coupling import TorqueSupport
+
+        rotor, fixed = self.held_rotor(gears), self.fixed
+        if rotor is None or fixed is None:
+            return None
+        of_gear = next((gear.at for gear in gears if gear.name == fixed.member), None)
+        at = (of_gear or 0.0) if fixed.at is None else fixed.at
+        return TorqueSupport(rotor, at, fixed.stiffness, fixed.seat, fixed.damping_time)
+
+
+def train_members(
+    rotors: Sequence[Rotor], gears: Sequence[Gear], sets: Sequence[Planetary], operation: Operation | None
+) -> TrainMembers:
+    """Return the members of the train of a case beside its gear pairs."""
+    carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
+    held = [one.held_rotor(gears) for one in sets]
+    given = (
+        {}
+        if operation is None or operation.speed == 0.0
+        else {drive.rotor: drive.speed / operation.speed for drive in operation.drive}
+    )
+    first = None if operation is None else operation.rotor
+    return TrainMembers(carriers, tuple(dict.fromkeys(name for name in held if name is not None)), given, first)
+
+
+@dataclass(frozen=True)
+class PlanetCopies:
+    """Origin of the tables that were made of others: place in a list to place in that list of the file."""
+
+    origins: Mapping[tuple[str, int], Location]
+
+    def in_file(self, finding: Finding) -> Finding:
+        """Return a finding at the table of the file that its own is a copy of."""
+        kind, place = (*finding.location, "", "")[:2]
+        origin = self.origins.get((str(kind), place)) if isinstance(place, int) else None
+        if origin is None:
+            return finding
+        rest = finding.location[2:] if origin[0] == kind else ()
+        return replace(finding, location=(*origin, *rest))
+
+
+def with_planets(document: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[dict[str, Any], PlanetCopies]:
+    """Make the planets of sets that are written once, and give named ones their carrier.
+
+    Sets of which a key cannot be read are left as they are, to be refused as such.
+
+    Parameters
+    ----------
+    document : mapping
+        Tables and lists of the case file.
+    context : mapping
+        Folder and files, for tables that are read here.
+    """
+    sets = document.get("planetary")
+    expansion = _Expansion(document, context)
+    if isinstance(sets, list | tuple) and all(isinstance(one, Mapping) for one in sets):
+        for index, one in enumerate(sets):
+            expansion.add(index, dict(one))
+    return expansion.document, PlanetCopies(expansion.origins)
+
+
+_KINDS = ("rotor", "gear", "bearing", "gear_pair")
+
+
+class _Expansion:
+    """Document whose planets are made set by set."""
+
+    def __init__(self, document: Mapping[str, Any], context: Mapping[str, Any]) -> None:
+        self.context = context
+        self.document = dict(document)
+        self.origins: dict[tuple[str, int], Location] = {}
+        for kind in (*_KINDS, "planetary"):
+            if isinstance(document.get(kind), list | tuple):
+                self.document[kind] = list(document[kind])
+
+    def entries(self, kind: str) -> list[tuple[int, dict[str, Any]]]:
+        listed = self.document.get(kind)
+        return [
+            (index, entry)
+            for index, entry in enumerate(listed if isinstance(listed, list) else [])
+            if isinstance(entry, dict)
+        ]
+
+    def named(self, kind: str, name: object) -> dict[str, Any] | None:
+        return next((entry for _, entry in self.entries(kind) if entry.get("name") == name), None)
+
+    def add(self, index: int, one: dict[str, Any]) -> None:
+        """Make the planets of a set."""
+        one["fixed"] = self._fixed(one)
+        if one["fixed"] is None:
+            del one["fixed"]
+        self.document["planetary"][index] = one
+        planets, carrier = one.get("planets"), one.get("carrier")
+        if not isinstance(planets, list | tuple) or not isinstance(carrier, str):
+            return
+        gears = [self.named("gear", name) for name in planets]
+        rotors = list(dict.fromkeys(gear.get("rotor") for gear in gears if gear is not None))
+        shafts = [self.named("rotor", name) for name in rotors]
+        if not gears or None in gears or not shafts or None in shafts or self.named("rotor", carrier) is None:
+            return
+        for shaft in shafts:
+            if shaft is not None:
+                shaft_index = next(i for i, entry in self.entries("rotor") if entry is shaft)
+                self.document["rotor"][shaft_index] = {"carrier": carrier, **shaft}
+        for place, bearing in self.entries("bearing"):
+            if bearing.get("rotor") in rotors and "seat" not in bearing:
+                self.document["bearing"][place] = {**bearing, "seat": carrier}
+        self._pair_gears(index, one)
+        try:
+            turns = self._angles(one)
+            errors = self._pin_errors(one, len(turns))
+            places = self._places(one, [name for name in rotors if isinstance(name, str)])
+        except (PydanticCustomError, ValueError):
+            return
+        if turns:
+            self._copy(one, [str(name) for name in rotors], turns, errors, places)
+            for key in ("count", "angles", "pin_errors"):
+                one.pop(key, None)
+
+    def _fixed(self, one: Mapping[str, Any]) -> Any:
+        """Return what holds a member as a table, where it is given by a seat or a stiffness."""
+        fixed = one.get("fixed")
+        if isinstance(fixed, str) and not (self.named("gear", fixed) or self.named("rotor", fixed)):
+            seats = look_up(self.document, ("housing", "seat"))
+            if any(look_up(seat, ("name",)) == fixed for seat in (seats if isinstance(seats, list | tuple) else ())):
+                return {"member": one.get("ring"), "seat": fixed}
+        if isinstance(fixed, str | int | float) and not isinstance(fixed, bool):
+            try:
+                _TORSION.validate(fixed)
+            except PydanticCustomError:
+                return fixed
+            return {"member": one.get("ring"), "stiffness": fixed}
+        return fixed
+
+    def _pair_gears(self, index: int, one: Mapping[str, Any]) -> None:
+        """Add the pairs of a set between sun, planets and ring where the file has none of them."""
+        planets = list(one["planets"])
+        listed = self.document.setdefault("gear_pair", [])
+        if not isinstance(listed, list):
+            return
+        if any({pair.get("driver"), pair.get("driven")} & set(planets) for _, pair in self.entries("gear_pair")):
+            return
+        written_once = "count" in one or "angles" in one
+        chains = [planets] if written_once else [[name] for name in planets]
+        ends = (one.get("sun"), one.get("ring"))
+        for chain in chains:
+            # One gear of each rotor meshes with its neighbours; both gears of a stepped planet are on one.
+            way = [name for name in (ends[0], *chain, ends[1]) if isinstance(name, str)]
+            if self._drives_from_ring(one):
+                way.reverse()
+            for driver, driven in pairwise(way):
+                if self._rotor_of(driver) != self._rotor_of(driven):
+                    self.origins["gear_pair", len(listed)] = ("planetary", index)
+                    listed.append({"driver": driver, "driven": driven})
+
+    def _rotor_of(self, gear: str) -> object:
+        entry = self.named("gear", gear)
+        return None if entry is None else entry.get("rotor")
+
+    def _drives_from_ring(self, one: Mapping[str, Any]) -> bool:
+        """Whether power passes from the ring to the sun, as the carrier sees it."""
+        given = look_up(self.document, ("operation", "rotor"))
+        ring, held = one.get("ring"), look_up(one, ("fixed", "member"))
+        held = one.get("fixed") if isinstance(one.get("fixed"), str) else held
+        ring_names = {ring, self._rotor_of(ring)} if isinstance(ring, str) else set()
+        return bool(
+            isinstance(given, str) and (given in ring_names or (given == one.get("carrier") and held in ring_names))
+        )
+
+    def _angles(self, one: Mapping[str, Any]) -> list[float]:
+        angles, count = one.get("angles"), one.get("count")
+        if angles is not None:
+            return [_ANGLE.validate(angle) for angle in angles] if isinstance(angles, list | tuple) else []
+        if count is None:
+            return []
+        number = Whole(1, MOST_PLANETS).validate(count)
+        return [2.0 * math.pi * n / number for n in range(number)]
+
+    def _pin_errors(self, one: Mapping[str, Any], count: int) -> list[tuple[float, float]]:
+        errors = one.get("pin_errors", [0.0] * count)
+        found = [
+            tuple(_LENGTH.validate(part) for part in error)
+            if isinstance(error, list | tuple)
+            else (0.0, _LENGTH.validate(error))
+            for error in errors
+        ]
+        if len(found) != count or any(len(error) != 2 for error in found):
+            raise ValueError
+        return found  # type: ignore[return-value]
+
+    def _axis(self, rotor: str) -> tuple[float, float]:
+        entry = self.named("rotor", rotor) or {}
+        x, y = entry.get("axis", (0.0, 0.0))
+        return _LENGTH.validate(x), _LENGTH.validate(y)
+
+    def _places(self, one: Mapping[str, Any], rotors: Sequence[str]) -> list[tuple[float, float]]:
+        """Return the place of each rotor of the planet from the carrier's axis [m]: its `axis`, or along x."""
+        centre, places = self._axis(one["carrier"]), []
+        for rotor in rotors:
+            entry = self.named("rotor", rotor) or {}
+            if "axis" in entry:
+                x, y = self._axis(rotor)
+                places.append((x - centre[0], y - centre[1]))
+            else:
+                places.append((self._centre_distance(one, rotor), 0.0))
+        return places
+
+    def _centre_distance(self, one: Mapping[str, Any], rotor: str) -> float:
+        """Return the distance at which a planet meshes with the sun, or without one with the ring [m]; 0 if unknown."""
+        from gearwhine.coupling.gears import GearError, GearPairGeometry
+
+        central = one.get("sun") or one.get("ring")
+        for _, pair in self.entries("gear_pair"):
+            names = pair.get("driver"), pair.get("driven")
+            others = [name for name in names if name != central]
+            if central not in names or len(others) != 1 or self._rotor_of(str(others[0])) != rotor:
+                continue
+            try:
+                gears = [
+                    Gear.model_validate(self.named("gear", name), context=dict(self.context)).build() for name in names
+                ]
+                return abs(GearPairGeometry(gears[0], gears[1]).working_centre_distance)
+            except (ValidationError, GearError, ValueError):
+                return 0.0
+        return 0.0
+
+    def _copy(
+        self,
+        one: dict[str, Any],
+        rotors: Sequence[str],
+        turns: Sequence[float],
+        errors: Sequence[tuple[float, float]],
+        places: Sequence[tuple[float, float]],
+    ) -> None:
+        """Replace the tables of one planet by those of all."""
+        centre = self._axis(one["carrier"])
+        own = [str(entry["name"]) for _, entry in self.entries("gear") if entry.get("rotor") in rotors]
+
+        def turned(entry: dict[str, Any], number: int) -> dict[str, Any]:
+            (x, y), turn = places[list(rotors).index(entry["name"])], turns[number]
+            cosine, sine = math.cos(turn), math.sin(turn)
+            axis = [centre[0] + cosine * x - sine * y, centre[1] + sine * x + cosine * y]
+            copied = {**entry, "axis": axis, "name": _numbered(entry["name"], number)}
+            return copied | ({"pin_error": list(errors[number])} if any(errors[number]) else {})
+
+        def renamed(*keys: str) -> Callable[[dict[str, Any], int], dict[str, Any]]:
+            taken = {*own, *rotors}
+            return lambda entry, number: {
+                **entry,
+                **{key: _numbered(entry[key], number) for key in keys if key == "name" or entry.get(key) in taken},
+            }
+
+        count = len(turns)
+        bearings = {entry.get("name") for _, entry in self.entries("bearing") if entry.get("rotor") in rotors}
+        self._replicate("rotor", lambda entry: entry.get("name") in rotors, turned, count)
+        self._replicate("gear", lambda entry: entry.get("name") in own, renamed("name", "rotor"), count)
+        self._replicate(
+            "bearing",
+            lambda entry: entry.get("rotor") in rotors and isinstance(entry.get("name"), str),
+            renamed("name", "rotor"),
+            count,
+        )
+        self._replicate(
+            "gear_pair",
+            lambda entry: bool({entry.get("driver"), entry.get("driven")} & set(own)),
+            renamed("driver", "driven"),
+            count,
+        )
+        one["planets"] = [_numbered(name, number) for number in range(count) for name in one["planets"]]
+        self._rename_paths({"rotor": set(rotors), "gear": set(own), "bearing": bearings}, count)
+
+    def _replicate(
+        self,
+        kind: str,
+        chosen: Callable[[dict[str, Any]], bool],
+        made: Callable[[dict[str, Any], int], dict[str, Any]],
+        count: int,
+    ) -> None:
+        listed = self.document.get(kind)
+        for index, entry in self.entries(kind):
+            if not isinstance(listed, list) or not chosen(entry):
+                continue
+            origin = self.origins.get((kind, index), (kind, index))
+            copies = [made(entry, number) for number in range(count)]
+            listed[index] = copies[0]
+            for copied in copies[1:]:
+                self.origins[kind, len(listed)] = origin
+                listed.append(copied)
+
+    def _rename_paths(self, names: Mapping[str, set[Any]], count: int) -> None:
+        """Let key paths of `[provenance]` and `unusual` to a planet lead to each copy."""
+
+        def paths(path: object) -> list[Any]:
+            steps = parse_key_path(path) if isinstance(path, str) else None
+            if steps is None or len(steps) < 2 or steps[1] not in names.get(steps[0], ()):
+                return [path]
+            rest = "".join(f".{step}" if step.isalnum() or "_" in step else f'."{step}"' for step in steps[2:])
+            return [f'{steps[0]}."{_numbered(steps[1], number)}"{rest}' for number in range(count)]
+
+        table, listed = self.document.get("provenance"), self.document.get("unusual")
+        if isinstance(table, dict):
+            self.document["provenance"] = {new: value for path, value in table.items() for new in paths(path)}
+        if isinstance(listed, list | tuple):
+            self.document["unusual"] = [new for path in listed for new in paths(path)]
+
+
+def _numbered(name: str, number: int) -> str:
+    return f"{name} {number + 1}"
