@@ -104,6 +104,18 @@ def test_gears_say_the_measures_and_the_load_of_the_pair() -> None:
     assert any("shafts 40.0000 mm apart" in text for text in section.sentences)
 
 
+@pytest.mark.parametrize("gears", [("pinion", "ring"), ("ring", "pinion")])
+def test_points_of_contact_are_drawn_on_both_flanks(gears: tuple[str, str]) -> None:
+    geometry = case_of(driver=gears[0], driven=gears[1]).parts.pair_geometries[0]
+    axes = draw_tooth_pair(geometry).axes[0]
+    (contact,) = (line for line in axes.lines if line.get_label() == "_contact")
+    outlines = [artist.get_xy() for artist in axes.get_children() if artist.get_label() == "_outline"]
+    assert len(outlines) == 2
+    for place in contact.get_xydata():
+        for outline in outlines:
+            assert np.hypot(*(outline - place).T).min() < 0.1
+
+
 def test_picture_has_the_ring_around_its_pinion() -> None:
     geometry = case_of().parts.pair_geometries[0]
     axes = draw_tooth_pair(geometry).axes[0]
