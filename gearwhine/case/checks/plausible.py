@@ -137,8 +137,15 @@ def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterato
 
 def _of_sets(case: Case) -> Iterator[Finding]:
     """Yield findings of planetary sets, and of the rotors that are their carriers and planets."""
+    from gearwhine.coupling.errors import CouplingError
+    from gearwhine.rotors.errors import RotorError
+
     numbers = {one.name: index for index, one in enumerate(case.planetary)}
-    for finding in case.parts.set_findings():
+    try:
+        findings = list(case.parts.set_findings()) if numbers else []
+    except (CouplingError, RotorError):
+        return  # shafts that cannot be built are findings of their own
+    for finding in findings:
         found = placed(("planetary", numbers[finding.part[1]]), finding)
         yield replace(found, value=UNSAID) if finding.attribute == "planets" else found
 
