@@ -23,7 +23,7 @@ from gearwhine.case.bearings import (
     operation_loads,
 )
 from gearwhine.case.errors import UNSAID, CaseError, Problem
-from gearwhine.case.gears import Gear, GearPair, distance_of_axes, readable_pairs, train_of_pairs
+from gearwhine.case.gears import Gear, GearPair, distance_of_axes, readable_pairs, shaft_of, train_of_pairs
 from gearwhine.case.housing import Material
 from gearwhine.case.input_files import ChangedFileError, InputFiles
 from gearwhine.case.operation import Operation
@@ -102,6 +102,14 @@ class Parts:
     def mesh_frequencies(self) -> tuple[float, ...]:
         """Tooth-mesh frequency of each gear pair [Hz]; empty without an operation."""
         return () if self.operation is None else self.train.mesh_frequencies(self.operation.speed)
+
+    @cached_property
+    def mesh_speeds(self) -> tuple[float | None, ...]:
+        """Speed of the driver of each gear pair [rad/s], relative to the carrier of a planet; None where unknown."""
+        speeds, pairs = self.speeds, self.train.pairs
+        if len(pairs) < len(self.gear_pair):
+            return tuple(speeds.get(shaft_of(self._tables_of(pair)[0])) for pair in self.gear_pair)
+        return tuple(float(pair.relative_speed(speeds)) if speeds else None for pair in pairs)
 
     @cached_property
     def torques(self) -> tuple[Torque, ...]:
