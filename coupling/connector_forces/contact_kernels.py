@@ -140,6 +140,25 @@ def evaluate_forces(contacts: Contacts, bearings: Bearings, nominal_time: float,
         evaluate_bearings(
             bearings, contacts.phase.size, nominal_time, delta, push, scratch.tangents, scratch.bearing_work
         )
+        if bearings.damping.shape[0] > 0:
+            _add_damping_forces(bearings, contacts.phase.size, rate, push)
+
+
+@inner()
+def _add_damping_forces(bearings: Bearings, offset: int, rate: FloatArray, push: FloatArray) -> None:
+    for number in range(bearings.damping.shape[0]):
+        first, end = bearings.first[number], bearings.first[number + 1]
+        for i in range(first, end):
+            for j in range(first, end):
+                push[offset + i] += bearings.damping[number, i - first, j - first] * rate[offset + j]
+
+
+@inner()
+def _add_damping_tangents(bearings: Bearings, per: float, tangents: FloatArray) -> None:
+    for number in range(bearings.damping.shape[0]):
+        for i in range(5):
+            for j in range(5):
+                tangents[number, i, j] += per * bearings.damping[number, i, j]
 
 
 @inner()
@@ -153,7 +172,10 @@ def _stiffest(contacts: Contacts, bearings: Bearings, per: float, scratch: Scrat
         if laws[k, FORCE] > 0.0:
             stiffest = max(stiffest, laws[k, TANGENT] + laws[k, DAMPING] * per)
     for number in range(bearings.preload.size):
+        # A law without rolling elements is linear.
         count = bearings.first[number + 1] - bearings.first[number]
+        if bearings.first_row[number + 1] == bearings.first_row[number]:
+            continue
         for i in range(count):
             for j in range(count):
                 stiffest = max(stiffest, abs(scratch.tangents[number, i, j]))
@@ -178,6 +200,9 @@ def _follow_tangents(contacts: Contacts, bearings: Bearings, per: float, scratch
         if row >= 0:
             push[row] += (drag[k, 0] + drag[k, 2] * per) * d
             push[row + 1] += (drag[k, 1] + drag[k, 3] * per) * d
+    if bearings.damping.shape[0] > 0:
+        for k in range(c, rate.size):
+            rate[k] += per * step[k, 0]
     for number in range(bearings.preload.size):
         first, end = bearings.first[number], bearings.first[number + 1]
         for i in range(first, end):
@@ -215,6 +240,8 @@ def solve_contact_forces(
     )  # fmt: skip
     c, u, directions = contacts.phase.size, free.size, push.size
     per = by_velocity / by_displacement
+    damped = bearings.damping.shape[0] > 0
+    with_rates = u if damped else c
     # Forces on a parabola through the last ones are so near that mostly one evaluation is enough.
     for j in range(directions):
         last, change = push[j], push[j] - scratch.push_before[j]
@@ -229,9 +256,11 @@ def solve_contact_forces(
             total += abs(flexibility[k, j])
         most = max(most, total)
     for _ in range(_NEWTON_STEPS):
-        for k in range(c):
+        for k in range(with_rates):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
         evaluate_forces(contacts, bearings, nominal_time, scratch)
+        if damped:
+            _add_damping_tangents(bearings, per, tangents)
         largest, scale = 0.0, 1e-300
         for k in range(u):
             residual[k, 0] = free[k] - delta[k]

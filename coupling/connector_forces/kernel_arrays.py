@@ -2,7 +2,8 @@
 
 n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`gearwhine.coupling.time.step_matrices` fills
 them from a coupled system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear
-bearings, e in all, then two for each contact with friction.
+bearings, e in all, then two for each contact with friction. Where directions turn, e includes those of the linear
+connectors that turn, and all k directions are sums of m constant columns: :class:`Turning`; otherwise m is k.
 
 Rolling-bearing and gap laws are plain arrays too.
 """
@@ -77,7 +78,7 @@ class StepMatrices(NamedTuple):
     connectors: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without connectors
     connector_flexibility: FloatArray  # (m, r, r) Uᵀ B U
     woodbury: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
-    contact: FloatArray  # (m, k, n) Wᵀ = (S⁻¹ D)ᵀ
+    contact: FloatArray  # (m, k, n) Wᵀ = (S⁻¹ D)ᵀ, D the columns where directions turn
     contact_connectors: FloatArray  # (m, k, r) (Uᵀ W)ᵀ
     flexibility: FloatArray  # (m, k, k) Dᵀ W
 
@@ -85,7 +86,7 @@ class StepMatrices(NamedTuple):
 class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
-    direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
+    direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included; (m, n) their columns where they turn
     law: FloatArray  # numbers of all laws, one after another: `gearwhine.coupling.gears.contact.lookup_tables`
     law_at: IntArray  # (c,) offset of the law of each contact
     shares_at: IntArray  # (c,) offset of the friction law of each contact; -1 where lines of contact slide as one
@@ -98,12 +99,35 @@ class Contacts(NamedTuple):
     sliding: FloatArray  # (c, 2) W_a and W_b: sliding by the nominal rotation
 
 
+class Turning(NamedTuple):
+    """Directions that turn, D(s) = V M(s), by the e entries of M; all arrays are empty where none does.
+
+    The entries of one rate of turning follow each other; an entry that stands still has any rate. b linear connectors
+    and bearings have laws that are tabulated over speed.
+    """
+
+    rates: FloatArray  # (w,) rates of turning at nominal speed [rad/s]
+    first_of_rate: IntArray  # (w + 1,) first entry of each rate
+    direction: IntArray  # (e,)
+    column: IntArray  # (e,)
+    constant: FloatArray  # (e,) c, a and b of c + a cos w s + b sin w s
+    cosine: FloatArray  # (e,)
+    sine: FloatArray  # (e,)
+    speed_ratios: FloatArray  # (t,) speeds over the nominal one of the tables of linear laws; empty without any
+    linear: FloatArray  # (t, b, 5, 5) `Bearings.linear` at these speeds
+    damping: FloatArray  # (t, b, 5, 5) `Bearings.damping`
+
+
 class Bearings(NamedTuple):
-    """Nonlinear bearings, their rows of rolling elements one after another (w)."""
+    """Nonlinear bearings, their rows of rolling elements one after another (w).
+
+    A linear connector whose directions turn is one without rows, in which ``linear`` is its stiffness times -1.
+    """
 
     axis: IntArray  # (e,) axis of each direction: x, y, z and the rotations about x and y
     first: IntArray  # (b + 1,) first direction of each
     linear: FloatArray  # (b, 5, 5) stiffness that is in the linear connectors already, in the leading d by d
+    damping: FloatArray  # (b, 5, 5) damping of linear connectors that turn; (0, 5, 5) without any
     fixed: FloatArray  # (b, 5) displacement along axes without a direction
     preload: FloatArray  # (b,) preload by a spring along z [N]
     floating: npt.NDArray[np.bool_]  # (b,) whether the outer ring slides along z, from its place in ``fixed``
@@ -146,11 +170,24 @@ class Scratch(NamedTuple):
     connector_force: FloatArray  # (r,)
     response: FloatArray  # (r,)
     correction: FloatArray  # (r,) correction of the connectors' forces by their accelerations
-    dq: FloatArray  # (k,) dq to dv_predicted: projections Dᵀ of q, v, a, q* and v*
-    dv: FloatArray  # (k,)
-    da: FloatArray  # (k,)
-    dq_predicted: FloatArray  # (k,)
-    dv_predicted: FloatArray  # (k,)
+    dq: FloatArray  # (m,) dq to dv_free: projections Dᵀ of q, v, a, q*, v*, and q and v without the laws' forces
+    dv: FloatArray  # (m,)
+    da: FloatArray  # (m,)
+    dq_predicted: FloatArray  # (m,)
+    dv_predicted: FloatArray  # (m,)
+    dq_free: FloatArray  # (m,)
+    dv_free: FloatArray  # (m,)
+    dq_carried: FloatArray  # (m,) projections of the displacement that turning directions move past
+    along_q: FloatArray  # (k,) displacements along directions that turn, their rates, and how these carry deflections
+    along_v: FloatArray  # (k,)
+    carried: FloatArray  # (k,)
+    mix: FloatArray  # (e,) entries of M, and their rates; the same at a sample
+    mix_rate: FloatArray  # (e,)
+    sample_mix: FloatArray  # (e,)
+    sample_mix_rate: FloatArray  # (e,)
+    mixed: FloatArray  # (m, k) flexibility between columns and directions that turn
+    flexibility: FloatArray  # (k, k) flexibility of directions that turn
+    pushed: FloatArray  # (m,) forces of the laws along the columns of directions that turn
     push: FloatArray  # (k,) forces of the laws
     push_before: FloatArray  # (k,) those at the start of the last step, and their change in the step before it
     push_change: FloatArray  # (k,)
@@ -227,6 +264,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         axis=np.array([axis for connector in connectors for axis in connector.axes], dtype=np.int64),
         first=np.array(first, dtype=np.int64),
         linear=linear,
+        damping=np.zeros((0, 5, 5)),
         fixed=fixed,
         preload=preload,
         floating=floating,

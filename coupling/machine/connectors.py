@@ -9,7 +9,8 @@ y; nonlinear laws of bearings are those of :mod:`gearwhine.coupling.machine.bear
 :class:`gearwhine.coupling.gears.ToothContact`.
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +49,15 @@ class TurningPart:
         """Change of the directions from s = 0 to a nominal time [s], shape (n, d)."""
         angle = self.rate * time
         return np.asarray(self.cosine * (np.cos(angle) - 1.0) + self.sine * np.sin(angle))
+
+    def projected(self, recovery: FloatArray) -> "TurningPart":
+        """Return the part over other coordinates x, of which q = T x; T has the shape (n, m)."""
+        return replace(self, cosine=recovery.T @ self.cosine, sine=recovery.T @ self.sine)
+
+
+def turned(directions: FloatArray, parts: Iterable[TurningPart], time: float) -> FloatArray:
+    """Directions (n, d) at a nominal time [s], of those at the nominal time 0 and their turning parts."""
+    return np.asarray(sum((part.change(time) for part in parts), directions))
 
 
 @dataclass(frozen=True)
@@ -143,6 +153,8 @@ class NonlinearConnector:
         K [N/m], symmetric.
     speed : float
         Signed speed of the shaft [rad/s], which carries the rolling elements round.
+    turning : tuple of TurningPart
+        Parts of the directions that turn; ``directions`` are those at the nominal time 0.
     """
 
     name: str
@@ -151,6 +163,7 @@ class NonlinearConnector:
     law: BearingLaw
     stiffness: FloatArray
     speed: float
+    turning: tuple[TurningPart, ...] = ()
 
     def __post_init__(self) -> None:
         """Require an axis for each direction, and a stiffness of shape (d, d)."""
@@ -173,11 +186,14 @@ class Sliding:
         Directions a and b: a pair at the position x along its path slides by (a + x b)ᵀ q' beside the nominal rotation.
     nominal : ndarray, shape (2,)
         Rates W_a [m/s] and W_b [m/s per base pitch]: a pair slides by W_a + x W_b in the nominal rotation.
+    turning : tuple of TurningPart
+        Parts of the directions that turn; ``directions`` are those at the nominal time 0.
     """
 
     friction: SlidingFriction
     directions: FloatArray
     nominal: FloatArray
+    turning: tuple[TurningPart, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -235,6 +251,10 @@ class ContactConnector:
         """Law table by which the pairs share friction, and whether it is by slices of the face."""
         shares = np.zeros(0) if self.sliding is None else self.sliding.friction.shares
         return (shares, True) if shares.size else (self.contact.kernel_arguments[0], False)
+
+    def direction_at(self, time: float) -> FloatArray:
+        """Compression by each coordinate at a nominal time [s], shape (n,)."""
+        return turned(self.direction[:, None], self.turning, time)[:, 0] if self.turning else self.direction
 
     def runout(self, time: float) -> float:
         """Runout error at a time [m]."""

@@ -14,6 +14,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnec
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+AnyConnector = ContactConnector | LinearConnector | NonlinearConnector
 
 _RIGID_MOTION_STIFFNESS = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
 
@@ -92,6 +93,9 @@ class CoupledSystem:
         Load of an angular acceleration s'' = 1/s of the nominal speeds: the shafts' own inertia, and the torque that
         the drive adds to overcome it; zero by default.
     nonlinear : tuple of NonlinearConnector
+
+    The directions d of connectors that turn change with the nominal time. All matrices here are those at the nominal
+    time 0.
     """
 
     components: tuple[Component, ...]
@@ -180,6 +184,22 @@ class CoupledSystem:
     def contact_directions(self) -> FloatArray:
         """Directions of the tooth contacts, shape (n, n_contacts)."""
         return np.array([contact.direction for contact in self.contacts]).reshape(-1, self.size).T
+
+    @cached_property
+    def turning_names(self) -> tuple[str, ...]:
+        """Names of the connectors whose directions turn, once each."""
+        connectors: list[AnyConnector] = [*self.contacts, *self.linear, *self.nonlinear]
+        names = [one.name for one in connectors if one.turning]
+        names += [one.name for one in self.contacts if one.sliding is not None and one.sliding.turning]
+        return tuple(dict.fromkeys(names))
+
+    @cached_property
+    def turning_rates(self) -> tuple[float, ...]:
+        """Rates at which directions turn at the nominal speeds, ascending [rad/s]."""
+        connectors: list[AnyConnector] = [*self.contacts, *self.linear, *self.nonlinear]
+        turning = [one.turning for one in connectors]
+        turning += [one.sliding.turning for one in self.contacts if one.sliding is not None]
+        return tuple(sorted({part.rate for parts in turning for part in parts}))
 
     @property
     def turns(self) -> bool:

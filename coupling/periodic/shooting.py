@@ -167,6 +167,11 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     PeriodicError
         Where the system has laws that the method does not know.
     """
+    if system.turning_names:
+        raise PeriodicError(
+            f"the periodic response does not know directions that turn, those of {', '.join(system.turning_names)}; "
+            "integrate in time by Newmark's method until the motion is steady"
+        )
     if not system.is_smooth:
         nonlinearity = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
         raise PeriodicError(

@@ -10,20 +10,30 @@ which takes K, C, the contacts' directions and the loads to Tᵀ K T and so on (
 MacNeal's residual flexibility without its mass), and keeps the static compliance exact. The error by dampers that act
 on q_r is w C/K of its bearing at a circular frequency w, and the square of that in the retained coordinates.
 
-The condensed connectors' matrices are of low rank: they are kept on the common subspace in which they act.
+The condensed connectors' matrices are of low rank: they are kept on the common subspace in which they act. Coordinates
+on which a connector acts whose directions turn are retained: their equilibrium would turn too.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.machine.components import Component
-from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.connectors import (
+    ContactConnector,
+    LinearConnector,
+    NonlinearConnector,
+    Sliding,
+    TurningPart,
+)
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.time.turning_directions import law_directions
 
 FloatArray = npt.NDArray[np.float64]
+Law = TypeVar("Law", LinearConnector, NonlinearConnector, Sliding)
 
 _SINGULAR_VALUE_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
 
@@ -90,7 +100,8 @@ def condensed(system: CoupledSystem) -> Condensed:
     recovery[retained], recovery[condensed_coordinates] = np.eye(len(retained)), follow
     # Retained coordinates gain connectors between them that act in few directions.
     crossing = damping[np.ix_(retained, condensed_coordinates)] @ follow
-    linked = [part[np.ix_(retained, retained)] for part in system.connector_matrices()]
+    standing = replace(system, linear=tuple(one for one in system.linear if not one.turning))
+    linked = [part[np.ix_(retained, retained)] for part in standing.connector_matrices()]
     linked[0] = linked[0] + stiffness[np.ix_(retained, condensed_coordinates)] @ follow
     linked[1] = (
         linked[1]
@@ -102,15 +113,16 @@ def condensed(system: CoupledSystem) -> Condensed:
     less = CoupledSystem(
         components=tuple(_part(component, among) for component, among in _members(system, is_retained)),
         speeds=system.speeds,
-        linear=(LinearConnector("condensed", directions, connector_stiffness, connector_damping),),
+        linear=(
+            LinearConnector("condensed", directions, connector_stiffness, connector_damping),
+            *(_projected(connector, recovery) for connector in system.linear if connector.turning),
+        ),
         contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
         load=system.load @ recovery,
         harmonic_loads=tuple(replace(load, amplitude=load.amplitude @ recovery) for load in system.harmonic_loads),
         timed_loads=tuple(replace(load, direction=load.direction @ recovery) for load in system.timed_loads),
         acceleration_load=system.acceleration_load @ recovery,
-        nonlinear=tuple(
-            replace(connector, directions=recovery.T @ connector.directions) for connector in system.nonlinear
-        ),
+        nonlinear=tuple(_projected(connector, recovery) for connector in system.nonlinear),
     )
     return Condensed(less, retained, recovery)
 
@@ -126,8 +138,18 @@ def _members(system: CoupledSystem, mask: npt.NDArray[np.bool_]) -> Iterator[tup
 def _reduced(contact: ContactConnector, recovery: FloatArray) -> ContactConnector:
     sliding = contact.sliding
     if sliding is not None:
-        sliding = replace(sliding, directions=recovery.T @ sliding.directions)
-    return replace(contact, direction=contact.direction @ recovery, sliding=sliding)
+        sliding = _projected(sliding, recovery)
+    turning = _turning(contact.turning, recovery)
+    return replace(contact, direction=contact.direction @ recovery, sliding=sliding, turning=turning)
+
+
+def _projected(law: Law, recovery: FloatArray) -> Law:
+    directions, turning = recovery.T @ law.directions, _turning(law.turning, recovery)
+    return replace(law, directions=directions, turning=turning)
+
+
+def _turning(parts: tuple[TurningPart, ...], recovery: FloatArray) -> tuple[TurningPart, ...]:
+    return tuple(part.projected(recovery) for part in parts)
 
 
 def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
@@ -148,8 +170,8 @@ def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
     loaded |= system.acceleration_load != 0.0
     for load in [*(load.amplitude for load in system.harmonic_loads), *(load.direction for load in system.timed_loads)]:
         loaded = loaded | (load != 0.0)
-    sliding = [contact.sliding.directions for contact in system.contacts if contact.sliding is not None]
-    for directions in (system.contact_directions, *sliding, *(connector.directions for connector in system.nonlinear)):
-        loaded = loaded | np.any(directions != 0.0, axis=1)
+    for law in law_directions(system):
+        for part in (law.directions, *(one for turn in law.turning for one in (turn.cosine, turn.sine))):
+            loaded = loaded | np.any(part != 0.0, axis=1)
     beyond = np.diag(system.stiffness) > system.highest_frequency**2
     return np.asarray(~system.resolved & beyond & ~loaded)

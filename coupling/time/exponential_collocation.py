@@ -176,6 +176,8 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, profile: Spee
         reason = "the speed varies, and with it the machine"
     elif system.timed_loads:
         reason = "a load is a table over time"
+    elif system.turning_names:
+        reason = f"the directions of {', '.join(system.turning_names)} turn with a carrier"
     elif not system.is_smooth:
         reason = "it knows no nonlinear bearings" if system.nonlinear else "it knows no friction between the teeth"
     else:

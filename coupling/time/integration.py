@@ -41,7 +41,9 @@ def coarsest_step(system: CoupledSystem, profile: SpeedProfile, largest: float) 
     A step that is a whole number of an excitation's periods would see a constant load, and no local error.
     """
     fastest = max(1.0, float(profile.speed_ratios.max()))
-    highest = max([system.highest_frequency, *(2.0 * np.pi * one for one in harmonic_frequencies(system, fastest))])
+    exciting = [2.0 * np.pi * one for one in harmonic_frequencies(system, fastest)]
+    exciting += [fastest * abs(rate) for rate in system.turning_rates]
+    highest = max([system.highest_frequency, *exciting])
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
     return float(min(largest / fastest, resolving))
 
@@ -274,7 +276,7 @@ class Integration:
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self.bounds(0)[1])
         nominal_time, rates, _ = self.profile.at(1e-7 * first)
-        stored = stored_energy(*self.arrays[:3], q, v, float(nominal_time[0]), float(rates[0]))
+        stored = stored_energy(*self.arrays[:4], q, v, float(nominal_time[0]), float(rates[0]))
         energy = self.held(q, v) + stored
         return Checkpoint(
             block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(5),
@@ -350,9 +352,11 @@ class Integration:
         ------
         DeflectionError
         """
+        turned_to = float(self.profile.at(now)[0][0])
         for contact, peak in zip(self.system.contacts, peaks.tolist(), strict=True):
             compression = max(
-                float(contact.direction @ q) - contact.clearance, peak / contact.contact.unloaded_mean_mesh_stiffness
+                float(contact.direction_at(turned_to) @ q) - contact.clearance,
+                peak / contact.contact.unloaded_mean_mesh_stiffness,
             )
             if compression > contact.compression_limit:
                 raise DeflectionError(

@@ -13,7 +13,13 @@ With W = S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear be
 
 δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
 along directions of its own, columns of D whose deflections no law needs. The projections Uᵀq and Dᵀq follow the same
-recurrence as q. s is the nominal time of :class:`gearwhine.coupling.SpeedProfile`, α = s'' the angular acceleration.
+recurrence as q.
+
+Where connectors turn, D = V M(s) with constant columns V, which take the place of D in all but δ: only the few entries
+of M follow the rotation (:mod:`gearwhine.coupling.connector_forces.turning_kernels`). With H = Mᵀ Vᵀ S⁻¹ V M and the
+rate δ' = Dᵀ v + s' D'ᵀ q, in whose last term q is extrapolated with the last acceleration, q* + β h² a, the equations
+for δ are those above. The error, β h² s' D'ᵀ (a₁ - a) c along a force c δ', is of third order, and adds up to nothing
+over steps. s is the nominal time of :class:`gearwhine.coupling.SpeedProfile`, α = s'' the angular acceleration.
 With β = 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear
 system.
 
@@ -66,6 +72,14 @@ from gearwhine.coupling.connector_forces.kernel_arrays import (
     Scratch,
     Segments,
     StepMatrices,
+    Turning,
+)
+from gearwhine.coupling.connector_forces.turning_kernels import (
+    mix_columns,
+    push_columns,
+    set_laws_at_speed,
+    turn_directions,
+    turned_flexibility,
 )
 from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base
 from gearwhine.numerics.compiled import inner, uncounted
@@ -125,6 +139,8 @@ def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> fl
 def evaluate_powers(
     dynamics: Dynamics,
     contacts: Contacts,
+    turning: Turning,
+    bearings: Bearings,
     stiffness: FloatArray,
     damping: FloatArray,
     speed: float,
@@ -134,9 +150,9 @@ def evaluate_powers(
     """Powers of the loads, of the losses, of the rotation, and of friction from the nominal rotation [W].
 
     The last entry is twice the kinetic energy [J]. With the teeth's energy U(p, δ), δ = dᵀq - e: the rotating teeth
-    give ∂U/∂p p' - f e', of which :func:`_work_on_teeth` adds the first, and the damping takes v C v + c δ'². Together
-    with the loads they change the energy of motion, springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and
-    C_t.
+    give ∂U/∂p p' - f e', of which :func:`_work_on_teeth` adds the first, and the damping takes v C v + c δ'².
+    Directions that turn give f s' D'ᵀq, as if e' were less by s' D'ᵀq. Together with the loads they change the energy
+    of motion, springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and C_t.
     """
     tq, tv, laws = scratch.tq, scratch.tv, scratch.laws
     by_loads, by_damping, square = 0.0, 0.0, 0.0
@@ -158,23 +174,46 @@ def evaluate_powers(
     powers = scratch.powers
     powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = by_loads, by_damping, by_rotation
     powers[BY_FRICTION], powers[TWICE_KINETIC] = 0.0, square
+    along = scratch.dv
+    if turning.rates.size > 0:
+        _add_turning(contacts, bearings, scratch)
+        mix_columns(turning, scratch.mix, scratch.dv, scratch.along_v)
+        along = scratch.along_v
     if scratch.push.size > scratch.delta.size:
-        _add_friction(contacts, speed, scratch)
+        _add_friction(contacts, speed, along, scratch)
 
 
 @inner()
-def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
+def _add_turning(contacts: Contacts, bearings: Bearings, scratch: Scratch) -> None:
+    """Add the powers of bearings that turn, and of the damping of linear ones [W].
+
+    K δ does the work of ½ δᵀ K δ, and with the skew part of K takes ½ δ'ᵀ (K - Kᵀ) δ.
+    """
+    c, delta, rate, push, powers = contacts.phase.size, scratch.delta, scratch.rate, scratch.push, scratch.powers
+    for k in range(c, delta.size):
+        powers[BY_ROTATION] -= push[k] * scratch.slip[k]
+    for number in range(bearings.damping.shape[0]):
+        first, end = bearings.first[number], bearings.first[number + 1]
+        for i in range(end - first):
+            for j in range(end - first):
+                lost = bearings.damping[number, i, j] * rate[c + first + j]
+                lost -= 0.5 * (bearings.linear[number, i, j] - bearings.linear[number, j, i]) * delta[c + first + j]
+                powers[BY_DAMPING] += rate[c + first + i] * lost
+
+
+@inner()
+def _add_friction(contacts: Contacts, speed: float, along: FloatArray, scratch: Scratch) -> None:
     """Add the powers of friction: from the nominal rotation, and to the coordinates [W].
 
     The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. f W s', which
     is Σ μ F_j |w_j| and never negative, comes from the drive of the machine. f w' is small, and excites the coordinates
-    as often as it brakes them.
+    as often as it brakes them. ``along`` (k,) are the rates of the coordinates along the directions.
     """
-    push, dv, powers = scratch.push, scratch.dv, scratch.powers
+    push, powers = scratch.push, scratch.powers
     for k in range(contacts.friction_row.size):
         row = contacts.friction_row[k]
         if row >= 0:
-            powers[BY_ROTATION] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
+            powers[BY_ROTATION] -= push[row] * along[row] + push[row + 1] * along[row + 1]
             sliding = push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]
             powers[BY_FRICTION] += sliding * speed
 
@@ -207,6 +246,7 @@ def _keep_teeth(contacts: Contacts, scratch: Scratch) -> None:
 @inner()
 def write_samples(
     contacts: Contacts,
+    turning: Turning,
     outputs: Outputs,
     samples: Samples,
     number: int,
@@ -253,8 +293,11 @@ def write_samples(
             after = s * h
             speed = speed0 + alpha * after
             nominal_time = nominal_time0 + after * (speed0 + 0.5 * alpha * after)
-            project(teeth, x, samples.compression[row])
-            project(teeth, y, work)
+            if turning.rates.size > 0:
+                _deflections_of_sample(contacts, turning, nominal_time, speed, samples.compression[row], scratch)
+            else:
+                project(teeth, x, samples.compression[row])
+                project(teeth, y, work)
             for k in range(contacts.phase.size):
                 gone, slip = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
                 samples.compression[row, k] -= gone
@@ -265,6 +308,22 @@ def write_samples(
         project(outputs.acceleration, x, samples.acceleration[row])
         number += 1
     return number
+
+
+@inner()
+def _deflections_of_sample(
+    contacts: Contacts, turning: Turning, nominal_time: float, speed: float, compression: FloatArray, scratch: Scratch
+) -> None:
+    """Compression of the contacts (c,) at the sample in ``scratch``, and its rate into its ``delta_free``, by D(s)."""
+    mix, mix_rate, carried = scratch.sample_mix, scratch.sample_mix_rate, scratch.carried
+    turn_directions(turning, nominal_time, speed, mix, mix_rate)
+    project(contacts.direction, scratch.x, scratch.dq_free)
+    project(contacts.direction, scratch.y, scratch.dv_free)
+    mix_columns(turning, mix, scratch.dq_free, compression)
+    mix_columns(turning, mix, scratch.dv_free, scratch.delta_free)
+    mix_columns(turning, mix_rate, scratch.dq_free, carried)
+    for k in range(compression.size):
+        scratch.delta_free[k] += carried[k]
 
 
 # Contacts are evaluated by this part of a segment inside its ends, so that a pair that enters or leaves exactly
@@ -278,6 +337,7 @@ def newmark_steps(
     v: FloatArray,
     dynamics: Dynamics,
     contacts: Contacts,
+    turning: Turning,
     bearings: Bearings,
     matrices: StepMatrices,
     segments: Segments,
@@ -330,10 +390,13 @@ def newmark_steps(
         slot, h, inside = segments.slot[segment], (t1 - t0) / count, INSIDE * (t1 - t0)
         speed = speed0 + alpha * inside
         nominal_time = nominal_time0 + inside * (speed0 + 0.5 * alpha * inside)
+        middle_speed = speed0 + 0.5 * alpha * (t1 - t0)
         load_at(dynamics, t0, nominal_time0, speed0, alpha, scratch.load)
+        if turning.speed_ratios.size > 0:
+            set_laws_at_speed(turning, bearings, middle_speed)
         fresh = _start_segment(
-            q, v, dynamics, contacts, bearings, matrices, slot, nominal_time, speed,
-            speed0 + 0.5 * alpha * (t1 - t0), alpha, scratch,
+            q, v, dynamics, contacts, turning, bearings, matrices, slot, nominal_time, speed, middle_speed, alpha,
+            scratch,
         )  # fmt: skip
         totals[ROTATION_WORK] += fresh - stored
         stored, evaluated = fresh, nominal_time
@@ -348,12 +411,14 @@ def newmark_steps(
                 # The teeth are last evaluated just inside the segment.
                 speed = speed0 + alpha * (after - inside)
                 nominal_time = nominal_time0 + (after - inside) * (speed0 + 0.5 * alpha * (after - inside))
-            if not _contact_response(dynamics, contacts, bearings, matrices, slot, h, nominal_time, speed, scratch):
+            if not _contact_response(
+                dynamics, contacts, turning, bearings, matrices, slot, h, nominal_time, speed, scratch
+            ):
                 unsettled += 1
             if samples.first + next_sample * samples.interval <= t + h:
                 before = step * h
                 next_sample = write_samples(
-                    contacts, outputs, samples, next_sample, t, h,
+                    contacts, turning, outputs, samples, next_sample, t, h,
                     nominal_time0 + before * (speed0 + 0.5 * alpha * before), speed0 + alpha * before, alpha,
                     q, v, dynamics.beta * h * h, dynamics.gamma * h, scratch,
                 )  # fmt: skip
@@ -365,8 +430,8 @@ def newmark_steps(
             if alpha != 0.0:
                 _add_drive_load(q, dynamics, alpha, scratch)
             stored = _accumulate(
-                v, dynamics, contacts, matrices, slot, t, h, evaluated, nominal_time, speed, totals, contact_totals,
-                scratch,
+                v, dynamics, contacts, turning, bearings, matrices, slot, t, h, evaluated, nominal_time, speed, totals,
+                contact_totals, scratch,
             )  # fmt: skip
             evaluated = nominal_time
     return next_sample, stored, curvature, acceleration, unsettled
@@ -378,6 +443,7 @@ def _start_segment(
     v: FloatArray,
     dynamics: Dynamics,
     contacts: Contacts,
+    turning: Turning,
     bearings: Bearings,
     matrices: StepMatrices,
     slot: int,
@@ -391,17 +457,12 @@ def _start_segment(
 
     The touching pairs change at the event: forces, powers and energy start anew from the new set of pairs.
     """
-    a, dq, dv, delta, rate = scratch.a, scratch.dq, scratch.dv, scratch.delta, scratch.rate
-    c, push = contacts.phase.size, scratch.push
+    a, dq, dv, push = scratch.a, scratch.dq, scratch.dv, scratch.push
     project(dynamics.connectors, q, scratch.tq)
     project(dynamics.connectors, v, scratch.tv)
     project(contacts.direction, q, dq)
     project(contacts.direction, v, dv)
-    for k in range(c):
-        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
-        delta[k], rate[k] = dq[k] - gone, dv[k] - scratch.slip[k]
-    for k in range(c, delta.size):
-        delta[k] = dq[k]
+    _deflections(contacts, turning, nominal_time, speed, dq, dv, dq, scratch.delta, scratch.rate, scratch)
     evaluate_forces(contacts, bearings, nominal_time, scratch)
     for j in range(push.size):
         scratch.push_before[j], scratch.push_change[j] = push[j], 0.0
@@ -414,16 +475,57 @@ def _start_segment(
         _add_drive_load(q, dynamics, alpha, scratch)
     _connector_forces(matrices, slot, scratch.tq, scratch.tv, scratch)
     add_rows(dynamics.connectors, scratch.connector_force, -1.0, a)
-    add_rows(contacts.direction, push, -1.0, a)
+    pushed = push
+    if turning.rates.size > 0:
+        push_columns(turning, scratch.mix, push, scratch.pushed)
+        pushed = scratch.pushed
+    add_rows(contacts.direction, pushed, -1.0, a)
     project(dynamics.connectors, a, scratch.ta)
     project(contacts.direction, a, scratch.da)
     evaluate_powers(
-        dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
-    )
+        dynamics, contacts, turning, bearings, matrices.connector_stiffness[slot], matrices.connector_damping[slot],
+        speed, v, scratch,
+    )  # fmt: skip
     for k in range(scratch.powers.size):
         scratch.powers_before[k] = scratch.powers[k]
     _keep_teeth(contacts, scratch)
     return stored_in(dynamics, matrices.connector_stiffness[slot], scratch)
+
+
+@inner(forceinline=True)
+def _deflections(
+    contacts: Contacts,
+    turning: Turning,
+    nominal_time: float,
+    speed: float,
+    dq: FloatArray,
+    dv: FloatArray,
+    dq_carried: FloatArray,
+    delta: FloatArray,
+    rate: FloatArray,
+    scratch: Scratch,
+) -> None:
+    """Deflections and rates of the laws (e + c,), by projections of displacements and rates on their columns.
+
+    Rates of bearings are those of directions that turn alone; no other law of a bearing has damping. ``dq_carried``
+    (m,) are the projections of the displacements that directions that turn move past.
+    """
+    c, along_q, along_v = contacts.phase.size, dq, dv
+    if turning.rates.size > 0:
+        turn_directions(turning, nominal_time, speed, scratch.mix, scratch.mix_rate)
+        mix_columns(turning, scratch.mix, dq, scratch.along_q)
+        mix_columns(turning, scratch.mix, dv, scratch.along_v)
+        mix_columns(turning, scratch.mix_rate, dq_carried, scratch.carried)
+        along_q, along_v = scratch.along_q, scratch.along_v
+    for k in range(c):
+        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
+        delta[k], rate[k] = along_q[k] - gone, along_v[k] - scratch.slip[k]
+    for k in range(c, delta.size):
+        delta[k] = along_q[k]
+    if turning.rates.size > 0:
+        for k in range(delta.size):
+            scratch.slip[k] = (scratch.slip[k] if k < c else 0.0) - scratch.carried[k]
+            rate[k] = along_v[k] - scratch.slip[k]
 
 
 @inner()
@@ -517,6 +619,7 @@ def _accelerations_without_contact(
 def _contact_response(
     dynamics: Dynamics,
     contacts: Contacts,
+    turning: Turning,
     bearings: Bearings,
     matrices: StepMatrices,
     slot: int,
@@ -527,23 +630,33 @@ def _contact_response(
 ) -> bool:
     """Solve for the contact forces by Newton's iteration, with the accelerations; return whether it converged."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
-    a_end, da, push, delta, rate = scratch.a_end, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
+    a_end, da, delta, rate = scratch.a_end, scratch.da, scratch.delta_free, scratch.rate_free
     if delta.size == 0:
         return True
-    c, flexibility = contacts.phase.size, matrices.flexibility[slot]
+    of_columns, turns = matrices.flexibility[slot], turning.rates.size > 0
+    if turns:
+        for j in range(da.size):
+            scratch.dq_carried[j] = scratch.dq_predicted[j] + displaced * da[j]
     project(contacts.direction, a_end, da)
-    for k in range(c):
-        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
-        delta[k] = scratch.dq_predicted[k] + displaced * da[k] - gone
-        rate[k] = scratch.dv_predicted[k] + moved * da[k] - scratch.slip[k]
-    for k in range(c, delta.size):
-        delta[k] = scratch.dq_predicted[k] + displaced * da[k]
-    converged = solve_contact_forces(contacts, bearings, nominal_time, flexibility, displaced, moved, scratch)
-    add_rows(matrices.contact[slot], push, -1.0, a_end)
-    add_rows(matrices.contact_connectors[slot], push, -1.0, scratch.ta_end)
     for j in range(da.size):
-        for k in range(push.size):
-            da[j] -= flexibility[j, k] * push[k]
+        scratch.dq_free[j] = scratch.dq_predicted[j] + displaced * da[j]
+        scratch.dv_free[j] = scratch.dv_predicted[j] + moved * da[j]
+    _deflections(
+        contacts, turning, nominal_time, speed, scratch.dq_free, scratch.dv_free, scratch.dq_carried, delta, rate,
+        scratch,
+    )  # fmt: skip
+    flexibility, pushed = of_columns, scratch.push
+    if turns:
+        turned_flexibility(turning, scratch.mix, of_columns, scratch.mixed, scratch.flexibility)
+        flexibility, pushed = scratch.flexibility, scratch.pushed
+    converged = solve_contact_forces(contacts, bearings, nominal_time, flexibility, displaced, moved, scratch)
+    if turns:
+        push_columns(turning, scratch.mix, scratch.push, pushed)
+    add_rows(matrices.contact[slot], pushed, -1.0, a_end)
+    add_rows(matrices.contact_connectors[slot], pushed, -1.0, scratch.ta_end)
+    for j in range(da.size):
+        for k in range(pushed.size):
+            da[j] -= of_columns[j, k] * pushed[k]
     return converged
 
 
@@ -592,6 +705,8 @@ def _accumulate(
     v: FloatArray,
     dynamics: Dynamics,
     contacts: Contacts,
+    turning: Turning,
+    bearings: Bearings,
     matrices: StepMatrices,
     slot: int,
     t: float,
@@ -609,8 +724,9 @@ def _accumulate(
     """
     powers, powers_before = scratch.powers, scratch.powers_before
     evaluate_powers(
-        dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
-    )
+        dynamics, contacts, turning, bearings, matrices.connector_stiffness[slot], matrices.connector_damping[slot],
+        speed, v, scratch,
+    )  # fmt: skip
     totals[LOAD_WORK] += 0.5 * h * (powers_before[BY_LOADS] + powers[BY_LOADS])
     totals[DAMPING_LOSS] += 0.5 * h * (powers_before[BY_DAMPING] + powers[BY_DAMPING])
     totals[ROTATION_WORK] += 0.5 * h * (powers_before[BY_ROTATION] + powers[BY_ROTATION])

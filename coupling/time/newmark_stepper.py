@@ -22,6 +22,7 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.integration import Attempt, Checkpoint, timed_amplitude
 from gearwhine.coupling.time.settings import TransientOutputs, TransientSettings
 from gearwhine.coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
+from gearwhine.coupling.time.turning_directions import with_own_laws
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -83,8 +84,10 @@ class NewmarkStepper:
 
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
         arrays = self.arrays
+        bearings = with_own_laws(arrays.bearings) if arrays.turning.speed_ratios.size > 0 else arrays.bearings
         head = (
-            q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self._cache.matrices, segments, arrays.outputs,
+            q, v, arrays.dynamics, arrays.contacts, arrays.turning, bearings, self._cache.matrices, segments,
+            arrays.outputs,
         )  # fmt: skip
         sample, stored, curvature, acceleration, unsettled = newmark_steps(
             *head, samples, state.sample, state.stored, totals, contacts, scratch_room(arrays)

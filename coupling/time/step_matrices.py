@@ -3,6 +3,7 @@
 `stored_energy` at the start of a time integration is in plain Python, as it is evaluated once.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from gearwhine.coupling.connector_forces.kernel_arrays import (
     Scratch,
     Segments,
     StepMatrices,
+    Turning,
     bearing_arrays,
 )
 from gearwhine.coupling.machine.connectors import SpeedTable
@@ -28,6 +30,7 @@ from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.condensation import common_span
 from gearwhine.coupling.time.settings import TransientOutputs
+from gearwhine.coupling.time.turning_directions import mixing, turning_arrays, turning_laws, with_own_laws
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -41,6 +44,7 @@ class KernelArrays(NamedTuple):
 
     dynamics: Dynamics
     contacts: Contacts
+    turning: Turning
     bearings: Bearings
     outputs: Outputs
 
@@ -50,8 +54,11 @@ def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float,
     output_rows = outputs.displacement, outputs.velocity, outputs.acceleration
     # Rows are writable: a kernel is compiled anew for rows that are not.
     rows = (np.require(rows, requirements=("C", "W")) for rows in output_rows)
-    bearings = bearing_arrays(system.nonlinear)
-    return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
+    contacts = contact_arrays(system)
+    turning, columns, bearings = turning_arrays(system, bearing_arrays(system.nonlinear))
+    if columns is not None:
+        contacts = contacts._replace(direction=columns)
+    return KernelArrays(_dynamics(system, beta, gamma), contacts, turning, bearings, Outputs(*rows))
 
 
 def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
@@ -72,8 +79,11 @@ def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: i
 def scratch_room(arrays: KernelArrays) -> Scratch:
     """Scratch arrays of the kernel."""
     r, n = arrays.dynamics.connectors.shape
-    c, k = arrays.contacts.phase.size, len(arrays.contacts.direction)
+    c, m, e = arrays.contacts.phase.size, len(arrays.contacts.direction), arrays.turning.direction.size
+    # Directions that stand still are their own columns.
+    k = int(arrays.turning.direction.max()) + 1 if e else m
     u, b = c + arrays.bearings.axis.size, arrays.bearings.preload.size
+    turned = k if e else 0
     shapes: dict[str, tuple[int, ...]] = {
         "laws": (c, 6),
         "laws_before": (c, 6),
@@ -87,7 +97,12 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         "powers": (5,),
         "powers_before": (5,),
         "block": (arrays.dynamics.gyroscopic.shape[2],),
+        "mixed": (m if e else 0, turned),
+        "flexibility": (turned, turned),
+        "pushed": (m if e else 0,),
     }
+    shapes |= dict.fromkeys(("mix", "mix_rate", "sample_mix", "sample_mix_rate"), (e,))
+    shapes |= dict.fromkeys(("along_q", "along_v", "carried"), (turned,))
     shapes |= dict.fromkeys(
         ("a", "before", "a_end", "q_predicted", "v_predicted", "load", "unbalanced", "x", "y"), (n,)
     )
@@ -95,8 +110,9 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         ("tq", "tv", "ta", "tq_predicted", "tv_predicted", "ta_end", "connector_force", "response", "correction"), (r,)
     )
     shapes |= dict.fromkeys(
-        ("dq", "dv", "da", "dq_predicted", "dv_predicted", "push", "push_before", "push_change"), (k,)
+        ("dq", "dv", "da", "dq_predicted", "dv_predicted", "dq_free", "dv_free", "dq_carried"), (m,)
     )
+    shapes |= dict.fromkeys(("push", "push_before", "push_change"), (k,))
     shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "delta_before", "rate_before"), (u,))
     return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
 
@@ -186,11 +202,13 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     whole = system.own_stiffness, system.own_damping
     diagonals = [matrix.diagonal().copy() for matrix in whole]
     beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
-    ratios = system.connector_speed_ratios
+    # Connectors that turn are laws of their own.
+    standing = replace(system, linear=tuple(one for one in system.linear if not one.turning))
+    ratios = standing.connector_speed_ratios
     matrices = [
         component + connector
         for ratio in ratios
-        for component, connector in zip(beside, system.connector_matrices(float(ratio)), strict=True)
+        for component, connector in zip(beside, standing.connector_matrices(float(ratio)), strict=True)
     ]
     directions, cores = common_span(matrices)
     connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
@@ -256,6 +274,7 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
     for k, contact in enumerate(system.contacts):
         errors[k, : len(contact.errors)] = contact.errors
     rows = [system.contact_directions.T, *(connector.directions.T for connector in system.nonlinear)]
+    rows += [connector.directions.T for connector in turning_laws(system)]
     numbers = [contact.contact.kernel_arguments[0] for contact in system.contacts]
     law_at = np.cumsum([0, *map(len, numbers)])[:-1]
     friction_row, shares_at = np.full(c, -1, dtype=np.int64), np.full(c, -1, dtype=np.int64)
@@ -288,13 +307,14 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
 def stored_energy(
     dynamics: Dynamics,
     contacts: Contacts,
+    turning: Turning,
     bearings: Bearings,
     q: FloatArray,
     v: FloatArray,
     nominal_time: float,
     rate: float,
 ) -> float:
-    """Energy in teeth, nonlinear bearings and connectors that change with the speed [J], as in the kernel.
+    """Energy in teeth, nonlinear bearings and connectors that turn or change with the speed [J], as in the kernel.
 
     Parameters
     ----------
@@ -307,6 +327,14 @@ def stored_energy(
     energy = _of_connectors(dynamics, q, rate) if dynamics.connector_speed_ratios.size > 1 else 0.0
     c = contacts.phase.size
     delta, moved = contacts.direction @ q, contacts.direction[:c] @ v
+    if turning.rates.size > 0:
+        from gearwhine.coupling.connector_forces.turning_kernels import set_laws_at_speed
+
+        mix, mix_rate = mixing(turning, nominal_time)
+        delta, moved = delta @ mix, ((contacts.direction @ v) @ mix + rate * (delta @ mix_rate))[:c]
+        if turning.speed_ratios.size > 0:
+            bearings = with_own_laws(bearings)
+            set_laws_at_speed(turning, bearings, rate)
     amplitude, w, phase = np.moveaxis(contacts.errors, 2, 0)
     angle = w * nominal_time + phase
     delta[:c] -= contacts.clearance + (amplitude * np.cos(angle)).sum(axis=1)

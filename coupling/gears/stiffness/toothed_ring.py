@@ -29,7 +29,8 @@ tractions the energy is
 
 A, B and D of the blocks of H_n between the two circles, under the three conditions of equilibrium of all loads. The
 free ring moves as a rigid body, without energy; H_0 and H_1 are taken for balanced loads. The compliance of the bolts
-adds to D. A pin transmits no moment: the mean motion of its seat is held alone.
+adds to D; a bolt of radial stiffness k_r on a seat of width w resists the seat's rotation with ``k_r w^2 / 12``. A pin
+transmits no moment: the mean motion of its seat is held alone.
 
 The compliance of a tooth then depends on its place between the bolts; the teeth pass them as the ring turns against the
 load. The mean over all places enters the stiffness of the mesh,
@@ -259,7 +260,10 @@ def _by_bolts(
     own = _energy(seat, whole[:, :, 2:, 2:], section.seat).sum(axis=0).real
     among = np.zeros((bolts, unknowns, bolts, unknowns))
     holding = _resultants(seat[turns, 1], section.seat, around)
-    yielding = holding[[2, 0]].T @ np.diag(section.bolt) @ holding[[2, 0]] / (1.0 + section.poisson_ratio)
+    # Radial and tangential force, and moment about the seat, whose stiffness is even over its width w: k_r w^2 / 12.
+    forces = np.array([holding[2], holding[0], holding[1] - around * holding[0]])
+    softnesses = np.array([*section.bolt, 12.0 * section.bolt[0] / (2.0 * section.seat * around) ** 2])
+    yielding = forces.T @ (softnesses[:, None] * forces) / (1.0 + section.poisson_ratio)
     for first in range(bolts):
         for second in range(bolts):
             same = first == second
