@@ -77,6 +77,7 @@ def overlap_while_pushed_in(one: Gear, internal: Gear, distance: float, first: f
     return max(depth_of_overlap(outline, gear_outline(one, turned, (at, 0.0))) for at in places)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("small", "teeth", "addendum"), [(20, -32, 0.8), (20, -31, 0.8), (20, -29, 0.6), (17, -28, 0.8)]
 )
