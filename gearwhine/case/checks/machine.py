@@ -128,6 +128,11 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
 def _check_planets(draft: Draft) -> Iterator[Finding]:
     """Yield planets without a bearing, and carriers whose own axis turns with another."""
     held = {entry.get("rotor") for _, entry in draft.raw_entries("bearing")}
+    for index, one in draft.planetary:
+        fixed = draft.rotor(one.held_rotor([gear for _, gear in draft.gears]))
+        if fixed is not None and fixed.carrier is not None:
+            expected = f'sun, ring or carrier; "{fixed.name}" is a planet, whose axis turns with "{fixed.carrier}"'
+            yield Finding(("planetary", index, "fixed"), expected)
     for index, rotor in draft.rotors:
         if rotor.carrier is None:
             continue
