@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, pi
-from typing import Protocol
+from typing import Any, Protocol
 
 from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, seat_findings
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain, GivenSpeed, Output
@@ -427,6 +427,21 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     if inertia == 0.0:
         inertia = rotor_with_gears(rotor, gears).polar_inertia
     return inertia if inertia > 0.0 else gear.gear.polar_inertia
+
+
+def on_rigid_seats(
+    shafts: Sequence[Shaft], bearings: Sequence[MountedBearing], torque_supports: Sequence[TorqueSupport]
+) -> dict[str, Any]:
+    """Return parts of a machine with rigid seats in place of those of a housing; bearings between shafts stay.
+
+    They are the keywords ``shafts``, ``bearings`` and ``torque_supports`` of :class:`gearwhine.coupling.Machine`.
+    """
+    names = {shaft.name for shaft in shafts}
+    return {
+        "shafts": [replace(shaft, rim_seat=None) for shaft in shafts],
+        "bearings": [one if one.seat in names else replace(one, seat=None) for one in bearings],
+        "torque_supports": [replace(support, seat=None) for support in torque_supports],
+    }
 
 
 def name_findings(machine: MachineParts) -> Iterator[Finding]:

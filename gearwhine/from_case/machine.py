@@ -41,7 +41,13 @@ def describe_machine(case: Case, housing: HousingModes | HousingComponent | None
     if housing is None:
         return machine
     parts = case.parts
-    return replace(machine, bearings=parts.bearings, torque_supports=parts.torque_supports, housing=housing)
+    return replace(
+        machine,
+        shafts=parts.shafts,
+        bearings=parts.bearings,
+        torque_supports=parts.torque_supports,
+        housing=housing,
+    )
 
 
 def rotor_bearings(parts: Parts) -> dict[str, BearingsUnderLoad]:
