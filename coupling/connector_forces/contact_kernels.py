@@ -283,10 +283,13 @@ def solve_contact_forces(
             for number in range(bearings.preload.size):
                 first, end = bearings.first[number], bearings.first[number + 1]
                 for j in range(first, end):
-                    value = 0.0
-                    for i in range(first, end):
-                        value += flexibility[k, c + i] * tangents[number, i - first, j - first]
-                    jacobian[k, c + j] = by_displacement * value
+                    jacobian[k, c + j] = 0.0
+                for i in range(first, end):
+                    flexible = flexibility[k, c + i]
+                    for j in range(first, end):
+                        jacobian[k, c + j] += flexible * tangents[number, i - first, j - first]
+                for j in range(first, end):
+                    jacobian[k, c + j] *= by_displacement
             jacobian[k, k] += 1.0
         solve_in_place(jacobian, residual)
         farthest = 0.0

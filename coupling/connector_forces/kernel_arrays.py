@@ -178,14 +178,14 @@ class Scratch(NamedTuple):
     dq_free: FloatArray  # (m,)
     dv_free: FloatArray  # (m,)
     dq_carried: FloatArray  # (m,) projections of the displacement that turning directions move past
-    along_q: FloatArray  # (k,) displacements along directions that turn, their rates, and how these carry deflections
+    along_q: FloatArray  # (k,) displacements along directions that turn, rates (`dv` where none does), s' D'ᵀ q
     along_v: FloatArray  # (k,)
     carried: FloatArray  # (k,)
     mix: FloatArray  # (e,) entries of M, and their rates; the same at a sample
     mix_rate: FloatArray  # (e,)
     sample_mix: FloatArray  # (e,)
     sample_mix_rate: FloatArray  # (e,)
-    mixed: FloatArray  # (m, k) flexibility between columns and directions that turn
+    mixed: FloatArray  # (k, m) flexibility between columns and directions that turn
     flexibility: FloatArray  # (k, k) flexibility of directions that turn
     pushed: FloatArray  # (m,) forces of the laws along the columns of directions that turn
     push: FloatArray  # (k,) forces of the laws

@@ -51,23 +51,24 @@ def push_columns(turning: Turning, mix: FloatArray, push: FloatArray, out: Float
         out[turning.column[e]] += mix[e] * push[turning.direction[e]]
 
 
-@inner()
+@inner(fastmath={"contract"})
 def turned_flexibility(
     turning: Turning, mix: FloatArray, of_columns: FloatArray, work: FloatArray, out: FloatArray
 ) -> None:
-    """Flexibility Mᵀ H M (k, k) of the directions by that of the columns, H (m, m); ``work`` (m, k) is overwritten."""
-    for j in range(of_columns.shape[0]):
-        for k in range(work.shape[1]):
-            work[j, k] = 0.0
-        for e in range(mix.size):
-            work[j, turning.direction[e]] += mix[e] * of_columns[j, turning.column[e]]
-    for i in range(out.shape[0]):
+    """Flexibility Mᵀ H M (k, k) of the directions by that of the columns, H (m, m); ``work`` (k, m) is overwritten."""
+    for i in range(work.shape[0]):
+        for j in range(work.shape[1]):
+            work[i, j] = 0.0
         for k in range(out.shape[1]):
             out[i, k] = 0.0
     for e in range(mix.size):
-        i, j, value = turning.direction[e], turning.column[e], mix[e]
-        for k in range(out.shape[1]):
-            out[i, k] += value * work[j, k]
+        value, row, of_column = mix[e], work[turning.direction[e]], of_columns[turning.column[e]]
+        for j in range(row.size):
+            row[j] += value * of_column[j]
+    for e in range(mix.size):
+        k, j, value = turning.direction[e], turning.column[e], mix[e]
+        for i in range(out.shape[0]):
+            out[i, k] += value * work[i, j]
 
 
 @uncounted()

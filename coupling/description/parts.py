@@ -324,10 +324,10 @@ def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
 def gear_disc(mounted: ShaftGear, rotor: Rotor) -> Disc:
     """Return the disc that a gear is on its rotor, at its centre of mass.
 
-    A gear without a bore is made from its shaft, which has the mass of the core: unless its inertia is given, the disc
-    is the part of the blank outside the shaft.
+    An external gear without a bore is made from its shaft, which has the mass of the core: unless its inertia is given,
+    the disc is the part of the blank outside the shaft.
     """
-    if mounted.inertia is not None or mounted.gear.bore > 0.0:
+    if mounted.inertia is not None or mounted.gear.bore > 0.0 or mounted.gear.is_internal:
         return Disc(mounted.at, *mounted.body_inertia)
     blank = blank_around(mounted.gear, _shaft_under(mounted, rotor))
     return Disc(mounted.at + blank.centre, *blank.inertia)

@@ -247,17 +247,11 @@ _HANGS_OFF = 0.05
 def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
     """Yield a shaft as thick as the gear on it, and a face that hangs off the end of its shaft."""
     part, half = ("gear", gear.name), 0.5 * gear.face_width
-    for left, right, inner, outer in _shaft_lengths(rotor):
+    if gear.is_internal:
+        yield from _ring_fit_findings(gear, rotor, at)
+        return
+    for left, right, _, outer in _shaft_lengths(rotor):
         over = min(right, at + half) - max(left, at - half)
-        if gear.is_internal:
-            if over > max(_SLACK, 1e-3 * gear.face_width) and outer > -gear.tip_radius and inner < gear.outer_radius:
-                expected = (
-                    f"a ring around its shaft; that has a diameter of {in_mm(2.0 * outer)} there, and the ring a tip "
-                    f"circle of {in_mm(-2.0 * gear.tip_radius)}"
-                )
-                yield Finding(part, "at", None, expected)
-                break
-            continue
         if over > max(_SLACK, 1e-3 * gear.face_width) and outer >= gear.root_circle_radius:
             expected = (
                 f"a gear whose teeth stand on its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the root "
@@ -273,6 +267,20 @@ def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
     if beyond > _HANGS_OFF * gear.face_width:
         expected = f"a place at which the shaft carries the face; {in_mm(beyond)} of it hang off the end"
         yield Finding(part, "at", float(at), expected, "warning")
+
+
+def _ring_fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
+    """Yield a shaft in the teeth of the ring that it carries, by a disc or a bell beside them."""
+    half = 0.5 * gear.face_width
+    for left, right, inner, outer in _shaft_lengths(rotor):
+        over = min(right, at + half) - max(left, at - half)
+        if over > max(_SLACK, 1e-3 * gear.face_width) and outer > -gear.tip_radius and inner < gear.outer_radius:
+            expected = (
+                f"a ring around its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the ring a tip circle of "
+                f"{in_mm(-2.0 * gear.tip_radius)}"
+            )
+            yield Finding(("gear", gear.name), "at", None, expected)
+            return
 
 
 def bearing_findings(

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.machine.components import Component, PedestalComponent, RotorComponent
-from gearwhine.coupling.machine.connectors import TurningPart
+from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
 
@@ -223,13 +223,23 @@ class Frames:
                 load += part.cosine @ connector.offset
                 phasor: ComplexArray = np.asarray(1j * part.sine - part.cosine, dtype=np.complex128)
                 harmonic.append(HarmonicLoad(part.rate, np.asarray(phasor @ connector.offset), "turning"))
+        frames = {connector.name: frame for connector, frame in zip(system.linear, linear, strict=True)}
         return replace(
             system,
             linear=tuple(connectors),
             contacts=tuple(
-                replace(contact, turning=self.turning_parts(contact.direction[:, None], frame))
-                for contact, frame in zip(system.contacts, contacts, strict=True)
+                self._turned_contact(contact, frame) for contact, frame in zip(system.contacts, contacts, strict=True)
+            ),
+            nonlinear=tuple(
+                replace(law, turning=self.turning_parts(law.directions, frames[law.name])) for law in system.nonlinear
             ),
             load=load,
             harmonic_loads=tuple(harmonic),
         )
+
+    def _turned_contact(self, contact: ContactConnector, frame: float) -> ContactConnector:
+        sliding = contact.sliding
+        if sliding is not None:
+            sliding = replace(sliding, turning=self.turning_parts(sliding.directions, frame))
+        turning = self.turning_parts(contact.direction[:, None], frame)
+        return replace(contact, turning=turning, sliding=sliding)

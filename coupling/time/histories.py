@@ -225,7 +225,7 @@ def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
         rows = rotor.rim_section(gear.name, gear.at)[[0, 1, 5]]
         moved.append(machine.rows(rotor.name, rows))
-    deflections = np.vstack([moved[0], *(connector.directions.T for connector in _bearings(machine))])
+    deflections = np.vstack([moved[0], *(_deflection_rows(connector) for connector in _bearings(machine))])
     return TransientOutputs(
         displacement=np.vstack([*moved, deflections]),
         velocity=deflections,
@@ -252,13 +252,14 @@ def histories(machine: CoupledMachine, result: MotionRecord) -> Histories:
     forces = {}
     column = 0
     for connector in _bearings(machine):
-        columns = slice(column, column + connector.directions.shape[1])
+        columns = slice(column, column + len(_deflection_rows(connector)))
         column = columns.stop
-        forces[connector.name] = _force(connector, deflections[:, columns], result.velocity[:, columns], rates)
+        moved, moving = deflections[:, columns], result.velocity[:, columns]
+        if connector.turning:
+            moved, moving = _turned_deflections(connector, moved, moving, nominal_time, rates)
+        forces[connector.name] = _force(connector, moved, moving, rates)
         if connector.name in nonlinear:
-            forces[connector.name] += _beside_linear(
-                connector, nonlinear[connector.name], deflections[:, columns], nominal_time
-            )
+            forces[connector.name] += _beside_linear(connector, nonlinear[connector.name], moved, nominal_time)
     sensors = _in_space(machine, result)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
@@ -275,6 +276,36 @@ def histories(machine: CoupledMachine, result: MotionRecord) -> Histories:
         },
         bearing_axes={connector.name: connector.axes for connector in _bearings(machine)},
     )
+
+
+def _deflection_rows(connector: LinearConnector) -> FloatArray:
+    """Rows of a bearing's deflections; where it turns, those of D(0) - Σ A, then A and B of each part."""
+    parts = connector.turning
+    still = sum((-part.cosine for part in parts), connector.directions)
+    return np.asarray(np.hstack([still, *(half for part in parts for half in (part.cosine, part.sine))]).T)
+
+
+def _turned_deflections(
+    connector: LinearConnector,
+    displacement: FloatArray,
+    velocity: FloatArray,
+    nominal_time: FloatArray,
+    speed_ratios: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Deflections D(s)ᵀq of a bearing that turns and their rates D(s)ᵀq' + s' D'(s)ᵀq, shapes (s, d).
+
+    Displacement and velocity are those of the rows of its parts.
+    """
+    d = connector.directions.shape[1]
+    moved, moving = displacement[:, :d], velocity[:, :d]
+    for number, part in enumerate(connector.turning):
+        a, b = slice((2 * number + 1) * d, (2 * number + 2) * d), slice((2 * number + 2) * d, (2 * number + 3) * d)
+        angle = part.rate * nominal_time[:, None]
+        cosine, sine, rate = np.cos(angle), np.sin(angle), part.rate * speed_ratios[:, None]
+        moved = moved + displacement[:, a] * cosine + displacement[:, b] * sine
+        moving = moving + velocity[:, a] * cosine + velocity[:, b] * sine
+        moving = moving + rate * (displacement[:, b] * cosine - displacement[:, a] * sine)
+    return moved, moving
 
 
 def _in_space(machine: CoupledMachine, result: MotionRecord) -> dict[str, FloatArray]:

@@ -139,8 +139,6 @@ def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> fl
 def evaluate_powers(
     dynamics: Dynamics,
     contacts: Contacts,
-    turning: Turning,
-    bearings: Bearings,
     stiffness: FloatArray,
     damping: FloatArray,
     speed: float,
@@ -151,8 +149,9 @@ def evaluate_powers(
 
     The last entry is twice the kinetic energy [J]. With the teeth's energy U(p, δ), δ = dᵀq - e: the rotating teeth
     give ∂U/∂p p' - f e', of which :func:`_work_on_teeth` adds the first, and the damping takes v C v + c δ'².
-    Directions that turn give f s' D'ᵀq, as if e' were less by s' D'ᵀq. Together with the loads they change the energy
-    of motion, springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and C_t.
+    Directions that turn give f s' D'ᵀq, as if e' were less by s' D'ᵀq; :func:`_add_turning` adds that of the bearings.
+    Together with the loads they change the energy of motion, springs and teeth. ``stiffness`` and ``damping`` (r, r)
+    are K_t and C_t.
     """
     tq, tv, laws = scratch.tq, scratch.tv, scratch.laws
     by_loads, by_damping, square = 0.0, 0.0, 0.0
@@ -174,13 +173,8 @@ def evaluate_powers(
     powers = scratch.powers
     powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = by_loads, by_damping, by_rotation
     powers[BY_FRICTION], powers[TWICE_KINETIC] = 0.0, square
-    along = scratch.dv
-    if turning.rates.size > 0:
-        _add_turning(contacts, bearings, scratch)
-        mix_columns(turning, scratch.mix, scratch.dv, scratch.along_v)
-        along = scratch.along_v
     if scratch.push.size > scratch.delta.size:
-        _add_friction(contacts, speed, along, scratch)
+        _add_friction(contacts, speed, scratch)
 
 
 @inner()
@@ -202,18 +196,18 @@ def _add_turning(contacts: Contacts, bearings: Bearings, scratch: Scratch) -> No
 
 
 @inner()
-def _add_friction(contacts: Contacts, speed: float, along: FloatArray, scratch: Scratch) -> None:
+def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
     """Add the powers of friction: from the nominal rotation, and to the coordinates [W].
 
     The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. f W s', which
     is Σ μ F_j |w_j| and never negative, comes from the drive of the machine. f w' is small, and excites the coordinates
-    as often as it brakes them. ``along`` (k,) are the rates of the coordinates along the directions.
+    as often as it brakes them.
     """
-    push, powers = scratch.push, scratch.powers
+    push, dv, powers = scratch.push, scratch.along_v, scratch.powers
     for k in range(contacts.friction_row.size):
         row = contacts.friction_row[k]
         if row >= 0:
-            powers[BY_ROTATION] -= push[row] * along[row] + push[row + 1] * along[row + 1]
+            powers[BY_ROTATION] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
             sliding = push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]
             powers[BY_FRICTION] += sliding * speed
 
@@ -483,9 +477,10 @@ def _start_segment(
     project(dynamics.connectors, a, scratch.ta)
     project(contacts.direction, a, scratch.da)
     evaluate_powers(
-        dynamics, contacts, turning, bearings, matrices.connector_stiffness[slot], matrices.connector_damping[slot],
-        speed, v, scratch,
-    )  # fmt: skip
+        dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
+    )
+    if turning.rates.size > 0:
+        _add_turning(contacts, bearings, scratch)
     for k in range(scratch.powers.size):
         scratch.powers_before[k] = scratch.powers[k]
     _keep_teeth(contacts, scratch)
@@ -654,6 +649,11 @@ def _contact_response(
         push_columns(turning, scratch.mix, scratch.push, pushed)
     add_rows(matrices.contact[slot], pushed, -1.0, a_end)
     add_rows(matrices.contact_connectors[slot], pushed, -1.0, scratch.ta_end)
+    if turns:
+        project(of_columns, pushed, scratch.dq_free)
+        for j in range(da.size):
+            da[j] -= scratch.dq_free[j]
+        return converged
     for j in range(da.size):
         for k in range(pushed.size):
             da[j] -= of_columns[j, k] * pushed[k]
@@ -723,10 +723,13 @@ def _accumulate(
     The teeth were last evaluated at the nominal times ``nominal_time0``, before the step, and ``nominal_time``.
     """
     powers, powers_before = scratch.powers, scratch.powers_before
+    if turning.rates.size > 0:
+        mix_columns(turning, scratch.mix, scratch.dv, scratch.along_v)
     evaluate_powers(
-        dynamics, contacts, turning, bearings, matrices.connector_stiffness[slot], matrices.connector_damping[slot],
-        speed, v, scratch,
-    )  # fmt: skip
+        dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
+    )
+    if turning.rates.size > 0:
+        _add_turning(contacts, bearings, scratch)
     totals[LOAD_WORK] += 0.5 * h * (powers_before[BY_LOADS] + powers[BY_LOADS])
     totals[DAMPING_LOSS] += 0.5 * h * (powers_before[BY_DAMPING] + powers[BY_DAMPING])
     totals[ROTATION_WORK] += 0.5 * h * (powers_before[BY_ROTATION] + powers[BY_ROTATION])

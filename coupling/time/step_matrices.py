@@ -97,7 +97,7 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         "powers": (5,),
         "powers_before": (5,),
         "block": (arrays.dynamics.gyroscopic.shape[2],),
-        "mixed": (m if e else 0, turned),
+        "mixed": (turned, m),
         "flexibility": (turned, turned),
         "pushed": (m if e else 0,),
     }
@@ -114,7 +114,10 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
     )
     shapes |= dict.fromkeys(("push", "push_before", "push_change"), (k,))
     shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "delta_before", "rate_before"), (u,))
-    return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
+    room = {name: np.zeros(shape) for name, shape in shapes.items()}
+    if not e:
+        room["along_v"] = room["dv"]
+    return Scratch(**room)
 
 
 class StepCache:

@@ -11,10 +11,12 @@ from scipy.linalg import expm
 from gearwhine.coupling import (
     CoupledSystem,
     CouplingError,
+    MountedBearing,
     PeriodicError,
     TransientError,
     TransientOutputs,
     TransientSettings,
+    assemble_machine,
     periodic_response,
     simulate,
 )
@@ -23,7 +25,7 @@ from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
-from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.components import Component, rotor_component
 from gearwhine.coupling.machine.connectors import (
     ContactConnector,
     LinearConnector,
@@ -35,8 +37,10 @@ from gearwhine.coupling.machine.connectors import (
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.condensation import condensed
+from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.transient import TransientResult
 from gearwhine.coupling.time.turning_directions import law_directions, mixing, turning_arrays
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, rolling_state
 
 FloatArray = npt.NDArray[np.float64]
@@ -327,3 +331,39 @@ def test_a_connector_has_at_most_five_directions_that_turn() -> None:
     system = CoupledSystem((body(np.eye(6), np.eye(6)),), (0.0,), (many,))
     with pytest.raises(CouplingError, match="many: 6 directions that turn; expected at most 5 of one connector"):
         simulate(system, TransientSettings(1.0, 0.0, 0.1, 0.1), everything(6))
+
+
+# ----------------------------------------------------------------------------------------------------- forces recorded
+
+
+@pytest.mark.parametrize("profile", [None, SpeedProfile(np.array([0.0, 2e-3]), np.array([0.5, 1.5]))])
+def test_the_force_of_a_bearing_that_turns_follows_its_directions(profile: SpeedProfile | None) -> None:
+    steel = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
+    shaft = Rotor("shaft", [Segment(0.1, 0.04, 0.0, steel)] * 2, [Disc(0.1, 2.0, 8e-3, 4e-3)])
+    stiffness = np.array([[1e8, 2e7], [2e7, 3e8]])
+    bearings = [Bearing(name, at, stiffness, 1e-5 * stiffness) for name, at in (("left", 0.0), ("right", 0.2))]
+    rotor = rotor_component("shaft", modal_rotor(shaft, bearings, count=2), start=0.0)
+    mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
+    machine = assemble_machine([rotor], None, speeds={"shaft": 300.0}, bearings=mounted)
+    left, right = machine.system.linear
+    part = TurningPart(700.0, left.directions, np.roll(left.directions, 1, axis=1) * np.array([-1.0, 1.0]))
+    load = 1e3 * left.directions[:, 0] + 300.0 * right.directions[:, 1]
+    system = replace(machine.system, linear=(replace(left, turning=(part,)), right), load=load)
+    machine = replace(machine, system=system, speed_profile=profile)
+    outputs, n = transient_outputs(machine), system.size
+    both = replace(
+        outputs,
+        displacement=np.vstack([outputs.displacement, np.eye(n)]),
+        velocity=np.vstack([outputs.velocity, np.eye(n)]),
+    )
+    result = simulate(system, TransientSettings(2e-3, 0.0, 1e-4, 1e-5, tolerance=1e-2), both, speed_profile=profile)
+    found = histories(machine, result).bearing_reaction
+    nominal_time, rates, _ = (profile or SpeedProfile.steady()).at(result.times)
+    for row, (s, rate) in enumerate(zip(nominal_time, rates, strict=True)):
+        q, v = result.displacement[row, -n:], result.velocity[row, -n:]
+        c, sn = np.cos(700.0 * s), np.sin(700.0 * s)
+        directions, slope = part.cosine * c + part.sine * sn, 700.0 * rate * (part.sine * c - part.cosine * sn)
+        expected = stiffness @ (directions.T @ q + 1e-5 * (directions.T @ v + slope.T @ q))
+        np.testing.assert_allclose(found["left"][row], expected, rtol=1e-9, atol=1e-6)
+        expected = stiffness @ (right.directions.T @ (q + 1e-5 * v))
+        np.testing.assert_allclose(found["right"][row], expected, rtol=1e-9, atol=1e-6)

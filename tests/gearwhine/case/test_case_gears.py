@@ -111,6 +111,12 @@ def test_the_support_of_a_ring_reaches_its_gear_and_makes_its_mesh_softer() -> N
         gears_document(analyse_pairs(case, solve_gears(case.parts)))["pairs"][0]["stiffness_n_per_m"] for case in cases
     )
     assert bolted["mean"] < 0.8 * clamped["mean"]
+    springs = {"kind": "springs", "radial_stiffness": "2e10 N/m", "tangential_stiffness": "2e10 N/m"}
+    for model, words in (("elastic-ring", "between the 6 bolts"), ("iso6336", "does not know the support")):
+        doubts = check_document(case_of(pinion, ring | {"ring_support": bolts}, stiffness={"model": model}))["warnings"]
+        assert [words in one["message"] for one in doubts if one["name"] == "ring support"] == [True]
+    even = check_document(case_of(pinion, ring | {"ring_support": springs}))
+    assert "ring support" not in [one["name"] for one in even.get("warnings", [])]
 
 
 def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) -> None:
