@@ -40,6 +40,16 @@ def test_a_planet_that_is_written_once_is_mounted_count_times(case: Case) -> Non
     assert machine.placed_sets[0].angles == pytest.approx([0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0])
 
 
+def test_pairs_that_the_file_has_are_taken_and_the_others_made() -> None:
+    document = stage()
+    document["gear_pair"] = [{"driver": "s", "driven": "p", "friction": 0.05}]
+    pairs = read(document).gear_pair
+    assert [(one.driver, one.driven, one.friction) for one in pairs] == [
+        *(("s", f"p {n}", 0.05) for n in (1, 2, 3)),
+        *((f"p {n}", "r", 0.0) for n in (1, 2, 3)),
+    ]
+
+
 def test_the_resolved_case_is_the_same_case(case: Case) -> None:
     import tomllib
 
@@ -125,6 +135,48 @@ def test_a_set_behind_a_parallel_stage_and_key_paths_to_a_planet() -> None:
         *(f'gear."p {n}".teeth' for n in (1, 2, 3)),
         *(f'rotor."p {n}".segments' for n in (1, 2, 3)),
     }
+
+
+def test_a_ravigneaux_set_of_two_sets_that_share_planets_and_ring() -> None:
+    """Small sun 24, short 18, long 21, large sun 33, ring 75; ratios by the stationary ratios 75/24 and -75/33."""
+    apart = math.acos((42.0**2 + 54.0**2 - 39.0**2) / (2.0 * 42.0 * 54.0))
+    short, long = rotor("short") | {"axis": [0.047, 0.05]}, rotor("long")
+    long["axis"] = [0.005 + 0.054 * math.cos(apart), 0.05 + 0.054 * math.sin(apart)]
+    document = stage(fixed="carrier", sun="s", planets=["short", "front"])
+    document["rotor"] = [
+        *(one for one in document["rotor"] if one["name"] != "p"),
+        short,
+        long,
+        rotor("large", "40 mm"),
+    ]
+    document["bearing"] = [each for one in document["rotor"] for each in bearings(one["name"])]
+    for name, length, places in (("sun", 35, (5, 30)), ("short", 35, (5, 30)), ("large", 45, (25, 40))):
+        next(one for one in document["rotor"] if one["name"] == name)["segments"][0]["length"] = f"{length} mm"
+        for each, at in zip((one for one in document["bearing"] if one["rotor"] == name), places, strict=True):
+            each["at"] = f"{at} mm"
+    front, back = {"at": "15 mm", "face_width": "15 mm"}, {"at": "48 mm", "face_width": "15 mm"}
+    document["gear"] = [
+        gear("s", "sun", 24, **front),
+        gear("short", "short", 18, **front),
+        gear("front", "long", 21, **front),
+        gear("back", "long", 21, **back),
+        gear("l", "large", 33, **(back | {"at": "8 mm"})),
+        gear("r", "ring", -75, addendum=0.8, **front),
+    ]
+    second = {
+        "name": "second",
+        "sun": "l",
+        "ring": "r",
+        "planets": [f"back {n}" for n in (1, 2, 3)],
+        "carrier": "carrier",
+    }
+    document["planetary"].append(second | {"ring": None, "fixed": None})
+    document["planetary"][1] = {key: value for key, value in document["planetary"][1].items() if value is not None}
+    parts = read(document).parts
+    assert parts.speeds["ring"] / parts.speeds["sun"] == pytest.approx(24 / 75, rel=1e-12)
+    assert parts.speeds["large"] / parts.speeds["ring"] == pytest.approx(-75 / 33, rel=1e-12)
+    assert [len(one.meshes) for one in parts.placed_sets] == [9, 3]
+    assert parts.placed_sets[0].assembly_number == 75 - 24
 
 
 def _changed(kind: str, name: str, **changes: Any) -> Any:
