@@ -89,11 +89,14 @@ def test_an_unloaded_tooth_yields_to_what_has_no_resultant() -> None:
     # Of a half plane under the traction T_1 / sqrt(1 - x^2), 2 mu times the work is pi theta^2 (kappa + 1) / 4.
     stretch = flexibility[9, 9]
     assert 0.25 * math.pi * theta**2 * (STRESS + 1.0) < stretch < 0.6 * math.pi * theta**2 * (STRESS + 1.0)
-    # The tractions of a beam's root do no work: linear normal stress as shapes 1 and 3 of the radial traction, ...
+    # The tractions of a beam's root do no work: linear normal stress, and shear as a parabola.
     places = np.cos(math.pi * (np.arange(400) + 0.5) / 400)
-    linear = [2.0 * np.mean(np.sqrt(1.0 - places**2) * places * np.cos(k * np.arccos(places))) for k in range(8)]
-    beam = np.concatenate([linear, np.zeros(8)])
-    assert abs(beam @ flexibility @ beam) < 1e-3 * (beam @ beam) * stretch
+    for first, traction in ((0, places), (8, 1.0 - places**2)):
+        beam = np.zeros(16)
+        for k in range(8):
+            weight = (1.0 if k == 0 else 2.0) * np.sqrt(1.0 - places**2)
+            beam[first + k] = np.mean(weight * traction * np.cos(k * np.arccos(places)))
+        assert abs(beam @ flexibility @ beam) < 1e-6 * (beam @ beam) * stretch
 
 
 def test_seats_all_around_clamp_the_ring() -> None:
@@ -270,6 +273,23 @@ def test_shares_of_a_clamped_rings_inertia() -> None:
     shares = rotation_shares(RING)
     assert shares.coupling == pytest.approx((teeth + np.trapezoid(s * r**3, r)) / whole, rel=1e-7)
     assert shares.rim == pytest.approx((teeth + np.trapezoid(s**2 * r**3, r)) / whole, rel=1e-7)
+
+
+def test_shares_of_a_ring_on_springs() -> None:
+    """The outside turns by the springs' part; the ring between is as a smooth one, within what its teeth stiffen it."""
+    stiffness = 1e11
+    gear = bolted(RingSupport("springs", radial_stiffness=stiffness, tangential_stiffness=stiffness))
+    a, b, pitch = -RING.root_circle_radius, RING.outer_radius, -RING.pitch_radius
+    shear = RING.youngs_modulus / (2.0 * (1.0 + RING.poisson_ratio))
+    r = np.linspace(a, b, 20001)
+    rotation = 1.0 / (stiffness * b**2) + (r**-2 - b**-2) / (4.0 * math.pi * shear * RING.face_width)
+    s = rotation / rotation[0]
+    assert 0.2 < s[-1] < 0.8  # or nothing would be tried
+    teeth = 0.25 * (a**4 - pitch**4)
+    whole = teeth + np.trapezoid(r**3, r)
+    shares = rotation_shares(gear)
+    assert shares.coupling == pytest.approx((teeth + np.trapezoid(s * r**3, r)) / whole, rel=0.01)
+    assert shares.rim == pytest.approx((teeth + np.trapezoid(s**2 * r**3, r)) / whole, rel=0.01)
 
 
 @pytest.mark.parametrize(
