@@ -91,18 +91,17 @@ def draw(gmsh: Any, s: Stage) -> list[Entity]:
     return list(d.fuse([*body, *land[0]]))
 
 
-def main() -> None:
-    """Write the file."""
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else TARGET
+def write(path: Path, sizes: Stage = Stage()) -> None:
+    """Write the housing as a STEP file."""
     with gmsh_session("planetary-stage") as gmsh:
-        solids = draw(gmsh, Stage())
+        solids = draw(gmsh, sizes)
         gmsh.model.occ.synchronize()
-        if len(solids) != 1:
-            raise SystemExit(f"{len(solids)} solids; expected the housing in one piece")
-        gmsh.write(str(target))
-    text = with_names(target.read_text(encoding="ascii"), ("planetary stage",))
-    target.write_text(compact(text, "planetary-stage"), encoding="ascii")
+        if len(solids) != 1 or set(gmsh.model.getEntities(3)) != set(solids):
+            raise RuntimeError(f"the drawing has the solids {gmsh.model.getEntities(3)}; expected one")
+        gmsh.write(str(path))
+    text = with_names(path.read_text(encoding="ascii"), ("planetary stage",))
+    path.write_text(compact(text, "planetary-stage"), encoding="ascii")
 
 
 if __name__ == "__main__":
-    main()
+    write(Path(sys.argv[1]) if len(sys.argv) > 1 else TARGET)

@@ -228,12 +228,12 @@ class SetMember:
     @property
     def power(self) -> float:
         """Power that enters the set by the member [W]."""
-        return self.torque * self.speed
+        return self.torque * self.speed + 0.0
 
     @property
     def rolling_power(self) -> float:
         """Part of the power that enters through meshes, as the carrier sees it; the rest turns with the carrier [W]."""
-        return self.torque * self.relative_speed
+        return self.torque * self.relative_speed + 0.0
 
 
 @dataclass(frozen=True)

@@ -240,7 +240,6 @@ class _Expansion:
         for place, bearing in self.entries("bearing"):
             if bearing.get("rotor") in rotors and "seat" not in bearing:
                 self.document["bearing"][place] = {**bearing, "seat": carrier}
-        unpaired = not self._has_pairs(planets)
         try:
             turns = self._angles(one)
             errors = self._pin_errors(one, len(turns))
@@ -251,8 +250,7 @@ class _Expansion:
             self._copy(one, [str(name) for name in rotors], turns, errors, places)
             for key in ("count", "angles", "pin_errors"):
                 one.pop(key, None)
-        if unpaired:
-            self._pair_gears(index, one, len(planets) if turns else 1)
+        self._pair_gears(index, one, len(planets) if turns else 1)
 
     def _fixed(self, one: Mapping[str, Any]) -> Any:
         """Return what holds a member as a table, where it is given by a seat or a stiffness."""
@@ -269,10 +267,6 @@ class _Expansion:
             return {"member": one.get("ring"), "stiffness": fixed}
         return fixed
 
-    def _has_pairs(self, planets: Sequence[Any]) -> bool:
-        """Whether the file has pairs with gears of a set's planets."""
-        return any({pair.get("driver"), pair.get("driven")} & set(planets) for _, pair in self.entries("gear_pair"))
-
     def _way(self, one: Mapping[str, Any], planets: Sequence[Any]) -> list[tuple[str, str]]:
         """Return driver and driven gear of each mesh between sun, one planet and ring, in the order of the power.
 
@@ -284,13 +278,19 @@ class _Expansion:
         return [ends for ends in pairwise(way) if self._rotor_of(ends[0]) != self._rotor_of(ends[1])]
 
     def _pair_gears(self, index: int, one: Mapping[str, Any], of_each: int) -> None:
-        """Add the pairs of a set between sun, planets and ring, ``of_each`` gears of every planet."""
+        """Add the pairs of sun, ring and planets, ``of_each`` gears of every planet, of which the file has none."""
         listed, planets = self.document.setdefault("gear_pair", []), list(one["planets"])
         if not isinstance(listed, list):
             return
+        gears, central = set(planets), {one.get("sun"), one.get("ring")}
+        written = [{pair.get("driver"), pair.get("driven")} for _, pair in self.entries("gear_pair")]
         ways = [self._way(one, planets[place : place + of_each]) for place in range(0, len(planets), of_each)]
         for meshes in zip(*ways, strict=False):
             for driver, driven in meshes:
+                ends = {driver, driven}
+                known = (pair & central & ends if ends & central else pair <= gears for pair in written if pair & gears)
+                if any(known):
+                    continue
                 self.origins["gear_pair", len(listed)] = ("planetary", index)
                 listed.append({"driver": driver, "driven": driven})
 

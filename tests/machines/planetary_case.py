@@ -8,7 +8,7 @@ STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/
 def rotor(name: str, start: str = "0 mm", diameter: str = "24 mm", **more: Any) -> dict[str, Any]:
     bore = {"bore": more.pop("bore")} if "bore" in more else {}
     segment = {"length": "60 mm", "diameter": diameter, **bore}
-    axis = {} if name == "p" else {"axis": ["0 mm", "50 mm"]}
+    axis = {} if name == "p" else {"axis": ["5 mm", "50 mm"]}
     return {"name": name, "start": start, "material": "steel", "segments": [segment], **axis, **more}
 
 
