@@ -21,7 +21,8 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ
+from gearwhine.coupling.machine.components import Component, RotorComponent
 from gearwhine.coupling.machine.connectors import (
     ContactConnector,
     LinearConnector,
@@ -31,10 +32,14 @@ from gearwhine.coupling.machine.connectors import (
 )
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.time.turning_directions import law_directions
+from gearwhine.rotors.modes.modal_rotor import FEWEST_MODES
 
 FloatArray = npt.NDArray[np.float64]
 Law = TypeVar("Law", LinearConnector, NonlinearConnector, Sliding)
 
+_DEFAULT_LIMIT = 2.0 * np.pi * LATERAL_LIMIT_HZ
+_ABOVE_CERTIFIED = 1.0 + 1e-6  # ratio to the highest certified mode from which a frequency is above it
+_NO_COUPLING = 1e-4  # part of the stiffnesses of a residual coordinate and another below which they are not coupled
 _SINGULAR_VALUE_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
 
 
@@ -78,6 +83,40 @@ class Condensed:
     system: CoupledSystem
     kept: npt.NDArray[np.int64]
     recovery: FloatArray
+
+
+def with_static_attachments(system: CoupledSystem) -> CoupledSystem:
+    """Return a system with connectors that turn in which modes of shafts above their limit are residual.
+
+    They carry the static response of the truncated modes, of a short shaft at frequencies that no step should resolve;
+    the exact method, which steps over them, does not know connectors that turn. Other systems are returned as they are.
+    A shaft keeps modes up to a limit, those certified, and at least so few that the limit may be below them: of as few,
+    those below the default limit count.
+    """
+    if not system.turning_names:
+        return system
+    return replace(system, components=tuple(map(_with_static_attachments, system.components)))
+
+
+def _with_static_attachments(component: Component) -> Component:
+    if not isinstance(component, RotorComponent):
+        return component
+    modal = component.modal
+    certified = [modes.frequencies[: modes.certificate.found] for modes in (modal.lateral, modal.torsional)]
+    limit = max(
+        float(found.max(initial=0.0) if len(found) > FEWEST_MODES else min(found.max(initial=0.0), _DEFAULT_LIMIT))
+        for found in certified
+    )
+    own_stiffness = np.diag(component.stiffness)
+    own = np.sqrt(np.abs(own_stiffness))
+    is_static = (own > _ABOVE_CERTIFIED * limit) & np.isin(component.kinds, ["rotor", "torsion", "axial"])
+    kinds = tuple("residual" if static else kind for kind, static in zip(component.kinds, is_static, strict=True))
+    # A spring has no Coriolis and gyroscopic terms: these couplings, tiny beside its stiffness, would make the rank of
+    # what is not diagonal as large as the number of coordinates.
+    coupling = component.stiffness - np.diag(own_stiffness)
+    of_static = is_static[:, None] | is_static
+    dropped = of_static & (np.abs(coupling) < _NO_COUPLING * np.outer(own, own))
+    return replace(component, kinds=kinds, stiffness=np.where(dropped, 0.0, coupling) + np.diag(own_stiffness))
 
 
 def condensed(system: CoupledSystem) -> Condensed:

@@ -26,7 +26,7 @@ from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum, whole_period_samples
-from gearwhine.coupling.time.condensation import condensed
+from gearwhine.coupling.time.condensation import condensed, with_static_attachments
 from gearwhine.coupling.time.exponential_collocation import CollocationStepper, exact_part
 from gearwhine.coupling.time.histories import HISTORY_QUANTITIES, Histories
 from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint, Integration, sample_times
@@ -170,6 +170,7 @@ def _prepared(
     """Integration of the condensed coordinates by the method that the settings ask for, and their initial state."""
     if samples_per_block < 1:
         raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
+    system = with_static_attachments(system)
     followed = condensed(system)
     if followed.system is not system:
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)

@@ -102,7 +102,7 @@ def _spread(rotor: Rotor) -> tuple[FloatArray, FloatArray]:
 
 # Number of modes of a kind above which a wrong unit is assumed: every mode is a coordinate of a dense system.
 MOST_MODES = 300
-_FEWEST = 4  # number of modes below which a frequency limit is taken as a mistake
+FEWEST_MODES = 4  # number of modes below which a frequency limit is taken as a mistake
 
 
 @dataclass(frozen=True)
@@ -270,11 +270,11 @@ def modal_rotor(
     lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
     torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
     ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
-    if frequency_limit is not None and lateral.count < _FEWEST:
-        least = min(_FEWEST, bending_shaft(rotor, supports).available_modes)
+    if frequency_limit is not None and lateral.count < FEWEST_MODES:
+        least = min(FEWEST_MODES, bending_shaft(rotor, supports).available_modes)
         lateral = solve_lateral_modes(rotor, supports, count=int(least))
-    if frequency_limit is not None and torsional.count < _FEWEST:
-        least = min(_FEWEST, rod_shaft(rotor, (), "torsion").available_modes)
+    if frequency_limit is not None and torsional.count < FEWEST_MODES:
+        least = min(FEWEST_MODES, rod_shaft(rotor, (), "torsion").available_modes)
         torsional = solve_torsional_modes(rotor, count=int(least))
     tilted = [bearing.at for bearing in bearings if not {3, 4}.isdisjoint(bearing.axes)]
     lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
