@@ -1152,4 +1152,7 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
     }
     if machine.gravity is not None:
         rules["gravity"] = Numbers(3)
+    if machine.given_speeds and (machine.motor is not None or machine.load is not None):
+        expected = "none beside a motor or load over speed: a speed that is free follows from one drive"
+        yield Finding(part, "given_speeds", None, expected)
     yield from attribute_findings(part, machine, **rules)

@@ -219,8 +219,11 @@ class StudiedMachine:
 
     def on_rigid_seats(self) -> "Machine":
         """Return the machine without its housing, each bearing in a rigid seat."""
-        bearings = [replace(bearing, seat=None) for bearing in self.machine.bearings]
-        return replace(self.machine, bearings=bearings, housing=None)
+        from gearwhine.coupling.description.parts import on_rigid_seats
+
+        machine = self.machine
+        seated = on_rigid_seats(machine.shafts, machine.bearings, machine.torque_supports)
+        return replace(machine, **seated, housing=None)
 
     def ranked_parts(self, machine: "Machine", point: "OperatingPoint", line: str | None) -> "LoadSensitivity":
         """Rank the parts of the machine by what they change in gear pairs and in a line."""

@@ -288,7 +288,7 @@ _ENTITY = re.compile(r"#(\d+) = (.*?);\n", re.DOTALL)
 _GEOMETRY = ("CARTESIAN_POINT", "DIRECTION", "VECTOR", "AXIS2_PLACEMENT_3D", "LINE", "CIRCLE", "PLANE")
 
 
-def compact(text: str) -> str:
+def compact(text: str, title: str = "two-stage-reducer") -> str:
     """Shorten a STEP file of OpenCASCADE's: no curves in surfaces' parameters, no entity twice, a neutral header.
 
     An edge keeps its curve in space alone, from which a reader finds those in the parameters of its two surfaces. Equal
@@ -320,7 +320,7 @@ def compact(text: str) -> str:
     used = _reached(entities)
     names = {number: place for place, number in enumerate((n for n in entities if n in used), start=1)}
     lines = [f"#{names[number]}={refer(body, names)};" for number, body in entities.items() if number in used]
-    name = "FILE_NAME('two-stage-reducer','',(''),(''),'','gearwhine','');"
+    name = f"FILE_NAME('{title}','',(''),(''),'','gearwhine','');"
     head = re.sub(r"FILE_NAME\(.*?\);", name, head, flags=re.DOTALL)
     return head + "DATA;\n" + "\n".join(lines) + "\nENDSEC;\nEND-ISO-10303-21;\n"
 

@@ -35,6 +35,7 @@ from gearwhine.coupling.gears.loaded.optimal_relief import (
     transmission_error_harmonics,
 )
 from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.stiffness.models import ring_support_warning
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.machine_description import Machine
@@ -484,5 +485,8 @@ def geometry_warnings(pair: GearPair, geometry: GearPairGeometry) -> list[dict[s
                 f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
             )
             warnings.append({"name": "undercut", "message": message})
-    backlash = pair.backlash_warning(geometry)
-    return warnings if backlash is None else [*warnings, {"name": "backlash", "message": backlash}]
+    doubts = {
+        "ring support": ring_support_warning(pair.stiffness, geometry),
+        "backlash": pair.backlash_warning(geometry),
+    }
+    return [*warnings, *({"name": name, "message": text} for name, text in doubts.items() if text is not None)]

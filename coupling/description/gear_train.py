@@ -320,7 +320,8 @@ class GearTrain:
         Notes
         -----
         Speeds fix the power through every pair of a tree. Where pairs form a loop, the smallest flows that balance are
-        taken, which is what equal contacts carry, see :func:`~.train_matrix.least_flows`: B is the constraint matrix,
+        taken, which is what equal contacts carry, see
+        :func:`gearwhine.coupling.description.train_matrix.least_flows`: B is the constraint matrix,
         each column times the speed of its shaft and each row over the speed of its mesh, and P the power that enters
         each shaft, both over the speed of the first driver. The shaft of the first driver, held shafts and those with
         given speeds take what is left.

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, pi
-from typing import Protocol
+from typing import Any, Protocol
 
 from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, seat_findings
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain, GivenSpeed, Output
@@ -324,10 +324,10 @@ def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
 def gear_disc(mounted: ShaftGear, rotor: Rotor) -> Disc:
     """Return the disc that a gear is on its rotor, at its centre of mass.
 
-    A gear without a bore is made from its shaft, which has the mass of the core: unless its inertia is given, the disc
-    is the part of the blank outside the shaft.
+    An external gear without a bore is made from its shaft, which has the mass of the core: unless its inertia is given,
+    the disc is the part of the blank outside the shaft.
     """
-    if mounted.inertia is not None or mounted.gear.bore > 0.0:
+    if mounted.inertia is not None or mounted.gear.bore > 0.0 or mounted.gear.is_internal:
         return Disc(mounted.at, *mounted.body_inertia)
     blank = blank_around(mounted.gear, _shaft_under(mounted, rotor))
     return Disc(mounted.at + blank.centre, *blank.inertia)
@@ -427,6 +427,21 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     if inertia == 0.0:
         inertia = rotor_with_gears(rotor, gears).polar_inertia
     return inertia if inertia > 0.0 else gear.gear.polar_inertia
+
+
+def on_rigid_seats(
+    shafts: Sequence[Shaft], bearings: Sequence[MountedBearing], torque_supports: Sequence[TorqueSupport]
+) -> dict[str, Any]:
+    """Return parts of a machine with rigid seats in place of those of a housing; bearings between shafts stay.
+
+    They are the keywords ``shafts``, ``bearings`` and ``torque_supports`` of :class:`gearwhine.coupling.Machine`.
+    """
+    names = {shaft.name for shaft in shafts}
+    return {
+        "shafts": [replace(shaft, rim_seat=None) for shaft in shafts],
+        "bearings": [one if one.seat in names else replace(one, seat=None) for one in bearings],
+        "torque_supports": [replace(support, seat=None) for support in torque_supports],
+    }
 
 
 def name_findings(machine: MachineParts) -> Iterator[Finding]:
@@ -556,6 +571,13 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             names = ", ".join(map(repr, rings)) or "none"
             expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
             yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
+        for on_it in machine.gears:
+            support = on_it.gear.ring_support
+            if shaft.rim_seat is None or on_it.shaft != shaft.name or support is None:
+                continue
+            if support.kind in ("springs", "bolts", "pins"):
+                expected = f'a ring_support of the housing, as the rim follows the bore of "{shaft.rim_seat}"'
+                yield Finding(("gear", on_it.name), "ring_support", support.kind, expected)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:

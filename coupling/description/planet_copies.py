@@ -30,7 +30,7 @@ class PlanetCopies:
 
     @property
     def gear_names(self) -> tuple[str, ...]:
-        """Names of the gears, for :class:`~.planetary.PlanetarySet`."""
+        """Names of the gears, for :class:`gearwhine.coupling.PlanetarySet`."""
         return tuple(gear.name for gear in self.gears)
 
 

@@ -228,12 +228,12 @@ class SetMember:
     @property
     def power(self) -> float:
         """Power that enters the set by the member [W]."""
-        return self.torque * self.speed
+        return self.torque * self.speed + 0.0
 
     @property
     def rolling_power(self) -> float:
         """Part of the power that enters through meshes, as the carrier sees it; the rest turns with the carrier [W]."""
-        return self.torque * self.relative_speed
+        return self.torque * self.relative_speed + 0.0
 
 
 @dataclass(frozen=True)
@@ -346,7 +346,7 @@ class PlacedSet:
         if not number:
             return (0.0,) * len(self.groups)
         steps = [self.angle_from_first(group) * number / (2.0 * math.pi) for group in range(len(self.groups))]
-        return tuple(step - round(step) for step in steps)
+        return tuple(round(step - round(step), 9) for step in steps)
 
     @property
     def can_be_assembled(self) -> bool:
@@ -391,7 +391,7 @@ class PlacedSet:
         name = self.of.sun if kind == "sun" else self.of.ring
         teeth = 0 if name is None else abs(self.gears[name].teeth)
         turns = [self.angle_from_first(group) / (2.0 * math.pi) for group in range(len(self.groups))]
-        return tuple(_part_of_period(-sense * teeth * turn) for turn in turns)
+        return tuple(part_of_period(-sense * teeth * turn) for turn in turns)
 
     def sense(self, kind: Literal["sun", "ring"], speeds: Mapping[str, float]) -> int:
         """Sense in which sun or ring turns relative to the carrier, 1 counter-clockwise or -1; 1 at rest.
@@ -542,8 +542,8 @@ def _common_divisor(first: Fraction, second: Fraction) -> Fraction:
     return Fraction(math.gcd(int(first * denominator), int(second * denominator)), denominator)
 
 
-def _part_of_period(phase: float) -> float:
-    """Return a phase from 0 to 1, rounding about whole periods aside."""
+def part_of_period(phase: float) -> float:
+    """Return a phase from 0 to 1 [periods], rounding about whole periods aside."""
     part = phase % 1.0
     return 0.0 if min(part, 1.0 - part) < 1e-9 else part
 

@@ -138,6 +138,7 @@ def overlap_findings(
     meshing: Iterable[frozenset[str]] = (),
     radial: Iterable[str] = (),
     stand_ins: Iterable[str] = (),
+    carriers: Mapping[str, str] | None = None,
 ) -> Iterator[Finding]:
     """Yield parts that stand in each other, each two of them once.
 
@@ -151,7 +152,10 @@ def overlap_findings(
         or damper has.
     stand_ins : iterable of str
         Gears whose body a disc at their place stands for.
+    carriers : mapping of str to str, optional
+        Carrier of each planet's shaft. A planet turns on its bearing, and its pin is in the carrier.
     """
+    carried = dict(carriers or {})
     pairs, holding, replaced = set(meshing), set(radial), set(stand_ins)
     found: set[frozenset[tuple[Part, str]]] = set()
     ordered = sorted(enumerate(solids), key=lambda item: item[1].left)
@@ -161,12 +165,21 @@ def overlap_findings(
                 break
             first, second = (one, other) if number < later else (other, one)
             key = frozenset(((first.part, first.attribute), (second.part, second.attribute)))
-            if key in found or not _foreign(first, second, pairs, holding, replaced):
+            if key in found or not _foreign(first, second, pairs, holding, replaced) or _on_pin(first, second, carried):
                 continue
             length = overlap(first, second)
             if length > 0.0:
                 found.add(key)
                 yield _overlapping(first, second, length)
+
+
+def _on_pin(first: PlacedSolid, second: PlacedSolid, carriers: Mapping[str, str]) -> bool:
+    """Whether two solids are a planet and its bearing inside it, or its pin or bearing and the carrier around them."""
+    kinds = {first.part[0], second.part[0]}
+    if first.shaft == second.shaft:
+        return first.shaft in carriers and kinds == {"gear", "bearing"}
+    of_carrier = carriers.get(first.shaft) == second.shaft or carriers.get(second.shaft) == first.shaft
+    return of_carrier and kinds <= {"shaft", "bearing"}
 
 
 def _foreign(
@@ -234,17 +247,11 @@ _HANGS_OFF = 0.05
 def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
     """Yield a shaft as thick as the gear on it, and a face that hangs off the end of its shaft."""
     part, half = ("gear", gear.name), 0.5 * gear.face_width
-    for left, right, inner, outer in _shaft_lengths(rotor):
+    if gear.is_internal:
+        yield from _ring_fit_findings(gear, rotor, at)
+        return
+    for left, right, _, outer in _shaft_lengths(rotor):
         over = min(right, at + half) - max(left, at - half)
-        if gear.is_internal:
-            if over > max(_SLACK, 1e-3 * gear.face_width) and outer > -gear.tip_radius and inner < gear.outer_radius:
-                expected = (
-                    f"a ring around its shaft; that has a diameter of {in_mm(2.0 * outer)} there, and the ring a tip "
-                    f"circle of {in_mm(-2.0 * gear.tip_radius)}"
-                )
-                yield Finding(part, "at", None, expected)
-                break
-            continue
         if over > max(_SLACK, 1e-3 * gear.face_width) and outer >= gear.root_circle_radius:
             expected = (
                 f"a gear whose teeth stand on its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the root "
@@ -260,6 +267,20 @@ def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
     if beyond > _HANGS_OFF * gear.face_width:
         expected = f"a place at which the shaft carries the face; {in_mm(beyond)} of it hang off the end"
         yield Finding(part, "at", float(at), expected, "warning")
+
+
+def _ring_fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
+    """Yield a shaft in the teeth of the ring that it carries, by a disc or a bell beside them."""
+    half = 0.5 * gear.face_width
+    for left, right, inner, outer in _shaft_lengths(rotor):
+        over = min(right, at + half) - max(left, at - half)
+        if over > max(_SLACK, 1e-3 * gear.face_width) and outer > -gear.tip_radius and inner < gear.outer_radius:
+            expected = (
+                f"a ring around its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the ring a tip circle of "
+                f"{in_mm(-2.0 * gear.tip_radius)}"
+            )
+            yield Finding(("gear", gear.name), "at", None, expected)
+            return
 
 
 def bearing_findings(
@@ -400,7 +421,8 @@ def machine_findings(
         or (not isinstance(held.law, GapLaw) and (held.bearing.stiffness[..., :2, :2] > 0.0).any())
     ]
     stand_ins = [mounted.name for mounted in gears if mounted.inertia is not None]
-    yield from overlap_findings(placed_solids(shafts, gears, bearings), meshing, radial, stand_ins)
+    carriers = {shaft.name: shaft.carrier for shaft in shafts if shaft.carrier is not None}
+    yield from overlap_findings(placed_solids(shafts, gears, bearings), meshing, radial, stand_ins, carriers)
 
 
 def support_findings(shaft: Shaft, bearings: Sequence[MountedBearing]) -> Iterator[Finding]:

@@ -30,6 +30,7 @@ from gearwhine.coupling.gears.geometry.modifications import RootRelief as RootRe
 from gearwhine.coupling.gears.geometry.modifications import TipRelief as TipRelief
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry as GearPairGeometry
 from gearwhine.coupling.gears.geometry.path_of_contact import path_of_contact as path_of_contact
+from gearwhine.coupling.gears.geometry.ring_support import RingSupport as RingSupport
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair as GearPair
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair as LoadedGearPair
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair as load_gear_pair

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.gears import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
     from gearwhine.coupling.gears.geometry.gear import Fault as BuiltFault
+    from gearwhine.coupling.gears.geometry.ring_support import RingSupport as BuiltRingSupport
 
 Deviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 RollAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, at_most=2.0 * math.pi)]
@@ -272,6 +273,43 @@ NOMINAL_WIDTH = 10.0
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
+class RingSupport(Table):
+    """What holds the outside of an internal gear's rim."""
+
+    kind: Literal["clamped", "housing", "springs", "bolts", "pins"] = "clamped"
+    """`clamped`: the whole outside stands still; `housing`: the same, but the outside moves with the housing;
+    `springs`: an elastic bed all around; `bolts`: seats at equal angles that hold the ring, against rotation too;
+    `pins`: seats without a moment. The mesh has the mean compliance over the places between two bolts."""
+    count: Annotated[int, Whole(2, 360)] | None = None
+    """Number of bolts or pins."""
+    seat_width: PositiveLength | None = None
+    """Length of each seat of a bolt or pin along the outside of the ring."""
+    radial_stiffness: PositiveStiffness | None = None
+    """Radial stiffness of each bolt or pin, or of all springs together. Default: rigid bolts and pins."""
+    tangential_stiffness: PositiveStiffness | None = None
+    """Tangential stiffness of each bolt or pin, or of all springs together. Default: rigid bolts and pins."""
+    first: Angle = 0.0
+    """Angle of the first bolt or pin from x."""
+
+    @model_validator(mode="after")
+    def _has_its_values(self) -> RingSupport:
+        discrete, stiffness = ("count", "seat_width"), ("radial_stiffness", "tangential_stiffness")
+        held_at_places = self.kind in ("bolts", "pins")
+        for key in (*discrete, *stiffness):
+            given = getattr(self, key) is not None
+            if not given and (held_at_places if key in discrete else self.kind == "springs"):
+                raise wrong(f"a value beside kind = {self.kind!r}", key)
+            if given and not held_at_places and (key in discrete or self.kind != "springs"):
+                raise wrong(f"none beside kind = {self.kind!r}", key)
+        return self
+
+    def build(self) -> BuiltRingSupport:
+        """Build the support."""
+        from gearwhine.coupling.gears.geometry.ring_support import RingSupport as BuiltRingSupport
+
+        return BuiltRingSupport(**self.model_dump())
+
+
 class Gear(Table):
     """`[[gear]]`: an external or internal gear, spur or helical, by module, diametral pitch or base radius.
 
@@ -331,6 +369,8 @@ class Gear(Table):
     """Outer diameter of the hub around the bore, inside the `web`. Default: the web begins at the bore."""
     hub_width: PositiveLength | None = None
     """Width of the hub. Default: the face width."""
+    ring_support: RingSupport | None = None
+    """What holds the outside of an internal gear's rim. Default: it is clamped."""
     stiffens_shaft: StrictBool = True
     """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
     firmly. `false`, and any gear with a `rim` or without `face_width`: the gear is a disc on one section of its shaft,
@@ -378,6 +418,8 @@ class Gear(Table):
             raise wrong("true, or left out, with a negative number of teeth", "internal")
         if self.teeth < 0:
             self._without_hub()
+        elif self.ring_support is not None:
+            raise wrong("none of an external gear, which is held at its bore or rim", "ring_support")
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:
@@ -467,6 +509,7 @@ class Gear(Table):
             web_thickness=self.web,
             hub_diameter=self.hub_diameter,
             hub_width=self.hub_width,
+            ring_support=None if self.ring_support is None else self.ring_support.build(),
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
         )

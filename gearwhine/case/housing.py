@@ -211,6 +211,9 @@ class Seat(Table):
     """Diameter of the bore."""
     boss: Boss | None = None
     """Boss outside the wall, on a box."""
+    ring_orders: Annotated[int, Whole(1, 24)] | None = None
+    """Highest order of the bore's deformation around its circumference that a ring gear in it drives, such as twice the
+    number of planets. Default: the bore moves as one body, as of a bearing."""
 
     @field_validator("name")
     @classmethod

@@ -328,7 +328,7 @@ def parse_case(
     if not findings:
         findings += [finding for finding in library_findings(case) if not finding.warns]
     if findings:
-        raise CaseError(_in_words(map(copies.in_file, findings), document, source, sources or {}))
+        raise CaseError(_in_words(copies.as_written(findings), document, source, sources or {}))
     return case
 
 

@@ -23,7 +23,7 @@ from gearwhine.case.bearings import (
     operation_loads,
 )
 from gearwhine.case.errors import UNSAID, CaseError, Problem
-from gearwhine.case.gears import Gear, GearPair, distance_of_axes, readable_pairs, train_of_pairs
+from gearwhine.case.gears import Gear, GearPair, distance_of_axes, readable_pairs, shaft_of, train_of_pairs
 from gearwhine.case.housing import Material
 from gearwhine.case.input_files import ChangedFileError, InputFiles
 from gearwhine.case.operation import Operation
@@ -32,7 +32,7 @@ from gearwhine.case.rotors import Rotor
 from gearwhine.coupling import Machine, MountedBearing, RollingLaw, Shaft, ShaftGear, TorqueSupport
 from gearwhine.coupling.description.axial_location import AxialLocation, axial_support
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain
-from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ, inertia_with_discs, rotor_with_gears
+from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ, inertia_with_discs, on_rigid_seats, rotor_with_gears
 from gearwhine.coupling.description.planetary import PlacedSet, SetParts, placed_set, set_findings
 from gearwhine.coupling.gears import Gear as BuiltGear
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
@@ -104,6 +104,14 @@ class Parts:
         return () if self.operation is None else self.train.mesh_frequencies(self.operation.speed)
 
     @cached_property
+    def mesh_speeds(self) -> tuple[float | None, ...]:
+        """Speed of the driver of each gear pair [rad/s], relative to the carrier of a planet; None where unknown."""
+        speeds, pairs = self.speeds, self.train.pairs
+        if len(pairs) < len(self.gear_pair):
+            return tuple(speeds.get(shaft_of(self._tables_of(pair)[0])) for pair in self.gear_pair)
+        return tuple(float(pair.relative_speed(speeds)) if speeds else None for pair in pairs)
+
+    @cached_property
     def torques(self) -> tuple[Torque, ...]:
         """Torques from outside: the input first, then the outputs; empty without an operation.
 
@@ -172,6 +180,7 @@ class Parts:
                 *_retained_modes(rotor, self.housing_limit_hz),
                 carrier=rotor.carrier,
                 pin_error=rotor.pin_error,
+                rim_seat=rotor.rim_seat,
             )
             for rotor in self.rotor
         )
@@ -437,14 +446,12 @@ class Parts:
         if operation is None or not self.rotor:
             return None
         return Machine(
-            shafts=self.shafts,
-            bearings=[replace(one, seat=None) for one in self.bearings],
+            **on_rigid_seats(self.shafts, self.bearings, self.torque_supports),
             gears=self.shaft_gears,
             gear_pairs=self.gear_pairs,
             speed=operation.speed,
             torque=operation.torque,
             outputs=[output.build() for output in operation.output],
-            torque_supports=[replace(support, seat=None) for support in self.torque_supports],
             planetary_sets=[one.build() for one in self.planetary],
             input_shaft=operation.rotor,
             given_speeds=[drive.build() for drive in operation.drive],

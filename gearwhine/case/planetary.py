@@ -9,7 +9,8 @@ each which table it is a copy of, so that findings name what stands in the file.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,7 +19,7 @@ from pydantic import Discriminator, Field, Tag, ValidationError, field_validator
 from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
-from gearwhine.case.errors import Finding, Location, look_up
+from gearwhine.case.errors import UNSAID, Finding, Location, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Angle, Length, LengthFromZero, Name, Quantity, Table, Whole, wrong
 from gearwhine.case.gears import Gear, TrainMembers
 from gearwhine.case.operation import Operation
@@ -143,6 +144,9 @@ def train_members(
     return TrainMembers(carriers, tuple(dict.fromkeys(name for name in held if name is not None)), given, first)
 
 
+_NUMBER_OF_COPY = re.compile(r" \d+(?=['\"])")
+
+
 @dataclass(frozen=True)
 class PlanetCopies:
     """Origin of the tables that were made of others: place in a list to place in that list of the file."""
@@ -155,8 +159,19 @@ class PlanetCopies:
         origin = self.origins.get((str(kind), place)) if isinstance(place, int) else None
         if origin is None:
             return finding
-        rest = finding.location[2:] if origin[0] == kind else ()
-        return replace(finding, location=(*origin, *rest))
+        if origin[0] == kind:
+            return replace(finding, location=(*origin, *finding.location[2:]))
+        return replace(finding, location=origin, value=UNSAID)
+
+    def as_written(self, findings: Iterable[Finding]) -> Iterator[Finding]:
+        """Yield findings at the tables of the file, that of each copy of a planet once."""
+        seen = set[tuple[Location, str]]()
+        for finding in findings:
+            placed = self.in_file(finding)
+            key = placed.location, _NUMBER_OF_COPY.sub("", placed.expected)
+            if not self.origins or key not in seen:
+                seen.add(key)
+                yield placed
 
 
 def with_planets(document: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[dict[str, Any], PlanetCopies]:
@@ -225,7 +240,6 @@ class _Expansion:
         for place, bearing in self.entries("bearing"):
             if bearing.get("rotor") in rotors and "seat" not in bearing:
                 self.document["bearing"][place] = {**bearing, "seat": carrier}
-        self._pair_gears(index, one)
         try:
             turns = self._angles(one)
             errors = self._pin_errors(one, len(turns))
@@ -236,6 +250,7 @@ class _Expansion:
             self._copy(one, [str(name) for name in rotors], turns, errors, places)
             for key in ("count", "angles", "pin_errors"):
                 one.pop(key, None)
+        self._pair_gears(index, one, len(planets) if turns else 1)
 
     def _fixed(self, one: Mapping[str, Any]) -> Any:
         """Return what holds a member as a table, where it is given by a seat or a stiffness."""
@@ -252,26 +267,32 @@ class _Expansion:
             return {"member": one.get("ring"), "stiffness": fixed}
         return fixed
 
-    def _pair_gears(self, index: int, one: Mapping[str, Any]) -> None:
-        """Add the pairs of a set between sun, planets and ring where the file has none of them."""
-        planets = list(one["planets"])
-        listed = self.document.setdefault("gear_pair", [])
+    def _way(self, one: Mapping[str, Any], planets: Sequence[Any]) -> list[tuple[str, str]]:
+        """Return driver and driven gear of each mesh between sun, one planet and ring, in the order of the power.
+
+        One gear of each rotor meshes with its neighbours; both gears of a stepped planet are on one rotor.
+        """
+        way = [name for name in (one.get("sun"), *planets, one.get("ring")) if isinstance(name, str)]
+        if self._drives_from_ring(one):
+            way.reverse()
+        return [ends for ends in pairwise(way) if self._rotor_of(ends[0]) != self._rotor_of(ends[1])]
+
+    def _pair_gears(self, index: int, one: Mapping[str, Any], of_each: int) -> None:
+        """Add the pairs of sun, ring and planets, ``of_each`` gears of every planet, of which the file has none."""
+        listed, planets = self.document.setdefault("gear_pair", []), list(one["planets"])
         if not isinstance(listed, list):
             return
-        if any({pair.get("driver"), pair.get("driven")} & set(planets) for _, pair in self.entries("gear_pair")):
-            return
-        written_once = "count" in one or "angles" in one
-        chains = [planets] if written_once else [[name] for name in planets]
-        ends = (one.get("sun"), one.get("ring"))
-        for chain in chains:
-            # One gear of each rotor meshes with its neighbours; both gears of a stepped planet are on one.
-            way = [name for name in (ends[0], *chain, ends[1]) if isinstance(name, str)]
-            if self._drives_from_ring(one):
-                way.reverse()
-            for driver, driven in pairwise(way):
-                if self._rotor_of(driver) != self._rotor_of(driven):
-                    self.origins["gear_pair", len(listed)] = ("planetary", index)
-                    listed.append({"driver": driver, "driven": driven})
+        gears, central = set(planets), {one.get("sun"), one.get("ring")}
+        written = [{pair.get("driver"), pair.get("driven")} for _, pair in self.entries("gear_pair")]
+        ways = [self._way(one, planets[place : place + of_each]) for place in range(0, len(planets), of_each)]
+        for meshes in zip(*ways, strict=False):
+            for driver, driven in meshes:
+                ends = {driver, driven}
+                known = (pair & central & ends if ends & central else pair <= gears for pair in written if pair & gears)
+                if any(known):
+                    continue
+                self.origins["gear_pair", len(listed)] = ("planetary", index)
+                listed.append({"driver": driver, "driven": driven})
 
     def _rotor_of(self, gear: str) -> object:
         entry = self.named("gear", gear)
@@ -290,6 +311,8 @@ class _Expansion:
     def _angles(self, one: Mapping[str, Any]) -> list[float]:
         angles, count = one.get("angles"), one.get("count")
         if angles is not None:
+            if count is not None and (not isinstance(angles, list | tuple) or count != len(angles)):
+                raise ValueError
             return [_ANGLE.validate(angle) for angle in angles] if isinstance(angles, list | tuple) else []
         if count is None:
             return []
@@ -330,8 +353,8 @@ class _Expansion:
         from gearwhine.coupling.gears import GearError, GearPairGeometry
 
         central = one.get("sun") or one.get("ring")
-        for _, pair in self.entries("gear_pair"):
-            names = pair.get("driver"), pair.get("driven")
+        written = [(pair.get("driver"), pair.get("driven")) for _, pair in self.entries("gear_pair")]
+        for names in [*written, *self._way(one, one["planets"])]:
             others = [name for name in names if name != central]
             if central not in names or len(others) != 1 or self._rotor_of(str(others[0])) != rotor:
                 continue

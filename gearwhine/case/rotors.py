@@ -320,6 +320,9 @@ class Rotor(Table):
     and its bearings sit on the carrier. Planets of a `[[planetary]]` have it from there."""
     pin_error: tuple[Length, Length] = (0.0, 0.0)
     """Offset of a planet's pin from `axis`, outward from the carrier's axis and counter-clockwise about it."""
+    rim_seat: Name | None = None
+    """Seat of the housing, with `ring_orders`, whose bore the rim of the ring gear on this rotor follows as it deforms.
+    Default: the rim moves as one body with the rotor."""
     start: Length = 0.0
     """z of its left end."""
     file: CaseFile | None = None

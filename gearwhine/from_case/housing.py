@@ -50,9 +50,9 @@ def describe_housing(
 def build_seats(table: HousingTable) -> list[Seat]:
     """Build the bearing seats; a box knows the depth of each bore."""
     if table.box is None:
-        return [Seat(seat.name, seat.center, seat.diameter) for seat in table.seat]
-    box = box_geometry(table.box, table.seat)
-    return [Seat(bore.name, bore.center, bore.diameter, box.bore_depth(bore)) for bore in box.bores]
+        return [Seat(seat.name, seat.center, seat.diameter, ring_orders=seat.ring_orders or 0) for seat in table.seat]
+    box, rings = box_geometry(table.box, table.seat), {seat.name: seat.ring_orders or 0 for seat in table.seat}
+    return [Seat(bore.name, bore.center, bore.diameter, box.bore_depth(bore), rings[bore.name]) for bore in box.bores]
 
 
 def _damping_ratio(table: HousingTable) -> DampingRatio:

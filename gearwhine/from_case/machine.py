@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from gearwhine.case import Case, shaft_of
+from gearwhine.case import Case
 from gearwhine.case.model import lacking
 from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
@@ -41,7 +41,13 @@ def describe_machine(case: Case, housing: HousingModes | HousingComponent | None
     if housing is None:
         return machine
     parts = case.parts
-    return replace(machine, bearings=parts.bearings, torque_supports=parts.torque_supports, housing=housing)
+    return replace(
+        machine,
+        shafts=parts.shafts,
+        bearings=parts.bearings,
+        torque_supports=parts.torque_supports,
+        housing=housing,
+    )
 
 
 def rotor_bearings(parts: Parts) -> dict[str, BearingsUnderLoad]:
@@ -77,17 +83,16 @@ def solve_gears(parts: Parts, progress: Progress = silent) -> tuple[LoadedGearPa
     CaseError, gearwhine.coupling.gears.GearError
         Where one cannot be solved as it stands.
     """
-    shafts = {gear.name: shaft_of(gear) for gear in parts.gear}
     solved = []
-    rows = zip(parts.gear_pair, parts.gear_pairs, parts.pair_geometries, parts.pair_torques, strict=True)
-    for entry, pair, geometry, torque in rows:
+    of_pairs = parts.gear_pair, parts.gear_pairs, parts.pair_geometries, parts.pair_torques, parts.mesh_speeds
+    for entry, pair, geometry, torque, speed in zip(*of_pairs, strict=True):
         progress(f"gear pair {entry.driver} -> {entry.driven}")
         loaded = load_gear_pair(
             pair,
             geometry,
             torque=torque,
             inertias=parts.rotating_inertias(entry),
-            speed=parts.speeds.get(shafts[entry.driver]),
+            speed=speed,
         )
         solved.append(loaded)
     return tuple(solved)

@@ -16,6 +16,7 @@ from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
 from gearwhine.results.motion import damping_lines, gear_body_lines
 from gearwhine.results.operating_point import misalignment_words, share_words
+from gearwhine.results.planetary import PLANETARY, set_lines, set_summary
 from gearwhine.solve.case_summary import check_case
 from gearwhine.solve.damping import damping_document, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
@@ -338,6 +339,7 @@ CHECK = (
         LOCATION,
     ),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
+    Rows("planetary", lambda checked: checked.sets or ABSENT, PLANETARY),
     Part("operation", lambda checked: ABSENT if checked.case.operation is None else checked.case, OPERATION),
     Part("transient", "case.transient", TRANSIENT, optional=True),
     Part("sweep", "case.sweep", (Quantity("speeds", lambda sweep: len(sweep.speeds)),), optional=True),
@@ -397,11 +399,14 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
     parts = {
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
-        "bearings": _bearing_summary(document.get("bearings", ())),
+        "bearings": _bearing_summary(
+            document.get("bearings", ()), [one["carrier"] for one in document.get("planetary", ())]
+        ),
         "thrust": [
             _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
         ],
         "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
+        "planetary": [line for one in document.get("planetary", ()) for line in set_summary(one)],
         "damping": damping_lines(document.get("damping", ())),
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
@@ -430,13 +435,14 @@ def _housing_summary(housing: Document) -> list[str]:
     return [first, ", ".join(counts)] if counts else [first]
 
 
-def _bearing_summary(bearings: Sequence[Document]) -> list[str]:
+def _bearing_summary(bearings: Sequence[Document], carriers: Sequence[str]) -> list[str]:
     if not bearings:
         return []
     on_ground = sum(bearing["seat"] == "ground" for bearing in bearings)
-    seated = len(bearings) - on_ground
-    parts = [f"{seated} in seats of the housing"] * bool(seated) + [f"{on_ground} on the ground"] * bool(on_ground)
-    return [", ".join(parts)]
+    on_pins = sum(bearing["seat"] in carriers for bearing in bearings)
+    seated = len(bearings) - on_ground - on_pins
+    counts = (seated, "in seats of the housing"), (on_ground, "on the ground"), (on_pins, "on pins of planets")
+    return [", ".join(f"{count} {where}" for count, where in counts if count)]
 
 
 def _is_worth_a_line(location: Document) -> bool:
@@ -462,6 +468,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "thrust": [_location_line(location) for location in document.get("axial_location", ())],
         "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
+        "planetary": [line for one in document.get("planetary", ()) for line in set_lines(one)],
         "gear bodies": gear_body_lines(document),
         "damping": damping_lines(document.get("damping", ())),
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],

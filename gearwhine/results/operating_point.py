@@ -494,7 +494,7 @@ MEMBER = (
     Quantity("speed_rpm", lambda member: member.speed * _RPM, heading="speed\n[rpm]", shown=".5g"),
     Quantity("relative_speed_rpm", lambda member: member.relative_speed * _RPM),
     Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".5g"),
-    Quantity("power_w", "power", heading="power\n[kW]", shown=".4g"),
+    Quantity("power_w", "power", heading="power\n[W]", shown=".4g"),
     Quantity("state", heading="is"),
 )
 """Quantities of a member of a planetary set; a row is a :class:`SetMember`."""

@@ -10,6 +10,7 @@ from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
 from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
+from gearwhine.coupling.description.planetary import PlacedSet, SetMember, part_of_period
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.machine import misalignments_of_case
@@ -74,6 +75,24 @@ class CheckedPair:
 
 
 @dataclass(frozen=True)
+class CheckedSet:
+    """Planetary set of a checked case.
+
+    Attributes
+    ----------
+    placed : PlacedSet
+    members : tuple of SetMember
+        Sun, ring, carrier and planets in operation; empty without one.
+    phases : tuple of float or None
+        Phase of each mesh of the set over that of its first [mesh periods]; None without an operation.
+    """
+
+    placed: PlacedSet
+    members: tuple[SetMember, ...]
+    phases: tuple[float, ...] | None
+
+
+@dataclass(frozen=True)
 class CheckedCase:
     """A case that can be built.
 
@@ -86,6 +105,8 @@ class CheckedCase:
     pairs : tuple of CheckedPair
     locations : tuple of gearwhine.coupling.description.axial_location.AxialLocation
         Axial location of each rotor.
+    sets : tuple of CheckedSet
+        Planetary sets.
     machine : Machine or None
         Machine of the case on rigid seats; None without rotors and an operation.
     warnings : list of dict
@@ -97,6 +118,7 @@ class CheckedCase:
     rotors: tuple[CheckedRotor, ...]
     pairs: tuple[CheckedPair, ...]
     locations: tuple[AxialLocation, ...]
+    sets: tuple[CheckedSet, ...]
     machine: Machine | None
     warnings: list[dict[str, Any]]
 
@@ -136,7 +158,8 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, machine, warnings)
+    sets = tuple(checked_sets(parts))
+    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings)
 
 
 def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:
@@ -160,6 +183,17 @@ def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:
     """Build the rotors of a case, each with its speed."""
     rows = zip(parts.rotor, parts.rotors, strict=True)
     return tuple(CheckedRotor(entry, built, parts.speeds.get(entry.name)) for entry, built in rows)
+
+
+def checked_sets(parts: Parts) -> Iterator[CheckedSet]:
+    """Place the planetary sets of a case, with members and phases where there is a machine in operation."""
+    machine = parts.machine
+    for placed in parts.placed_sets:
+        if machine is None:
+            yield CheckedSet(placed, (), None)
+            continue
+        phases = [machine.mesh_phases[mesh.number] for mesh in placed.meshes]
+        yield CheckedSet(placed, machine.members_of(placed), tuple(part_of_period(one - phases[0]) for one in phases))
 
 
 def checked_pairs(parts: Parts) -> Iterator[CheckedPair]:

@@ -93,6 +93,19 @@ def test_torsion_of_rigid_gears_is_that_of_two_inertias() -> None:
     assert np.abs(np.asarray(frequencies) / expected - 1.0).min() < 2e-3
 
 
+def test_shaft_in_the_teeth_of_its_ring_is_refused_and_a_bell_is_not() -> None:
+    base = machine()
+    assert not any("hang off" in str(finding) for finding in base.findings)
+    thick = Shaft(Rotor("outer", [Segment(0.15, 0.13, 0.0, STEEL)]), axis=(0.0, 0.0), start=0.11)
+    with pytest.raises(
+        CouplingError, match=r"expected a ring around its shaft; that has a diameter of 130 mm there, the"
+    ):
+        machine(shafts=[base.shafts[0], thick])
+    # As a sleeve around the ring it is fine.
+    sleeve = Shaft(Rotor("outer", [Segment(0.15, 0.16, 0.147, STEEL)]), axis=(0.0, 0.0), start=0.11)
+    assert machine(shafts=[base.shafts[0], sleeve]).speeds["outer"] == pytest.approx(200.0 / 3.0)
+
+
 def test_axes_that_do_not_fit_are_refused_with_lengths() -> None:
     base = machine()
     far = [base.shafts[0], Shaft(base.shafts[1].rotor, axis=(-1e-3, 0.0), start=0.11)]

@@ -79,6 +79,14 @@ def test_phases_by_parker_and_lin(held: str, speed: float, sun: int, planet: int
         np.testing.assert_allclose(apart, np.round(apart), atol=1e-6)
 
 
+@pytest.mark.slow
+def test_phases_are_those_of_the_assembled_machine() -> None:
+    of = machine(count=2, sun=25, planet=29)
+    contacts = of.assembled.system.contacts
+    assert of.mesh_phases == pytest.approx([contact.phase for contact in contacts], abs=1e-9)
+    assert of.mesh_frequencies == pytest.approx([contact.mesh_frequency for contact in contacts], rel=1e-12)
+
+
 def test_phasing_suppresses_modes() -> None:
     """Parker's rules by k = mod(l z_s, N): 0 rotational, 1 or N - 1 translational, else planet modes alone."""
     for sun, planet, count in ((24, 30, 3), (25, 26, 3), (26, 30, 4), (25, 31, 4)):

@@ -44,8 +44,13 @@ def depth_of_overlap(ring: FloatArray, pinion: FloatArray) -> float:
     """Depth [m] to which a pinion's corners stand in the ring's teeth, or the ring's in the pinion's; 0 where apart."""
     middle = pinion.mean(axis=0)
     near = ring[np.hypot(*(ring - middle).T) < np.hypot(*(pinion - middle).T).max()]
-    buried = (pinion[~_inside(pinion, ring)], ring), (near[_inside(near, pinion)], pinion)
-    return max((float(_distance(*one).max()) for one in buried if len(one[0])), default=0.0)
+    depths = [0.0]
+    for points, polygon, within in ((pinion, ring, False), (near, pinion, True)):
+        # Few points seem to be on the wrong side by the nearest corner, and for these all sides count.
+        suspects = points[_seem_inside(points, polygon) == within]
+        buried = suspects[Path(polygon).contains_points(suspects) == within]
+        depths.append(float(_distance(buried, polygon).max(initial=0.0)))
+    return max(depths)
 
 
 def gap_between(ring: FloatArray, pinion: FloatArray) -> float:
@@ -53,8 +58,16 @@ def gap_between(ring: FloatArray, pinion: FloatArray) -> float:
     return float(_distance(pinion, ring).min())
 
 
-def _inside(points: FloatArray, polygon: FloatArray) -> npt.NDArray[np.bool_]:
-    return np.asarray(Path(polygon).contains_points(points))
+def _seem_inside(points: FloatArray, polygon: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether points (n, 2) are inside a counter-clockwise polygon, by its edges at the corner nearest to each."""
+    nearest = cKDTree(polygon).query(points)[1]
+    corner = polygon[nearest]
+    before, after = corner - polygon[nearest - 1], polygon[(nearest + 1) % len(polygon)] - corner
+    left = [
+        edge[:, 0] * out[:, 1] - edge[:, 1] * out[:, 0] > 0.0 for edge in (before, after) for out in (points - corner,)
+    ]
+    convex = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] > 0.0
+    return np.asarray(np.where(convex, left[0] & left[1], left[0] | left[1]))
 
 
 def _distance(points: FloatArray, polygon: FloatArray) -> FloatArray:

@@ -87,7 +87,7 @@ def test_trochoid_interference_of_standard_teeth_needs_ten_teeth_of_difference(t
 def test_dimension_between_pins_touches_both_flanks(teeth: int, shift: float) -> None:
     ring = Gear("ring", teeth, 2 * MM, ALPHA, 20 * MM, profile_shift=shift, addendum=0.6)
     pins = over_balls(ring)
-    assert pins.diameter == pytest.approx(1.44 * 2 * MM)
+    assert pins.diameter == pytest.approx(1.65 * 2 * MM)
     # The pin of the drawn space touches its outline from inside.
     outline = gear_outline(ring, math.pi + math.pi / ring.tooth_count, points=200)
     gap = np.hypot(*(outline - (-pins.centre_radius, 0.0)).T).min()

@@ -5,10 +5,10 @@ Rings of module 2, 3 and 5 with rims of 10, 3.3 and 1.6 modules, clamped at thei
 the same, and the mesh of two pairs and of one from compliance matrices of elements. A bolted ring is loaded at several
 places between two bolts.
 
-Two readings of the elements are compared, in plane stress. By the tooth's axis, with Weber's contact of the tool, as
-for external gears. By the surface, without any formula of ours: the mean sinking of the loaded strip, with the
-logarithm by which a narrower strip, Hertz's under the load, sinks more, ``2 / (pi E b) (ln(a_strip / a) + 1/4)`` for
-each flank.
+Two readings of the elements are compared, in plane stress and of one ring in plane strain. By the tooth's axis, with
+Weber's contact of the tool, as for external gears. By the surface, without any formula of ours: the mean sinking of the
+loaded strip, with the logarithm by which a narrower strip, Hertz's under the load, sinks more, ``2 / (pi E' b)
+(ln(a_strip / a) + 1/4)`` for each flank.
 """
 
 import math
@@ -23,6 +23,7 @@ from plane_rings import Held, Ring, loaded_radii, ring_deflections
 from gearwhine.coupling.gears import ElasticRingStiffness, Gear, GearPairGeometry
 from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle
 from gearwhine.coupling.gears.geometry.ring_support import RingSupport
+from gearwhine.coupling.gears.stiffness.beam import PlaneState
 from gearwhine.coupling.gears.stiffness.hertz import line_contact
 from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance, support_compliance
 
@@ -122,10 +123,16 @@ def mesh_of(own: np.ndarray, cross: np.ndarray) -> Mesh:
     return Mesh((a * b - cross**2) / (a + b - 2.0 * cross), own[8:])
 
 
-@pytest.mark.parametrize("place", [None, 15.0, 30.0])
-@pytest.mark.parametrize("name", RINGS)
+STRESS: PlaneState = "plane-stress"
+CASES: list[tuple[str, float | None, PlaneState]] = [
+    *((name, place, STRESS) for name in RINGS for place in (None, 15.0, 30.0)),
+    *((next(iter(RINGS)), place, "plane-strain") for place in (None, 30.0)),
+]
+
+
+@pytest.mark.parametrize(("name", "place", "state"), CASES)
 def test_stiffness_of_the_pair_and_step_of_its_error(
-    name: str, place: float | None, published: Any, remark: Any
+    name: str, place: float | None, state: PlaneState, published: Any, remark: Any
 ) -> None:
     ring = RINGS[name]
     teeth, bore, shift = PINIONS[ring.teeth]
@@ -146,13 +153,14 @@ def test_stiffness_of_the_pair_and_step_of_its_error(
     places = np.concatenate([two, two + 1.0, np.linspace(eps - 0.95, 0.95, 3)])
     first, second = np.arange(4), np.arange(4, 8)
     held = Held() if place is None else Held(6, 60.0 - place, SEAT)
-    of_pinion = deflections(pinion, pair.driver_radius(places), 2.0, "plane-stress")
-    of_ring = ring_deflections(ring, -pair.driven_radius(places), held)
+    of_pinion = deflections(pinion, pair.driver_radius(places), 2.0, state)
+    of_ring = ring_deflections(ring, -pair.driven_radius(places), held, state=state)
     # The driver is pushed back: its next tooth in that sense entered later.
     cross = of_pinion.next_axis[second, first] + of_ring.next_axis[first, second]
-    model, radii = ElasticRingStiffness(), pair.driven_radius(places)
+    model, radii = ElasticRingStiffness(state), pair.driven_radius(places)
     narrower = np.log(STRIP * ring.module / line_contact(pair, places).half_width(force)) + 0.25
-    sinking = 2.0 * 2.0 / (math.pi * ring.youngs_modulus * ring.face_width) * narrower
+    modulus = ring.youngs_modulus / (1.0 if state == STRESS else 1.0 - ring.poisson_ratio**2)
+    sinking = 2.0 * 2.0 / (math.pi * modulus * ring.face_width) * narrower
     elements = {
         "axis": of_pinion.axis + of_ring.axis + model.contact_compliance(pair, places, force),
         "surface": of_pinion.surface + of_ring.surface + sinking,
@@ -160,18 +168,18 @@ def test_stiffness_of_the_pair_and_step_of_its_error(
     own, shared = model.pair_compliance(pair, places, force), np.full(4, model.shared_compliance(pair))
     if place is not None:
         # At this place; the mean over all places is what the mesh has.
-        support = support_compliance(on_six_bolts(gear), place=math.radians(place))
+        support = support_compliance(on_six_bolts(gear), state, math.radians(place))
         own = own + support.own(radii)
         shared = shared + np.mean(support.beside(radii[first], radii[second]))
     ours = mesh_of(own, shared)
     source = "Plane finite elements of whole rings and pinions with two teeth loaded, of our own"
     remark(
         source,
-        "Not published, but independent: internal pairs in plane stress, the ring clamped or on six bolts with the "
+        "Not published, but independent: internal pairs in the plane, the ring clamped or on six bolts with the "
         "mesh at an angle from one of them, by the sinking of the loaded flanks. The finite-element value stands as "
         "published. The step is that of the transmission error from two pairs to one under 300 N/mm.",
     )
-    where = f"{name}, " + ("clamped" if place is None else f"on bolts, {place:g} degrees from one")
+    where = f"{name}, {state}, " + ("clamped" if place is None else f"on bolts, {place:g} degrees from one")
     for reading, compliance in elements.items():
         theirs = mesh_of(compliance, cross)
         np.testing.assert_allclose(1.0 / ours.two, 1.0 / theirs.two, rtol=0.1)

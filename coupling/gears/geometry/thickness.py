@@ -19,8 +19,8 @@ from gearwhine.coupling.gears.geometry.involute import inverse_involute, involut
 
 CUSTOMARY_BALL = 1.728
 """Diameter of measuring balls and wires in modules: for external gears by the American custom."""
-CUSTOMARY_INTERNAL_BALL = 1.44
-"""Diameter of measuring balls and wires in modules: for internal gears by the American custom."""
+CUSTOMARY_INTERNAL_BALL = 1.65
+"""Diameter of measuring balls and wires in modules: for internal gears of 20 degrees, which touch near mid-flank."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def over_balls(gear: Gear, diameter: float | None = None) -> BallMeasurement:
     ----------
     gear : Gear
     diameter : float or None
-        Diameter of the balls [m]; None for 1.728 modules, of an internal gear for 1.44.
+        Diameter of the balls [m]; None for 1.728 modules, of an internal gear for 1.65.
 
     Raises
     ------

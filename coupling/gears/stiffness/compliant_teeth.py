@@ -59,6 +59,7 @@ REFERENCE_LINE_LOAD = 300e3
 constants of ISO 6336-1 are for."""
 
 _CROSS_NODES = 4
+_PLACES = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,6 +290,29 @@ class CompliantTeeth(ABC):
         body = self.shared_body(gear)
         support = support_compliance(gear, body.state if body is not None else "plane-stress").own
         return lambda radius: teeth(radius) + support(radius)
+
+    def support_course(self, gear: Gear, radius: float) -> FloatArray:
+        """Compliance that the support of an internal gear's ring adds to a clamped one, from bolt to bolt [m/N].
+
+        Parameters
+        ----------
+        gear : Gear
+        radius : float
+            Radius of the loaded point [m].
+
+        Returns
+        -------
+        ndarray, shape (places,)
+            At equal steps of the tooth's angle from a bolt in the sense of the load; a single value where nothing
+            varies.
+        """
+        body = self.shared_body(gear)
+        state: PlaneState = body.state if body is not None else "plane-stress"
+        support = gear.ring_support
+        if support is None or support.count is None:
+            return np.array([float(support_compliance(gear, state).own(np.array(radius)))])
+        places = 2.0 * math.pi / support.count * np.arange(_PLACES) / _PLACES
+        return np.array([float(support_compliance(gear, state, place).own(np.array(radius))) for place in places])
 
     def contact_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None

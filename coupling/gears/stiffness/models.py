@@ -72,6 +72,36 @@ def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> floa
     return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
 
 
+_VARIATION_OF_A_RIM = 0.1
+"""Variation of a rim's compliance between bolts, over a pair's compliance, above which a warning tells it."""
+
+
+def ring_support_warning(model: StiffnessModel | str, geometry: GearPairGeometry) -> str | None:
+    """Sentence where the bolts or pins of a ring vary the mesh beyond its mean, or the model knows none; else None."""
+    named = stiffness_model(model) if isinstance(model, str) and model in _KNOW_BODIES else model
+    middle = 0.5 * geometry.contact_ratio
+    radii = geometry.driver_radius(middle), geometry.driven_radius(middle)
+    for gear, radius in zip((geometry.driver, geometry.driven), radii, strict=True):
+        support = gear.ring_support
+        if support is None or support.kind in ("clamped", "housing"):
+            continue
+        if not isinstance(named, CompliantTeeth):
+            name = named if isinstance(named, str) else getattr(named, "name", type(named).__name__)
+            return (
+                f"{geometry.label}: the stiffness model {name!r} does not know the support of the ring {gear.name!r} "
+                f"by {support.kind}; choose one that does: {', '.join(_KNOW_BODIES)}"
+            )
+        course, pair = named.support_course(gear, float(radius)), float(named.pair_compliance(geometry, middle))
+        if float(np.ptp(course)) > _VARIATION_OF_A_RIM * pair:
+            softest, stiffest = (1e-6 / (pair - course.mean() + end) for end in (course.max(), course.min()))
+            return (
+                f"{geometry.label}: between the {support.count} {support.kind} of the ring {gear.name!r} a pair of "
+                f"teeth is {softest:.4g} to {stiffest:.4g} MN/m stiff by its place; the mesh has the mean over all "
+                f"places, {1e-6 / pair:.4g} MN/m, and its change as the mesh passes them does not excite"
+            )
+    return None
+
+
 def rim_compliances(model: StiffnessModel | str, geometry: GearPairGeometry) -> tuple[RimCompliance, RimCompliance]:
     """Parts of `shared_compliance` by which the rims of the driver and of the driven gear move on their hubs.
 
@@ -196,6 +226,10 @@ STIFFNESS_MODELS: dict[str, Callable[..., StiffnessModel]] = {
 }
 """All models by their names in cases: a new model is added here."""
 
+
+_KNOW_BODIES = tuple(
+    name for name, model in STIFFNESS_MODELS.items() if isinstance(model, type) and issubclass(model, CompliantTeeth)
+)
 
 GIVEN_SPRINGS = (ConstantStiffness, SquareStiffness, TableStiffness)
 """Models that state a spring as it is given, of the mesh or of every pair, in place of the teeth."""

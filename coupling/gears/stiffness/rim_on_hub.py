@@ -93,8 +93,10 @@ def rotation_shares(gear: Gear) -> RimShares:
         coupling += ring.width * (p * fourth - q * square)
         rim += ring.width * (p**2 * fourth - 2.0 * p * q * square + sign * q**2 * math.log(b / a))
         before += ring_softness
-    support = 1.0 - twist_compliance(gear, supported=False) / twist_compliance(gear) if gear.ring_support else 0.0
-    return _with_support(RimShares(coupling / whole, rim / whole), support)
+    shares = RimShares(coupling / whole, rim / whole)
+    if gear.ring_support is None:
+        return shares
+    return _with_support(shares, 1.0 - twist_compliance(gear, supported=False) / twist_compliance(gear))
 
 
 def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
@@ -121,8 +123,11 @@ def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
         whole += float(mass.sum())
         coupling += float(mass @ (field @ _RIGID_MOTION_TRACTIONS)) * 0.5 / shift
         rim += float(mass @ (field**2).sum(axis=1)) * 0.5 / shift**2
-    support = 1.0 - shift_compliance(gear, state, supported=False) / shift_compliance(gear, state)
-    return _with_support(RimShares(coupling / whole, rim / whole), support if gear.ring_support else 0.0)
+    shares = RimShares(coupling / whole, rim / whole)
+    if gear.ring_support is None:
+        return shares
+    clamped = shift_compliance(gear, state, supported=False)
+    return _with_support(shares, 1.0 - clamped / shift_compliance(gear, state))
 
 
 def _with_support(shares: RimShares, support: float) -> RimShares:

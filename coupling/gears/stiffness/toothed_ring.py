@@ -29,7 +29,8 @@ tractions the energy is
 
 A, B and D of the blocks of H_n between the two circles, under the three conditions of equilibrium of all loads. The
 free ring moves as a rigid body, without energy; H_0 and H_1 are taken for balanced loads. The compliance of the bolts
-adds to D. A pin transmits no moment: the mean motion of its seat is held alone.
+adds to D; a bolt of radial stiffness k_r on a seat of width w resists the seat's rotation with ``k_r w^2 / 12``. A pin
+transmits no moment: the mean motion of its seat is held alone.
 
 The compliance of a tooth then depends on its place between the bolts; the teeth pass them as the ring turns against the
 load. The mean over all places enters the stiffness of the mesh,
@@ -62,7 +63,7 @@ from gearwhine.coupling.gears.stiffness.elastic_tooth import tooth_flexibility
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_PLACES = 12
+_PLACES = 24
 """Places of a tooth between two bolts at which its compliance is solved."""
 _FADED = 25.0
 """A wave n with n ln(outer / inner) above this has decayed to 1e-11 at the other circle."""
@@ -259,24 +260,29 @@ def _by_bolts(
     own = _energy(seat, whole[:, :, 2:, 2:], section.seat).sum(axis=0).real
     among = np.zeros((bolts, unknowns, bolts, unknowns))
     holding = _resultants(seat[turns, 1], section.seat, around)
-    yielding = holding[[2, 0]].T @ np.diag(section.bolt) @ holding[[2, 0]] / (1.0 + section.poisson_ratio)
+    # Radial and tangential force, and moment about the seat, whose stiffness is even over its width w: k_r w^2 / 12.
+    forces = np.array([holding[2], holding[0], holding[1] - around * holding[0]])
+    softnesses = np.array([*section.bolt, 12.0 * section.bolt[0] / (2.0 * section.seat * around) ** 2])
+    yielding = forces.T @ (softnesses[:, None] * forces) / (1.0 + section.poisson_ratio)
     for first in range(bolts):
         for second in range(bolts):
             same = first == second
             among[first, :, second] = own + yielding if same else apart[:, :, (first - second) % bolts]
     among = among.reshape(bolts * unknowns, -1)
-    loads = _loads(z)
+    lifted = np.swapaxes(lever.conj(), 1, 2)
+    to_teeth = np.concatenate(list(_loads(z).conj().swapaxes(1, 2) @ stiff @ lifted), axis=1)
+    inner = lever @ stiff @ lifted - softness
     pitch = 2.0 * math.pi / z
     on_teeth = np.column_stack([_balance(np.eye(3), 0.0), _balance(np.eye(3), pitch), [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
-    inner = lever @ stiff @ lever.conj().swapaxes(1, 2) - softness
     added = []
     for place in 2.0 * math.pi / bolts / _PLACES * np.arange(_PLACES):
         at = places - place
         phases = np.exp(-1j * number[near].T[:, :, None] * at)
         coupling = (across @ phases).reshape(z, 2 * shapes.shape[2], unknowns, bolts).swapaxes(2, 3)
         coupling = coupling.reshape(z, 2 * shapes.shape[2], -1)
-        to_loads = np.einsum("kic,kij,kjm->cm", loads.conj(), stiff @ lever.conj().swapaxes(1, 2), coupling).real
-        seats = among + np.einsum("kim,kin->mn", coupling.conj(), inner @ coupling).real
+        flat = coupling.reshape(-1, coupling.shape[-1])
+        to_loads = (to_teeth @ flat).real
+        seats = among + (flat.conj().T @ (inner @ coupling).reshape(flat.shape)).real
         held = np.hstack([_balance(holding, angle) for angle in at])
         matrix = np.block([[seats, held.T], [held, np.zeros((3, 3))]])
         right = np.vstack([to_loads.T, on_teeth])

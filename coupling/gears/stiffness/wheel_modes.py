@@ -178,9 +178,9 @@ class WheelModes:
 
 
 def wheel_section(gear: Gear) -> WheelSection | None:
-    """Section of a gear's body; None of a gear in one piece with its shaft, or of a rim without a web."""
+    """Section of a gear's body; None of a gear in one piece with its shaft, of a rim without a web, or of a ring."""
     hub = held_radius(gear)
-    if hub is None or (gear.rim_inner_radius is not None and gear.web_thickness is None):
+    if hub is None or gear.is_internal or (gear.rim_inner_radius is not None and gear.web_thickness is None):
         return None
     root, face = gear.root_circle_radius, gear.face_width
     teeth = gear.density * math.pi * face * (gear.pitch_radius**2 - root**2)

@@ -125,8 +125,30 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
             yield placed(("bearing", index), finding)
 
 
+def _check_planets(draft: Draft) -> Iterator[Finding]:
+    """Yield planets without a bearing, and carriers whose own axis turns with another."""
+    held = {entry.get("rotor") for _, entry in draft.raw_entries("bearing")}
+    for index, one in draft.planetary:
+        fixed = draft.rotor(one.held_rotor([gear for _, gear in draft.gears]))
+        if fixed is not None and fixed.carrier is not None:
+            expected = f'sun, ring or carrier; "{fixed.name}" is a planet, whose axis turns with "{fixed.carrier}"'
+            yield Finding(("planetary", index, "fixed"), expected)
+    for index, rotor in draft.rotors:
+        if rotor.carrier is None:
+            continue
+        carrier = draft.rotor(rotor.carrier)
+        if carrier is not None and carrier.carrier is not None:
+            yield Finding(("rotor", index, "carrier"), "a rotor whose own axis stands still")
+        if rotor.name not in held:
+            expected = (
+                f'a [[bearing]] of rotor "{rotor.name}" on its pin, with seat = "{rotor.carrier}" or without a seat'
+            )
+            yield Finding(("rotor", index), expected, UNSAID)
+
+
 def check_bearings(draft: Draft) -> Iterator[Finding]:
     """Yield tables that do not fit their speeds or end too early, pedestals in the housing, and loads that lack."""
+    yield from _check_planets(draft)
     ratios = _ratios(draft)
     bearings = [bearing for _, bearing in draft.bearings]
     for index, bearing in draft.bearings:
@@ -243,7 +265,9 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
             yield from _check_model(draft, index, pair, gear)
         unequal = list(_unequal_teeth(index, driver, driven))
         yield from unequal
-        if not unequal and driver.name in built and driven.name in built:
+        aside = list(_off_carrier(draft, driver, driven))
+        yield from aside
+        if not unequal and not aside and driver.name in built and driven.name in built:
             yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
     train = draft.train
     for wrong in train.contradictions if train is not None else ():
@@ -258,6 +282,40 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
             label = " -> ".join(gear.name for gear in gears)
             expected = f"members that are not held or driven against each other; {train.sentence(wrong, label)}"
         yield Finding(("gear_pair", index), expected, UNSAID)
+
+
+def _off_carrier(draft: Draft, driver: Gear, driven: Gear) -> Iterator[Finding]:
+    """Yield a sun or ring on another axis than that about which its planets turn."""
+    from gearwhine.coupling.description.gear_train import LARGEST_OFFSET
+
+    rotors = draft.rotor(driver.rotor), draft.rotor(driven.rotor)
+    for one, other in (rotors, rotors[::-1]):
+        carrier = None if other is None else draft.rotor(other.carrier)
+        if one is None or carrier is None or one.carrier is not None:
+            continue
+        apart = distance_of_axes(one.axis, carrier.axis)
+        if apart > LARGEST_OFFSET:
+            index = next(index for index, rotor in draft.rotors if rotor is one)
+            expected = (
+                f'the axis of carrier "{carrier.name}", about which its planets turn; it is {in_mm(apart)} off it'
+            )
+            yield Finding(("rotor", index, "axis"), expected)
+
+
+def _ring_around(draft: Draft, gears: tuple[Gear, Gear]) -> str:
+    """Return how many teeth a ring around a sun and this planet has; empty for other gears."""
+    for _, one in draft.planetary:
+        sun, names = draft.gear(one.sun or ""), {gear.name for gear in gears}
+        planet = next((gear for gear in gears if gear.name in one.planets), None)
+        if sun is None or planet is None or one.ring not in names:
+            continue
+        meshes = [{pair.driver, pair.driven} for _, pair in draft.gear_pairs]
+        if {sun.name, planet.name} in meshes:
+            around = sun.teeth + 2 * planet.teeth
+            return (
+                f"; sun and planets stand in a ring of {around} teeth, or as few more or less as profile shifts take up"
+            )
+    return ""
 
 
 def _check_pair(
@@ -298,7 +356,8 @@ def _check_pair(
         elif distance is not None:
             GearPairGeometry(*gears, signed_distance(*gears, distance))
     except GearError as error:
-        yield Finding(("gear_pair", index), f"a centre distance that fits; {error}", UNSAID)
+        around = _ring_around(draft, tables)
+        yield Finding(("gear_pair", index), f"a centre distance that fits; {error}{around}", UNSAID)
 
 
 def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
@@ -482,7 +541,10 @@ def _check_drives(operation: Operation, train: GearTrain | None) -> Iterator[Fin
             yield Finding(("operation", "drive", place, "rotor"), f"a rotor that is free; {train.sentence(wrong, '')}")
     if train is not None:
         for sentence in train.drive_problems():
-            yield Finding(("planetary",) if train.planets else ("gear_pair",), sentence, UNSAID)
+            location = (
+                ("operation", "rotor") if not train.open_shafts else ("planetary" if train.planets else "gear_pair",)
+            )
+            yield Finding(location, f"drives that fix every speed; {sentence}", UNSAID)
 
 
 def _lacks_input(operation: Operation) -> bool:

@@ -16,7 +16,7 @@ from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
 from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
 from gearwhine.case.errors import LOOK_UP, UNSAID, Finding, Location, key_of, label_of, look_up, show_value
-from gearwhine.case.gears import Gear, GearPair, shaft_of
+from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.housing import Housing, Material, Seat
 from gearwhine.case.model import Case
 from gearwhine.case.overrides import parse_key_path
@@ -137,8 +137,15 @@ def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterato
 
 def _of_sets(case: Case) -> Iterator[Finding]:
     """Yield findings of planetary sets, and of the rotors that are their carriers and planets."""
+    from gearwhine.coupling.errors import CouplingError
+    from gearwhine.rotors.errors import RotorError
+
     numbers = {one.name: index for index, one in enumerate(case.planetary)}
-    for finding in case.parts.set_findings():
+    try:
+        findings = list(case.parts.set_findings()) if numbers else []
+    except (CouplingError, RotorError):
+        return  # shafts that cannot be built are findings of their own
+    for finding in findings:
         found = placed(("planetary", numbers[finding.part[1]]), finding)
         yield replace(found, value=UNSAID) if finding.attribute == "planets" else found
 
@@ -275,15 +282,14 @@ def _of_pairs(parts: Parts) -> Iterator[Finding]:
     from gearwhine.coupling.gears.loaded.gear_pair import operation_findings
 
     tables = {gear.name: gear for gear in parts.gear}
-    rows = zip(parts.gear_pair, parts.pair_geometries, parts.pair_torques, strict=True)
-    for index, (pair, geometry, torque) in enumerate(rows):
+    rows = zip(parts.gear_pair, parts.pair_geometries, parts.pair_torques, parts.mesh_speeds, strict=True)
+    for index, (pair, geometry, torque, speed) in enumerate(rows):
         for finding in _built_pair(pair).findings(geometry):
             attribute = finding.attribute if finding.attribute in type(pair).model_fields else ""
             yield placed(("gear_pair", index), finding, (attribute,) if attribute else ())
         if any(tables[name].face_width is None for name in (pair.driver, pair.driven)):
             continue
-        speed = parts.speeds.get(shaft_of(tables[pair.driver]), 0.0)
-        for finding in operation_findings(geometry, torque, speed):
+        for finding in operation_findings(geometry, torque, speed or 0.0):
             yield placed(("operation",), finding)
 
 

@@ -123,7 +123,8 @@ def _circles(axes: Axes, pair: GearPairGeometry, centres: tuple[FloatArray, Floa
 def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: FloatArray) -> None:
     """Draw the line of action, the named points on it, and the points of contact at the phase."""
     angle = pair.line_of_action_angle(_UP)
-    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
+    along = np.array([math.cos(angle), math.sin(angle)])
+    across = pair.flank_sense(1) * np.array([math.sin(angle), -math.cos(angle)])
     # At the tangent point the line meets a radius of the driver's base circle at a right angle.
     tangent = centre + pair.driver.base_radius * across
 

@@ -68,26 +68,32 @@ def test_fouling_is_where_the_outlines_overlap(teeth: int, addendum: float) -> N
     assert overlap_in_mesh(SMALL, replace(gear, addendum=allowed - 1e-3)) < CHORDS
 
 
-def overlap_while_pushed_in(internal: Gear, distance: float, first: float) -> float:
+def overlap_while_pushed_in(one: Gear, internal: Gear, distance: float, first: float) -> float:
     """Depth of overlap on the way, with a tooth of the pinion (0) or a space (0.5) on the line of centres [m]."""
     half = math.pi / internal.tooth_count
     outline = gear_outline(internal, math.pi + (half if first == 0.0 else 0.0))
     places = np.linspace(0.75 * abs(distance), abs(distance), 30)
-    turned = 2.0 * math.pi * first / SMALL.teeth
-    return max(depth_of_overlap(outline, gear_outline(SMALL, turned, (at, 0.0))) for at in places)
+    turned = 2.0 * math.pi * first / one.teeth
+    return max(depth_of_overlap(outline, gear_outline(one, turned, (at, 0.0))) for at in places)
 
 
-@pytest.mark.parametrize(("teeth", "addendum"), [(-32, 0.8), (-31, 0.8), (-30, 0.6), (-29, 0.6)])
-def test_radial_mounting_is_where_the_outlines_pass(teeth: int, addendum: float) -> None:
-    pair = GearPairGeometry(SMALL, around(teeth, addendum))
-    clearance = radial_clearance(SMALL, pair.driven, pair.working_centre_distance)
-    depth = min(overlap_while_pushed_in(pair.driven, pair.working_centre_distance, first) for first in (0.0, 0.5))
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("small", "teeth", "addendum"), [(20, -32, 0.8), (20, -31, 0.8), (20, -29, 0.6), (17, -28, 0.8)]
+)
+def test_radial_mounting_is_where_the_outlines_pass(small: int, teeth: int, addendum: float) -> None:
+    # Of the last pair the pinion enters with a space on the line of centres, and not with a tooth.
+    pair = GearPairGeometry(pinion(small, profile_shift=0.5), around(teeth, addendum))
+    distance = pair.working_centre_distance
+    clearance = radial_clearance(pair.driver, pair.driven, distance)
+    depths = [overlap_while_pushed_in(pair.driver, pair.driven, distance, first) for first in (0.0, 0.5)]
     if clearance > 0.0:
-        assert depth < CHORDS
+        assert min(depths) < CHORDS
         assert pair.findings == ()
+        assert (depths[0] > 50.0 * CHORDS) is (small == 17)
     else:
         # The deepest place of the way lies between two of those tried.
-        assert 0.7 * -clearance < depth < -clearance
+        assert 0.7 * -clearance < min(depths) < -clearance
         assert "to be mounted along the axes: pushed in radially, the teeth overlap by" in str(pair.findings[0])
         assert pair.findings[0].severity == "warning"
 

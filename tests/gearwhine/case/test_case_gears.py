@@ -1,12 +1,14 @@
 """Gears of a case: sizes given in several ways, helices, rims, and what `check` and `gears` say of them."""
 
 import math
+import tomllib
 from typing import Any
 
 import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
+from gearwhine.coupling.gears import RingSupport
 from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.terminal import show, shown_by
 from gearwhine.results import check
@@ -93,12 +95,30 @@ def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
     assert (wheel.rim_thickness, wheel.web_thickness) == (pytest.approx(9e-3), pytest.approx(8e-3))
     assert wheel.tooth_thinning == pytest.approx(0.05e-3)
     assert pinion.is_undercut
-    import tomllib
-
     assert parse_case(tomllib.loads(dump_case(case)), source="resolved.toml") == case
 
 
 @pytest.mark.slow
+def test_the_support_of_a_ring_reaches_its_gear_and_makes_its_mesh_softer() -> None:
+    pinion = TOOTH | {"profile_shift": 0.3, "teeth": 28}
+    ring = TOOTH | {"teeth": -82, "profile_shift": -0.3, "addendum": 0.8, "rim": "8 mm"}
+    bolts = {"kind": "bolts", "count": 6, "seat_width": "15 mm", "radial_stiffness": "2e9 N/m", "first": "10 deg"}
+    cases = [case_of(pinion, ring | more) for more in ({}, {"ring_support": bolts})]
+    support = cases[1].parts.gears["wheel"].ring_support
+    assert support == RingSupport("bolts", 6, 15e-3, 2e9, None, math.radians(10.0))
+    assert parse_case(tomllib.loads(dump_case(cases[1])), source="resolved.toml") == cases[1]
+    clamped, bolted = (
+        gears_document(analyse_pairs(case, solve_gears(case.parts)))["pairs"][0]["stiffness_n_per_m"] for case in cases
+    )
+    assert bolted["mean"] < 0.8 * clamped["mean"]
+    springs = {"kind": "springs", "radial_stiffness": "2e10 N/m", "tangential_stiffness": "2e10 N/m"}
+    for model, words in (("elastic-ring", "between the 6 bolts"), ("iso6336", "does not know the support")):
+        doubts = check_document(case_of(pinion, ring | {"ring_support": bolts}, stiffness={"model": model}))["warnings"]
+        assert [words in one["message"] for one in doubts if one["name"] == "ring support"] == [True]
+    even = check_document(case_of(pinion, ring | {"ring_support": springs}))
+    assert "ring support" not in [one["name"] for one in even.get("warnings", [])]
+
+
 def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) -> None:
     geometry = HELICAL.parts.pair_geometries[0]
     document = check_document(HELICAL)

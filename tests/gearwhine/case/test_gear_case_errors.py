@@ -45,6 +45,18 @@ ONE_WRONG = {
         "gear[0].fault[0].tooth",
         "a tooth from 0 to 27, got 99",
     ),
+    "ring support of an external gear": (
+        "gear.0.ring_support",
+        {"kind": "clamped"},
+        "gear[0].ring_support",
+        "none of an external gear",
+    ),
+    "bolts without their number": (
+        "gear.0.ring_support",
+        {"kind": "bolts", "seat_width": "10 mm"},
+        "gear[0].ring_support.count",
+        "a value beside kind = 'bolts'",
+    ),
     "relief from nowhere": ("gear.0.tip_relief", {"amount": "10 um"}, "gear[0].tip_relief", "exactly one of"),
     "end relief without length": (
         "gear.0.errors",

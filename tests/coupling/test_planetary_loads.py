@@ -1,0 +1,115 @@
+"""Load sharing between planets: closed forms of floating members, balance of forces, and the motion over time."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gearwhine.coupling import CouplingError, Machine
+from gearwhine.coupling.description.planetary import PlanetarySet
+from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load, turned_carrier
+from tests.machines.plane_planetary_set import STEEL, equal_angles, plane_set
+
+ERROR = 20e-6  # m, of the first pin, along the circle
+SUN_BEARINGS_OF_A_FLOATING_SUN = 1e-4  # over those of a held one
+
+
+@cache
+def _machine(count: int, *, floating: bool = False, error: float = ERROR, gravity: bool = False) -> Machine:
+    parts = plane_set(
+        equal_angles(count),
+        pressure_angle=np.radians(20.0),
+        with_ring=True,
+        damping=1e-5,
+        material=STEEL,
+        diameter=0.05,
+    )
+    parts["shafts"] = [
+        replace(shaft, pin_error=(0.0, error)) if shaft.name == "planet 1" else shaft for shaft in parts["shafts"]
+    ]
+    if floating:
+        parts["bearings"] = [
+            replace(one, bearing=replace(one.bearing, stiffness=SUN_BEARINGS_OF_A_FLOATING_SUN * one.bearing.stiffness))
+            if one.rotor == "sun"
+            else one
+            for one in parts["bearings"]
+        ]
+    gears = tuple(f"planet gear {number}" for number in range(1, count + 1))
+    planetary = PlanetarySet("stage", gears, "carrier", sun="sun gear", ring="ring gear")
+    return Machine(
+        **parts,
+        speed=300.0,
+        torque=200.0,
+        planetary_sets=[planetary],
+        gravity=(0.0, -9.81, 0.0) if gravity else None,
+    )
+
+
+def _shares(machine: Machine) -> np.ndarray:
+    load = planetary_load(machine, machine.placed_sets[0], machine.operating_point())
+    return np.array([planet.load_share for planet in load.planets])
+
+
+def test_equal_planets_share_equally() -> None:
+    for count in (3, 4):
+        assert _shares(_machine(count, error=0.0)) == pytest.approx(np.full(count, 1.0 / count), abs=1e-9)
+
+
+def test_a_planet_that_stands_behind_carries_less_and_a_floating_sun_evens_three_out() -> None:
+    held, floating = _shares(_machine(3)), _shares(_machine(3, floating=True))
+    # The sun turns counter-clockwise; the pin is displaced along its rotation, away from the sun's teeth.
+    assert held[0] < 1.0 / 3.0 < held[1] == pytest.approx(held[2], rel=1e-6)
+    # Three forces on a body that nothing else holds across its axis are equal.
+    assert floating == pytest.approx(np.full(3, 1.0 / 3.0), abs=1e-3)
+
+
+def test_four_planets_of_a_floating_sun_carry_alike_in_pairs() -> None:
+    """Four tangential forces at right angles on a free body: those of opposite planets are equal."""
+    shares = _shares(_machine(4, floating=True))
+    assert shares[0] == pytest.approx(shares[2], rel=3e-3)
+    assert shares[1] == pytest.approx(shares[3], rel=1e-6)
+    assert shares[1] > shares[0] + 0.02
+
+
+def test_forces_of_a_planet_balance_its_pin_and_its_circling() -> None:
+    machine = _machine(3)
+    point = machine.operating_point()
+    carrier = machine.speeds["carrier"]
+    for number, name in enumerate(("planet 1", "planet 2", "planet 3")):
+        meshes = np.zeros(2)
+        for place in (number, number + 3):
+            pair = point.pairs[place]
+            for gear, flank in ((pair.pair.driver, pair.pair.line.driver), (pair.pair.driven, pair.pair.line.driven)):
+                if gear.shaft == name:
+                    meshes -= flank.side * pair.force * np.array(flank.push)
+        on_pins = np.sum([load.force[:2] for load in point.bearings if load.mounted.rotor == name], axis=0)
+        outward = machine.rotor(name).mass * carrier**2 * np.array(machine.shaft(name).axis)
+        assert meshes + outward == pytest.approx(on_pins, abs=1e-9 * np.abs(on_pins).max())
+
+
+def test_weight_turns_through_the_planets_over_a_turn_of_the_carrier() -> None:
+    machine = _machine(3, error=0.0, gravity=True)
+    turn = over_carrier_turn(machine, "carrier", np.radians([0.0, 120.0, 240.0]))
+    shares = turn.load_shares("stage")
+    assert np.ptp(shares[0]) > 1e-6
+    for angle in (1, 2):
+        # A third of a turn takes each planet to the place of the next one.
+        assert shares[angle] == pytest.approx(np.roll(shares[0], -angle), abs=1e-9)
+    axis = turned_carrier(machine, "carrier", np.radians(120.0)).shaft("planet 1").axis
+    assert axis == pytest.approx(machine.shaft("planet 2").axis, abs=1e-12)
+
+
+def test_a_turn_of_what_carries_no_planets_is_refused() -> None:
+    with pytest.raises(CouplingError, match="no planets on 'sun'; expected a carrier, one of carrier"):
+        over_carrier_turn(_machine(3), "sun")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("count", "floating"), [(3, False), (3, True), (4, False), (4, True)])
+def test_mean_sharing_over_time_is_that_of_statics(count: int, floating: bool) -> None:
+    machine = _machine(count, floating=floating)
+    motion = machine.simulate(revolutions=12, discard=6)
+    means = np.array([force.mean() for name, force in motion.histories.mesh_force.items() if name.startswith("sun")])
+    assert means / means.sum() == pytest.approx(_shares(machine), rel=0.01)
+    assert motion.result.energy_error < 1e-4

@@ -1,0 +1,96 @@
+"""The bundled planetary stage: its drawing, `check`, load sharing on its housing, and lines of its motion."""
+
+import importlib.util
+import json
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearwhine.cli import run_command
+from gearwhine.meshes.gmsh_meshing import gmsh_session
+
+ROOT = Path(__file__).parents[2]
+NAME = "planetary-stage"
+COARSE = ("--set", "housing.cad.mesh_size=24 mm", "--set", "housing.frequency_limit=1.6 kHz")
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(ROOT / "scripts")
+    spec = importlib.util.spec_from_file_location("planetary_drawing", ROOT / "scripts" / "make_planetary_stage.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, module)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _measures(path: Path) -> list[float]:
+    """Volume [mm³] and bounds [mm] of the only solid."""
+    with gmsh_session("file") as gmsh:
+        ((dimension, tag),) = gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.synchronize()
+        return [gmsh.model.occ.getMass(dimension, tag), *gmsh.model.getBoundingBox(dimension, tag)]
+
+
+def test_the_script_draws_the_bundled_file(script: ModuleType, tmp_path: Path) -> None:
+    script.write(tmp_path / "drawn.step")
+    bundled, size = _measures(script.TARGET), script.Stage()
+    assert bundled == pytest.approx(_measures(tmp_path / "drawn.step"), rel=1e-6, abs=1e-4)
+    assert bundled[2] == pytest.approx(0.0, abs=1e-5)
+    assert bundled[3::3] == pytest.approx([-size.half - size.back.length, size.half + size.front.length], abs=1e-5)
+
+
+def _json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
+    assert run_command([*words, "-q", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert isinstance(document, dict)
+    return document
+
+
+def test_check_tells_members_and_mesh_frequency(capsys: pytest.CaptureFixture[str]) -> None:
+    document = _json(capsys, "check", NAME)
+    # Willis: 3000 rpm over 1 + 90 / 24; the mesh of 90 teeth of the ring with the carrier's speed.
+    carrier = 3000.0 / (1.0 + 90.0 / 24.0)
+    speeds = {rotor["name"]: rotor["speed_rpm"] for rotor in document["rotors"]}
+    assert speeds["carrier"] == pytest.approx(carrier)
+    assert speeds["ring"] == 0.0
+    assert {round(pair["mesh_frequency_hz"], 6) for pair in document["gear_pairs"]} == {round(90.0 * carrier / 60.0, 6)}
+
+
+@pytest.mark.slow
+def test_planets_share_the_load_on_the_housing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    document = _json(capsys, "load", NAME, "--carrier-turn", "-o", str(out), *COARSE)
+    (stage,) = document["planetary"]
+    torques = {member["role"]: member["torque_n_m"] for member in stage["members"]}
+    assert [torques[role] for role in ("sun", "ring", "carrier")] == pytest.approx([60.0, 225.0, -285.0])
+    shares = np.array([planet["load_share"] for planet in stage["planets"]])
+    assert shares.sum() == pytest.approx(1.0, abs=1e-9)
+    assert shares[0] < 1.0 / 3.0 < shares[1]
+    # Tangential forces of both meshes on a planet of 57 mm: what its pin takes of the torque on the carrier.
+    tangential = 285.0 / 0.057 * shares
+    assert [planet["bearing_force_n"] for planet in stage["planets"]] == pytest.approx(tangential, rel=0.02)
+    (turn,) = document["carrier_turns"]
+    assert np.sum(turn["sets"][0]["load_share"], axis=0) == pytest.approx(np.ones(24), abs=1e-9)
+    assert {"load-planetary-stage.png", "load-carrier-turn-carrier.png"} <= {path.name for path in out.iterdir()}
+
+
+@pytest.mark.slow
+def test_sensors_have_sidebands_by_the_turning_carrier(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Planets alike pass a sensor three times a turn: lines at orders of the carrier that are no multiple of 3 vanish."""
+    alike = ("--set", 'planetary[0].pin_errors=["0 um", "0 um", "0 um"]')
+    short = ("--set", "transient.revolutions=19", "--set", "transient.discard=9.5")
+    run = _json(capsys, "run", NAME, "-o", str(tmp_path / "out"), "--no-pictures", *COARSE, *alike, *short)
+    assert run["energy_error"] < 1e-4
+    carrier = 3000.0 / 4.75 / 60.0
+    (ring,) = (sensor for sensor in run["sensors"] if sensor["name"] == "ring top")
+    highest = ring["peaks"][:6]
+    for peak in highest:
+        order = peak["frequency_hz"] / carrier
+        assert order == pytest.approx(3.0 * round(order / 3.0), abs=0.05)
