@@ -572,12 +572,12 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
             yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
         for on_it in machine.gears:
-            support = on_it.gear.ring_support
-            if shaft.rim_seat is None or on_it.shaft != shaft.name or support is None:
+            rim = on_it.gear.ring_support
+            if shaft.rim_seat is None or on_it.shaft != shaft.name or rim is None:
                 continue
-            if support.kind in ("springs", "bolts", "pins"):
+            if rim.kind in ("springs", "bolts", "pins"):
                 expected = f'a ring_support of the housing, as the rim follows the bore of "{shaft.rim_seat}"'
-                yield Finding(("gear", on_it.name), "ring_support", support.kind, expected)
+                yield Finding(("gear", on_it.name), "ring_support", rim.kind, expected)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:
