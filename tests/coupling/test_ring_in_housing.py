@@ -10,6 +10,9 @@ from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.coupling.time.transient import simulate
 from gearwhine.housing.model.patches import patch_center, rigid_motions, ring_matrix
 from gearwhine.meshes import ElementBlock, Mesh
 from tests.machines.plane_planetary_set import STEEL, equal_angles, plane_set
@@ -121,3 +124,45 @@ def test_motion_by_harmonic_balance_satisfies_the_equations_in_time() -> None:
             left = left + now @ force
             largest = max(largest, float(np.abs(now @ force).max()))
         assert np.abs(left).max() < 1e-6 * largest
+
+
+@pytest.mark.slow
+def test_sidebands_at_a_sensor_are_those_of_moving_forces() -> None:
+    """Modes of the ring under the recorded mesh forces, which circle with the carrier: a closed form at each line."""
+    speed, turns = 300.0, 4
+    machine, housing = _machine(speed), _ring_housing()
+    carrier = machine.speeds["carrier"]
+    period = 2.0 * np.pi / carrier
+    count = 8192
+    settings = TransientSettings(
+        duration=2.0 * turns * period,
+        record_from=turns * period,
+        sample_interval=turns * period / count,
+        largest_step=period / 4096,
+        tolerance=5e-4,
+    )
+    result = simulate(machine.system, settings, transient_outputs(machine))
+    found = np.fft.rfft(histories(machine, result).sensor_acceleration["top"]) / count
+    times = result.times
+    modal = np.zeros((4, count))
+    names = [contact.name for contact in machine.system.contacts]
+    pressure = np.radians(20.0)
+    motions = housing.ring_motions["bore"]
+    for planet in range(3):
+        force = result.force[:, names.index(f"planet gear {planet + 1} -> ring gear")]
+        angle = 2.0 * np.pi * planet / 3.0 + carrier * times
+        # The planet, driven clockwise, pushes the ring outward and against the circle.
+        outward, along = np.sin(pressure) * force, -np.cos(pressure) * force
+        for order in (2, 3):
+            a, b, c, d = motions[:, 4 * order - 2 : 4 * order + 2].T[..., None]
+            modal += (a * np.cos(order * angle) + b * np.sin(order * angle)) * outward
+            modal += (c * np.cos(order * angle) + d * np.sin(order * angle)) * along
+    w = 2.0 * np.pi * np.fft.rfftfreq(count, settings.sample_interval)
+    natural, damping = np.diag(housing.stiffness)[:, None], np.diag(housing.damping)[:, None]
+    answer = -(w**2) * np.fft.rfft(modal, axis=1) / count / (natural + 1j * w * damping - w**2)
+    expected = housing.sensors["top"] @ answer
+    lines = np.argsort(np.abs(expected[: count // 8]))[-12:]
+    assert found[lines] == pytest.approx(expected[lines], rel=0.02, abs=0.01 * np.abs(expected[lines]).max())
+    # Equal planets in phase leave lines at multiples of three turns of the carrier; a line is `turns` bins a turn.
+    strong = np.flatnonzero(np.abs(found[: count // 8]) > 1e-3 * np.abs(found[: count // 8]).max())
+    assert np.all(strong % (3 * turns) == 0)

@@ -79,18 +79,3 @@ def test_planets_share_the_load_on_the_housing(capsys: pytest.CaptureFixture[str
     (turn,) = document["carrier_turns"]
     assert np.sum(turn["sets"][0]["load_share"], axis=0) == pytest.approx(np.ones(24), abs=1e-9)
     assert {"load-planetary-stage.png", "load-carrier-turn-carrier.png"} <= {path.name for path in out.iterdir()}
-
-
-@pytest.mark.slow
-def test_sensors_have_sidebands_by_the_turning_carrier(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Three planets alike leave lines at those orders of the carrier alone that are multiples of 3."""
-    alike = ("--set", 'planetary[0].pin_errors=["0 um", "0 um", "0 um"]')
-    short = ("--set", "transient.revolutions=38", "--set", "transient.discard=19")
-    run = _json(capsys, "run", NAME, "-o", str(tmp_path / "out"), "--no-pictures", *COARSE, *alike, *short)
-    assert run["energy_error"] < 1e-4
-    carrier = 3000.0 / 4.75 / 60.0
-    (ring,) = (sensor for sensor in run["sensors"] if sensor["name"] == "ring top")
-    highest = ring["peaks"][:6]
-    for peak in highest:
-        order = peak["frequency_hz"] / carrier
-        assert order == pytest.approx(3.0 * round(order / 3.0), abs=0.05)
