@@ -9,7 +9,7 @@ come from :mod:`gearwhine.coupling.statics`.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -33,7 +33,7 @@ from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
 from gearwhine.coupling.gears.geometry.pair import mesh_frequency
 from gearwhine.coupling.gears.loaded.face_load import FaceTangent
-from gearwhine.coupling.machine.base_motion import base_loads, gravity_load, rotor_participation
+from gearwhine.coupling.machine.base_motion import base_loads, gravity_load
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.components import (
     Component,
@@ -48,16 +48,25 @@ from gearwhine.coupling.machine.connectors import (
     NonlinearConnector,
     Sliding,
     SpeedTable,
-    TurningPart,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
-from gearwhine.coupling.machine.frames import Frames, in_frame, is_isotropic, stiffness_in_frame
+from gearwhine.coupling.machine.frames import Frames, in_frame, stiffness_in_frame
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
-from gearwhine.coupling.machine.mesh_kinematics import FlankMotion
-from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
+from gearwhine.coupling.machine.planets import (
+    alike_all_round,
+    bearing_frame,
+    centrifugal_load,
+    centrifugal_stiffness,
+    deformed_rim,
+    frame_speeds,
+    mesh_frame,
+    shaft_around,
+    turning_rims,
+)
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -304,7 +313,7 @@ def assemble_machine(
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
-    frames = Frames(components, _frame_speeds(rotors, bearings, meshes, speeds))
+    frames = Frames(components, frame_speeds(rotors, bearings, meshes, speeds))
     components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
     if speed_ratios is None:
@@ -320,7 +329,7 @@ def assemble_machine(
     ]
     within = [_torque_support(coordinates, housing, support) for support in torque_supports]
     within += [
-        _centrifugal_stiffness(coordinates, rotor, bearings, frames)
+        centrifugal_stiffness(coordinates, rotor, bearings, frames)
         for rotor in rotors
         if rotor.carrier is not None and frames.of(rotor.name) != 0.0
     ]
@@ -344,7 +353,7 @@ def assemble_machine(
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
     acting = frames.loads(_coordinate_loads(coordinates, bearings, loads))
-    acting.constant += _centrifugal_load(coordinates, frames)
+    acting.constant += centrifugal_load(coordinates, frames)
     for linear, _ in bearing_connectors:
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
@@ -364,14 +373,14 @@ def assemble_machine(
     with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, mean_faces)
     system = with_balanced_friction(with_faces)
     if frames.turn:
-        of_contacts = [_mesh_frame(coordinates, mesh) for mesh, _ in flanks]
-        of_linear = [_bearing_frame(mounted, coordinates, frames) for mounted in bearings]
+        of_contacts = [mesh_frame(coordinates, mesh) for mesh, _ in flanks]
+        of_linear = [bearing_frame(mounted, coordinates, frames) for mounted in bearings]
         for connector in system.linear[len(bearings) :]:
             tilted = connector.of_contact
             of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
         system = frames.turned(system, of_linear, of_contacts)
         rims = [
-            tuple(_turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)
+            tuple(turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)
         ]
         contacts_on_rims = zip(system.contacts, rims, strict=True)
         system = replace(
@@ -426,7 +435,7 @@ def _bearing(
     A grounded bearing that is alike all round stands still in any frame.
     """
     rotor, at = coordinates.rotor(mounted.rotor), mounted.bearing.at
-    around = _shaft_around(mounted, coordinates)
+    around = shaft_around(mounted, coordinates)
     speed = coordinates.speeds[rotor.name] - (0.0 if around is None else coordinates.speeds[around.name])
     bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
@@ -445,7 +454,7 @@ def _bearing(
         relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
     elif bearing.pedestal is not None:
         relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
-    elif frames.of(rotor.name) != 0.0 and _alike_all_round(mounted):
+    elif frames.of(rotor.name) != 0.0 and alike_all_round(mounted):
         stiffness = stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
     nonlinear = None
     if mounted.law is not None:
@@ -465,57 +474,6 @@ def _bearing(
     return linear, nonlinear
 
 
-def _shaft_around(mounted: MountedBearing, coordinates: MachineCoordinates) -> RotorComponent | None:
-    """Return the shaft that holds a bearing: a planet's carrier, or one named as its seat; None for other seats."""
-    name = coordinates.rotor(mounted.rotor).carrier or mounted.seat
-    return coordinates.rotor(name) if name is not None and coordinates.is_rotor(name) else None
-
-
-def _frame_speeds(
-    rotors: Sequence[RotorComponent],
-    bearings: Sequence[MountedBearing],
-    meshes: Sequence[GearMesh],
-    speeds: Mapping[str, float],
-) -> dict[str, float]:
-    """Speed of the frame of each rotor's coordinates [rad/s].
-
-    Planets and their carriers turn with the carrier. So does a sun or a ring whose other connectors are alike all
-    round: what joins it to the planets is constant there. All other parts stand still.
-    """
-    carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
-    frames = {name: speeds[carrier] for name, carrier in carriers.items()}
-    frames |= {carrier: speeds[carrier] for carrier in carriers.values()}
-    for rotor in rotors:
-        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]
-        others = [set(pair) - {rotor.name} for pair in pairs if rotor.name in pair]
-        around = {carriers.get(other) for one in others for other in one}
-        if rotor.name in frames or len(around) != 1 or None in around:
-            continue
-        carrier = carriers[next(iter(others[0]))]
-        on_it = [mounted for mounted in bearings if rotor.name in (mounted.rotor, mounted.seat)]
-        if all(_alike_all_round(one) or {one.rotor, one.seat} == {rotor.name, carrier} for one in on_it):
-            frames[rotor.name] = speeds[carrier]
-    return frames
-
-
-def _alike_all_round(mounted: MountedBearing) -> bool:
-    """Whether a bearing stands on rigid ground and has a linear law that is the same in all directions."""
-    if mounted.seat is not None or mounted.law is not None or mounted.bearing.pedestal is not None:
-        return False
-    if mounted.offset is not None or mounted.bearing.speeds is not None:
-        return False
-    bearing = mounted.bearing
-    return is_isotropic(bearing.spatial_stiffness) and is_isotropic(bearing.spatial_damping)
-
-
-def _bearing_frame(mounted: MountedBearing, coordinates: MachineCoordinates, frames: Frames) -> float:
-    """Speed at which a bearing turns [rad/s]: with the shaft that holds it, or with any frame where it is isotropic."""
-    around = _shaft_around(mounted, coordinates)
-    if around is not None:
-        return frames.of(around.name)
-    return frames.of(mounted.rotor) if _alike_all_round(mounted) else 0.0
-
-
 def _torque_support(
     coordinates: MachineCoordinates, housing: HousingComponent | None, support: TorqueSupport
 ) -> LinearConnector:
@@ -530,43 +488,6 @@ def _torque_support(
     stiffness = np.array([[support.stiffness]])
     name = f"torque support of {support.shaft}"
     return LinearConnector(name, row[:, None], stiffness, support.damping_time * stiffness)
-
-
-def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatArray:
-    """Centrifugal forces of the planets on their coordinates, (n,): their axes circle with their carriers."""
-    load = np.zeros(coordinates.size)
-    for part in coordinates.components:
-        if isinstance(part, RotorComponent) and part.carrier is not None:
-            outward = np.subtract(part.axis, coordinates.rotor(part.carrier).axis)
-            participation = rotor_participation(part, (0.0, 0.0, 0.0))[:, :2]
-            load += coordinates.rows(part.name, participation @ (frames.of(part.name) ** 2 * outward))
-    return load
-
-
-def _centrifugal_stiffness(
-    coordinates: MachineCoordinates, planet: RotorComponent, bearings: Sequence[MountedBearing], frames: Frames
-) -> LinearConnector:
-    """Geometric stiffness of a pin under the centrifugal force N = m a f² of its planet.
-
-    The force follows the carrier: a rotation θ beyond the nominal one turns it, and the planet's tangential motion u
-    beside the carrier's gives it an arm. By the second-order terms of the pin's deflection in the carrier's own frame
-    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium.
-    """
-    carrier = coordinates.rotor(planet.carrier or "")
-    outward = np.subtract(planet.axis, carrier.axis)
-    distance = math.hypot(*outward)
-    participation = rotor_participation(planet, (0.0, 0.0, 0.0))[:, :2]
-    mass = float(np.sum(participation[:, 0] ** 2))
-    at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
-    station = carrier.station(planet.start + at)
-    along = np.array([-outward[1], outward[0]]) / distance
-    # The planet's motion is that of its centre of mass, so that the force is spread as the inertia that it balances.
-    tangential = coordinates.rows(planet.name, participation @ along / mass)
-    tangential = tangential - coordinates.rows(carrier.name, along @ carrier.motions(station)[:2])
-    force = mass * distance * frames.of(planet.name) ** 2
-    law = force * np.array([[0.0, 1.0], [1.0, -distance]])
-    directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
-    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
 
 
 def _transports(
@@ -612,11 +533,6 @@ def _contact(
         sliding=_sliding(coordinates, mesh, contact, sense),
         compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
     )
-
-
-def _mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:
-    """Speed at which the line of centres of a mesh turns, that of the carrier of a planet in it [rad/s]."""
-    return 0.0 if mesh.carrier is None else coordinates.speeds[mesh.carrier]
 
 
 def _coordinate_loads(
@@ -705,7 +621,7 @@ def _with_faces(
     for number, (face, _, under, _) in mean.states.items():
         if under.force > 0.0:
             contact = system.contacts[number]
-            frame = _mesh_frame(coordinates, flanks[number][0])
+            frame = mesh_frame(coordinates, flanks[number][0])
             shuttling = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
             harmonics += [part for load in shuttling for part in frames.harmonics(load, frame)]
     return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
@@ -818,7 +734,7 @@ def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]
 
 def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothContact, sense: int) -> Sliding | None:
     """Sliding of one side of the teeth, with the law ``contact``; None without friction, or where nothing turns."""
-    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == _mesh_frame(coordinates, mesh):
+    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == mesh_frame(coordinates, mesh):
         return None
     return sliding_flanks(
         coordinates,
@@ -848,34 +764,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
         compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
-        direction += sum(part for part, _ in _deformed_rim(coordinates, mounted, flank))
+        direction += sum(part for part, _ in deformed_rim(coordinates, mounted, flank))
         if gear.eccentricity:
-            speed = coordinates.speeds[mounted.rotor] - _mesh_frame(coordinates, mesh)
+            speed = coordinates.speeds[mounted.rotor] - mesh_frame(coordinates, mesh)
             errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)
-
-
-def _deformed_rim(
-    coordinates: MachineCoordinates, mounted: MountedGear, flank: FlankMotion
-) -> list[tuple[FloatArray, FloatArray]]:
-    """Parts of the compression by the bore that a ring's rim follows, by the orders of its circumference, (n,) both.
-
-    See :meth:`gearwhine.coupling.machine.components.HousingComponent.ring_harmonics`.
-    """
-    housing = next((part for part in coordinates.components if isinstance(part, HousingComponent)), None)
-    if mounted.rim_seat is None or housing is None:
-        return []
-    place = math.atan2(flank.arm[1], flank.arm[0])
-    return [
-        (flank.side * coordinates.rows(housing.name, cosine), flank.side * coordinates.rows(housing.name, sine))
-        for cosine, sine in housing.ring_harmonics(mounted.rim_seat, flank.push, place)
-    ]
-
-
-def _turning_rims(coordinates: MachineCoordinates, mesh: GearMesh, sense: int, frame: float) -> Iterator[TurningPart]:
-    """Yield the parts by which the deformation of a ring's bore moves the flanks of a mesh that turns in it."""
-    line = mesh.line_of_action(sense)
-    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
-        for order, (cosine, sine) in enumerate(_deformed_rim(coordinates, mounted, flank)):
-            if order and frame != 0.0:
-                yield TurningPart(order * frame, cosine[:, None], sine[:, None])
