@@ -67,6 +67,7 @@ from gearwhine.coupling.machine.planets import (
     shaft_around,
     turning_rims,
 )
+from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -155,11 +156,7 @@ class CoupledMachine:
         speeds, lead = self.speeds, self.leading_rotor
         names = [rotor.name for rotor in self.rotors]
         train = next(train for train in trains(names, geared_names(self.meshes)) if lead in train)
-        return sum(
-            float(rotor.turning @ rotor.turning) * (speeds[rotor.name] / speeds[lead]) ** 2
-            for rotor in self.rotors
-            if rotor.name in train
-        )
+        return rotating_inertia(self.rotors, {name: speeds[name] / speeds[lead] for name in train})
 
     @property
     def loaded_contacts(self) -> tuple[int, ...]:

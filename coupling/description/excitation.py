@@ -27,6 +27,7 @@ from gearwhine.coupling.machine.loads import (
     TorqueOverTime,
     TorqueSlope,
 )
+from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
 from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile, SpeedRun, TorqueLine, free_speed
 from gearwhine.numerics.own_copies import keep_tuples
 
@@ -203,10 +204,7 @@ def train_inertia(train: GearTrain, rotors: Sequence[RotorComponent], first: str
     """
     rotating = set(train.ratios) if train.pairs else {first}
     ratio = float(train.ratios[first])
-    inertias = {rotor.name: float(np.sum(rotor.turning**2)) for rotor in rotors}
-    return sum(
-        inertia * (float(train.ratios[name]) / ratio) ** 2 for name, inertia in inertias.items() if name in rotating
-    )
+    return rotating_inertia(rotors, {name: float(train.ratios[name]) / ratio for name in rotating})
 
 
 def _speed_profile(

@@ -21,6 +21,7 @@ from gearwhine.coupling.machine.loads import (
     TorqueSlope,
     Unbalance,
 )
+from gearwhine.coupling.machine.rotating_inertia import circling, rotating_inertia
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -146,7 +147,7 @@ class MachineCoordinates:
         The coordinates turn relative to the nominal rotation, so each shaft's inertia holds it back by -∫ Ω s'' dI_p,
         which its modes feel as -Ω s'' times the coordinates of a rotation of the whole. For rotors that gears connect,
         of inertia J and speed Ω, the drive adds (Σ J Ω²) s'' / Ω_drive, so that the train as a whole follows the
-        nominal rotation, and no load is left on it.
+        nominal rotation, and no load is left on it. A planet circles with its carrier as well.
 
         Parameters
         ----------
@@ -156,16 +157,21 @@ class MachineCoordinates:
             Drives, at most one for each train; a train without a drive is driven at the left end of its first rotor.
         """
         total = np.zeros(self.size)
-        rotors = [part.name for part in self.components if isinstance(part, RotorComponent)]
-        for train in trains(rotors, pairs):
-            driving = [drive for drive in drives if drive.rotor in train] or [Drive(train[0], 0.0)]
+        rotors = [part for part in self.components if isinstance(part, RotorComponent)]
+        for train in trains([rotor.name for rotor in rotors], pairs):
+            first = next((name for name in train if self.speeds[name] != 0.0), train[0])
+            driving = [drive for drive in drives if drive.rotor in train] or [Drive(first, 0.0)]
             if len(driving) > 1:
                 raise CouplingError(
                     f"rotors {[one.rotor for one in driving]} of one train are said to drive it; expected one"
                 )
             for name in train:
                 total -= self.speeds[name] * self.rigid_rotation(name)
-            power = sum(self.speeds[name] ** 2 * float(np.sum(self.rigid_rotation(name) ** 2)) for name in train)
+                carrier = self.rotor(name).carrier
+                if carrier is not None:
+                    row = circling(self.rotor(name), self.rotor(carrier).axis)
+                    total -= self.speeds[carrier] * self.rows(name, row)
+            power = rotating_inertia(rotors, {name: self.speeds[name] for name in train})
             if power:
                 total += power / self.speeds[driving[0].rotor] * self.rotation(driving[0].rotor, driving[0].at)
         return total

@@ -105,6 +105,22 @@ def test_a_turn_of_what_carries_no_planets_is_refused() -> None:
         over_carrier_turn(_machine(3), "sun")
 
 
+def test_an_acceleration_leaves_no_load_on_the_set_as_a_whole() -> None:
+    """Planets circle with their carrier: their Euler forces and m a² of the carrier's inertia are in the balance."""
+    machine = _machine(3, error=0.0)
+    system = machine.assembled.system
+    (rigid,) = system.rigid_body_motions[0].T
+    assert rigid @ system.acceleration_load == pytest.approx(
+        0.0, abs=1e-9 * float(np.abs(rigid) @ np.abs(system.acceleration_load))
+    )
+    ratios = {name: speed / machine.speed for name, speed in machine.speeds.items()}
+    inertia = sum(machine.rotor(name).polar_inertia * ratio**2 for name, ratio in ratios.items())
+    for planet in ("planet 1", "planet 2", "planet 3"):
+        distance = np.hypot(*machine.shaft(planet).axis)
+        inertia += machine.rotor(planet).mass * distance**2 * ratios["carrier"] ** 2
+    assert machine.assembled.train_inertia == pytest.approx(inertia, rel=1e-9)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("count", "floating"), [(3, False), (3, True), (4, False), (4, True)])
 def test_mean_sharing_over_time_is_that_of_statics(count: int, floating: bool) -> None:
