@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeGuard
 
 from pydantic import Discriminator, Field, Tag, ValidationError, field_validator, model_validator
 from pydantic_core import PydanticCustomError
@@ -165,10 +165,11 @@ class PlanetCopies:
 
     def as_written(self, findings: Iterable[Finding]) -> Iterator[Finding]:
         """Yield findings at the tables of the file, that of each copy of a planet once."""
-        seen = set[tuple[Location, str]]()
+        seen = set[tuple[str, str]]()
         for finding in findings:
             placed = self.in_file(finding)
-            key = placed.location, _NUMBER_OF_COPY.sub("", placed.expected)
+            # Keys of a file that cannot be read may be of any kind.
+            key = repr(placed.location), _NUMBER_OF_COPY.sub("", placed.expected)
             if not self.origins or key not in seen:
                 seen.add(key)
                 yield placed
@@ -195,6 +196,11 @@ def with_planets(document: Mapping[str, Any], context: Mapping[str, Any]) -> tup
 
 
 _KINDS = ("rotor", "gear", "bearing", "gear_pair")
+
+
+def _are_names(names: object) -> TypeGuard[Sequence[str]]:
+    """Whether a value of a file is a list of texts."""
+    return isinstance(names, list | tuple) and all(isinstance(name, str) for name in names)
 
 
 class _Expansion:
@@ -226,10 +232,13 @@ class _Expansion:
             del one["fixed"]
         self.document["planetary"][index] = one
         planets, carrier = one.get("planets"), one.get("carrier")
-        if not isinstance(planets, list | tuple) or not isinstance(carrier, str):
+        if not _are_names(planets) or not isinstance(carrier, str):
             return
         gears = [self.named("gear", name) for name in planets]
-        rotors = list(dict.fromkeys(gear.get("rotor") for gear in gears if gear is not None))
+        named = [gear.get("rotor") for gear in gears if gear is not None]
+        if not _are_names(named):
+            return
+        rotors = list(dict.fromkeys(named))
         shafts = [self.named("rotor", name) for name in rotors]
         if not gears or None in gears or not shafts or None in shafts or self.named("rotor", carrier) is None:
             return
@@ -282,8 +291,9 @@ class _Expansion:
         listed, planets = self.document.setdefault("gear_pair", []), list(one["planets"])
         if not isinstance(listed, list):
             return
-        gears, central = set(planets), {one.get("sun"), one.get("ring")}
-        written = [{pair.get("driver"), pair.get("driven")} for _, pair in self.entries("gear_pair")]
+        gears, central = set(planets), {name for name in (one.get("sun"), one.get("ring")) if isinstance(name, str)}
+        pairs = [[pair.get("driver"), pair.get("driven")] for _, pair in self.entries("gear_pair")]
+        written = [set(pair) for pair in pairs if _are_names(pair)]
         ways = [self._way(one, planets[place : place + of_each]) for place in range(0, len(planets), of_each)]
         for meshes in zip(*ways, strict=False):
             for driver, driven in meshes:

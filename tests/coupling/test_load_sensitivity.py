@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -89,8 +90,8 @@ class Scaled:
 def scaled(machine: Machine, number: int, size: float) -> OperatingPoint:
     name = machine.bearings[number].bearing.name
 
-    def stiffer(mounted: MountedBearing, speed: float) -> StaticBearing:
-        made = static_bearing(mounted, speed)
+    def stiffer(mounted: MountedBearing, *how: Any) -> StaticBearing:
+        made = static_bearing(mounted, *how)
         if mounted.bearing.name != name:
             return made
         # A linear one stays such: its part without energy is known as that.

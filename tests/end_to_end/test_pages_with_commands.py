@@ -30,6 +30,13 @@ LESS_EFFORT = {
     "nasa-gear-noise-rig": _SHORT,
     "small-gearbox": _SHORT,
     "two-stage-reducer": ("housing.cad.mesh_size=18 mm", "housing.frequency_limit=600 Hz", *_SHORT),
+    "planetary-stage": (
+        "housing.cad.mesh_size=24 mm",
+        "housing.frequency_limit=600 Hz",
+        "transient.revolutions=1",
+        "transient.discard=0",
+        "transient.tolerance=5e-2",
+    ),
     "steel-box": (),
     "friswell-rotor": (),
 }

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -201,8 +202,8 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved,
     )
 
     def stiffer(size: float) -> OperatingPoint:
-        def made(mounted: MountedBearing, speed: float) -> StaticBearing:
-            bearing = static_bearing(mounted, speed)
+        def made(mounted: MountedBearing, *how: Any) -> StaticBearing:
+            bearing = static_bearing(mounted, *how)
             if mounted.bearing.name != name:
                 return bearing
             assert isinstance(bearing.law, RollingElementLaw)
