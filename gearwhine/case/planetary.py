@@ -252,11 +252,11 @@ class _Expansion:
         try:
             turns = self._angles(one)
             errors = self._pin_errors(one, len(turns))
-            places = self._places(one, [name for name in rotors if isinstance(name, str)])
+            places = self._places(one, rotors)
         except (PydanticCustomError, ValueError):
             return
         if turns:
-            self._copy(one, [str(name) for name in rotors], turns, errors, places)
+            self._copy(one, rotors, turns, errors, places)
             for key in ("count", "angles", "pin_errors"):
                 one.pop(key, None)
         self._pair_gears(index, one, len(planets) if turns else 1)
