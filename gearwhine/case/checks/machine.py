@@ -127,7 +127,7 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
 
 def _check_planets(draft: Draft) -> Iterator[Finding]:
     """Yield planets without a bearing, and carriers whose own axis turns with another."""
-    held = {entry.get("rotor") for _, entry in draft.raw_entries("bearing")}
+    held = [entry.get("rotor") for _, entry in draft.raw_entries("bearing")]
     for index, one in draft.planetary:
         fixed = draft.rotor(one.held_rotor([gear for _, gear in draft.gears]))
         if fixed is not None and fixed.carrier is not None:
