@@ -326,15 +326,17 @@ def assemble_machine(
     ]
     within = [_torque_support(coordinates, housing, support) for support in torque_supports]
     within += [
-        centrifugal_stiffness(coordinates, rotor, bearings, frames)
+        centrifugal_stiffness(coordinates, rotor, bearings, frames, speed_range)
         for rotor in rotors
         if rotor.carrier is not None and frames.of(rotor.name) != 0.0
     ]
     for dashpot in dashpots:
-        rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), speeds[dashpot.rotor], speed_range)
+        # In the frame of a carrier a shaft turns by so much less.
+        relative = speeds[dashpot.rotor] - frames.of(dashpot.rotor)
+        rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), relative, speed_range)
         within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
     for rotor in rotors:
-        within += _transports(coordinates, rotor, speeds[rotor.name], speed_range)
+        within += _transports(coordinates, rotor, speeds[rotor.name], frames.of(rotor.name), speed_range)
 
     senses = _senses(meshes, speeds, speed_ratios)
     phases = mesh_phases(
@@ -350,7 +352,8 @@ def assemble_machine(
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
     acting = frames.loads(_coordinate_loads(coordinates, bearings, loads))
-    acting.constant += centrifugal_load(coordinates, frames)
+    of_planets = centrifugal_load(coordinates, frames)
+    acting.constant += of_planets
     for linear, _ in bearing_connectors:
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
@@ -362,7 +365,8 @@ def assemble_machine(
         load=acting.constant,
         harmonic_loads=tuple(acting.harmonic),
         timed_loads=tuple(acting.timed),
-        acceleration_load=coordinates.acceleration_load(geared_names(meshes), loads.drives),
+        acceleration_load=coordinates.acceleration_load(geared_names(meshes), loads.drives) + acting.angular,
+        centrifugal_load=of_planets + acting.centrifugal,
         nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
@@ -488,9 +492,9 @@ def _torque_support(
 
 
 def _transports(
-    coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, speed_range: tuple[float, float]
+    coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, frame: float, speed_range: tuple[float, float]
 ) -> list[LinearConnector]:
-    """Rotation of gear bodies' modes with two nodal diameters or more.
+    """Rotation of gear bodies' modes with two nodal diameters or more, in the coordinates of the rotor's frame.
 
     See :mod:`gearwhine.coupling.machine.gear_bodies`.
     """
@@ -501,9 +505,10 @@ def _transports(
         directions = coordinates.rows(rotor.name, np.eye(rotor.size)[indices]).T
         name = f"rotation of {gear}, {mode.name}"
         ratios = np.linspace(*speed_range, 1 if speed_range[0] == speed_range[1] else _PER_GAP + 1)
-        laws = [transport(mode, rotor.damping_ratio, ratio * speed) for ratio in ratios.tolist()]
+        laws = [transport(mode, rotor.damping_ratio, ratio * speed, ratio * frame) for ratio in ratios.tolist()]
         table = SpeedTable(ratios, *(np.array(part) for part in zip(*laws, strict=True))) if len(laws) > 1 else None
-        connectors.append(LinearConnector(name, directions, *transport(mode, rotor.damping_ratio, speed), table))
+        nominal = transport(mode, rotor.damping_ratio, speed, frame)
+        connectors.append(LinearConnector(name, directions, *nominal, table))
     return connectors
 
 

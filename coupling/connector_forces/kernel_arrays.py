@@ -44,17 +44,23 @@ class Dynamics(NamedTuple):
 
     stiffness: FloatArray  # (n,) diagonal of the components' K
     damping: FloatArray  # (n,) diagonal of the components' C
-    block_start: IntArray  # (g,) first coordinate of each gyroscopic block
+    block_start: IntArray  # (g,) first coordinate of each block of gyroscopic and Coriolis terms
     block_size: IntArray  # (g,)
-    gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
+    gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded, as are those that follow
+    angular: FloatArray  # (g, b, b) Aᵀ
+    circulatory: FloatArray  # (g, b, b) Nᵀ
+    centripetal: FloatArray  # (g, b, b) Zᵀ
+    has_frames: bool  # whether coordinates are in frames that turn: whether there are N and Z
     connectors: FloatArray  # (r, n) Uᵀ, orthonormal: the connectors add U K_t Uᵀ to K and U C_t Uᵀ to C
     connector_speed_ratios: FloatArray  # (t,) speeds over the nominal one at which K_t and C_t are tabulated
     connector_stiffness: FloatArray  # (t, r, r) K_t
     connector_damping: FloatArray  # (t, r, r) C_t
     has_skew: bool  # whether K_t is not symmetric
-    constant: FloatArray  # (n,) F
+    constant: FloatArray  # (n,) F at the nominal speeds
+    centrifugal: FloatArray  # (n,) the part of F that is proportional to s'²
     acceleration_load: FloatArray  # (n,) load of an angular acceleration s'' of one
     frequency: FloatArray  # (h,) w [rad/s]
+    circling: FloatArray  # (h,) Ω [rad/s], at which an eccentric mass circles in space
     follows: IntArray  # (h,) whether the load follows time, rotation or speed: a code such as BY_TIME
     cosine: FloatArray  # (h, n) Re F_w
     sine: FloatArray  # (h, n) Im F_w
@@ -73,6 +79,7 @@ class StepMatrices(NamedTuple):
     size: FloatArray  # (m,) h [s]
     base: FloatArray  # (m, n) inverse of the diagonal of S
     blocks: FloatArray  # (m, g, b, b) inverses of its gyroscopic blocks, transposed
+    position: FloatArray  # (m, g, b, b) P = s'' A + s' N + s'² Z, transposed
     connector_stiffness: FloatArray  # (m, r, r) K_t
     connector_damping: FloatArray  # (m, r, r) C_t
     connectors: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without connectors
@@ -185,7 +192,8 @@ class Scratch(NamedTuple):
     mix_rate: FloatArray  # (e,)
     sample_mix: FloatArray  # (e,)
     sample_mix_rate: FloatArray  # (e,)
-    mixed: FloatArray  # (k, m) flexibility between columns and directions that turn
+    mixed: FloatArray  # (k, m) flexibility between columns and directions that turn, and its transpose
+    mixed_across: FloatArray  # (m, k)
     flexibility: FloatArray  # (k, k) flexibility of directions that turn
     pushed: FloatArray  # (m,) forces of the laws along the columns of directions that turn
     push: FloatArray  # (k,) forces of the laws
@@ -209,6 +217,7 @@ class Scratch(NamedTuple):
     bearing_work: FloatArray  # (8, 5): `gearwhine.coupling.connector_forces.bearing_kernels.evaluate_bearings`
     powers: FloatArray  # (5,): `gearwhine.coupling.time.newmark.evaluate_powers`
     powers_before: FloatArray  # (5,)
+    position_power: FloatArray  # (1,) [W]
     block: FloatArray  # (w,)
 
 

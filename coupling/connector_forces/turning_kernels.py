@@ -53,9 +53,12 @@ def push_columns(turning: Turning, mix: FloatArray, push: FloatArray, out: Float
 
 @inner(fastmath={"contract"})
 def turned_flexibility(
-    turning: Turning, mix: FloatArray, of_columns: FloatArray, work: FloatArray, out: FloatArray
+    turning: Turning, mix: FloatArray, of_columns: FloatArray, work: FloatArray, across: FloatArray, out: FloatArray
 ) -> None:
-    """Flexibility Mᵀ H M (k, k) of the directions by that of the columns, H (m, m); ``work`` (k, m) is overwritten."""
+    """Flexibility Mᵀ H M (k, k) of the directions by that of the columns, H (m, m).
+
+    ``work`` (k, m) and ``across`` (m, k) are overwritten: by Mᵀ H and its transpose, whose rows vectorise.
+    """
     for i in range(work.shape[0]):
         for j in range(work.shape[1]):
             work[i, j] = 0.0
@@ -65,10 +68,16 @@ def turned_flexibility(
         value, row, of_column = mix[e], work[turning.direction[e]], of_columns[turning.column[e]]
         for j in range(row.size):
             row[j] += value * of_column[j]
+    for j in range(across.shape[0]):
+        for i in range(across.shape[1]):
+            across[j, i] = work[i, j]
     for e in range(mix.size):
-        k, j, value = turning.direction[e], turning.column[e], mix[e]
-        for i in range(out.shape[0]):
-            out[i, k] += value * work[i, j]
+        value, row, of_column = mix[e], out[turning.direction[e]], across[turning.column[e]]
+        for i in range(row.size):
+            row[i] += value * of_column[i]
+    for i in range(out.shape[0]):
+        for k in range(i):
+            out[i, k], out[k, i] = out[k, i], out[i, k]
 
 
 @uncounted()

@@ -38,6 +38,41 @@ _DAMPING_MATRIX_ROUNDING = 1e-10
 
 
 @dataclass(frozen=True)
+class FrameTerms:
+    """What the turning of a component's frame adds to its equation of motion, by :mod:`.frames`; shapes (n, n).
+
+    At the relative speed s' and the angular acceleration s'' it adds s' ``coriolis`` to the damping, and s'
+    ``circulatory`` + s'² ``centripetal`` + s'' ``angular`` to the stiffness.
+
+    Attributes
+    ----------
+    coriolis : ndarray
+        [1/s], skew.
+    circulatory : ndarray
+        [1/s²], skew: of damping in the frame at rest.
+    centripetal : ndarray
+        [1/s²], symmetric: of inertia and gyroscopic moment.
+    angular : ndarray
+        [1/s], skew.
+    """
+
+    coriolis: FloatArray
+    circulatory: FloatArray
+    centripetal: FloatArray
+    angular: FloatArray
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """What is added to the stiffness at the nominal speed [1/s²]."""
+        return self.circulatory + self.centripetal
+
+    def among(self, numbers: npt.NDArray[np.int64]) -> "FrameTerms":
+        """Terms of some of the coordinates."""
+        square = np.ix_(numbers, numbers)
+        return FrameTerms(*(part[square] for part in (self.coriolis, self.circulatory, self.centripetal, self.angular)))
+
+
+@dataclass(frozen=True)
 class Component:
     """A part of the machine in modal coordinates.
 
@@ -55,6 +90,8 @@ class Component:
         C [1/s], symmetric.
     gyroscopic : ndarray, shape (n, n)
         G, skew: multiplied by the speed of rotation [rad/s] it joins the damping.
+    frame : FrameTerms or None
+        Further terms of coordinates in a frame that turns; None in one that stands still.
     """
 
     name: str
@@ -62,6 +99,7 @@ class Component:
     stiffness: FloatArray
     damping: FloatArray
     gyroscopic: FloatArray
+    frame: FrameTerms | None = field(default=None, kw_only=True)
 
     @property
     def size(self) -> int:

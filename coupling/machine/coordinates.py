@@ -36,12 +36,18 @@ class CoordinateLoads:
     harmonic : list of HarmonicLoad
     timed : list of TimedLoad
     dashpots : list of LinearConnector
+    centrifugal : ndarray, shape (n,), or float
+        The part of the constant loads that is proportional to the square of the speed.
+    angular : ndarray, shape (n,), or float
+        Loads of an angular acceleration s'' of one.
     """
 
     constant: FloatArray
     harmonic: list[HarmonicLoad] = field(default_factory=list)
     timed: list[TimedLoad] = field(default_factory=list)
     dashpots: list[LinearConnector] = field(default_factory=list)
+    centrifugal: FloatArray | float = 0.0
+    angular: FloatArray | float = 0.0
 
 
 class MachineCoordinates:

@@ -31,15 +31,19 @@ class HarmonicLoad:
     follows : "time", "turning" or "unbalance"
         Dependence on the speed where it is not the nominal one, see
         :mod:`gearwhine.coupling.machine.speed_profile`: constant frequency; phase that follows the rotation,
-        e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w) e^{iws}.
+        e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/Ω) e^{iws}.
     mechanism : str
         What makes it, see :mod:`gearwhine.coupling.linear.line_mechanisms`.
+    circling : float or None
+        Rate Ω at which an eccentric mass circles in space [rad/s]; None where it is w. In coordinates of a frame that
+        turns w is another.
     """
 
     frequency: float
     amplitude: ComplexArray
     follows: Literal["time", "turning", "unbalance"] = "time"
     mechanism: Literal["unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "load"] = "load"
+    circling: float | None = None
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,9 @@ class CoupledSystem:
     linear : tuple of LinearConnector
     contacts : tuple of ContactConnector
     load : ndarray, shape (n,)
-        Constant load F; zero by default.
+        Load F that is constant at the nominal speeds; zero by default.
+    centrifugal_load : ndarray, shape (n,)
+        The part of it that is proportional to s'²; zero by default.
     harmonic_loads : tuple of HarmonicLoad
     timed_loads : tuple of TimedLoad
     acceleration_load : ndarray, shape (n,)
@@ -106,13 +112,14 @@ class CoupledSystem:
     harmonic_loads: tuple[HarmonicLoad, ...] = ()
     timed_loads: tuple[TimedLoad, ...] = ()
     acceleration_load: FloatArray = field(default_factory=lambda: np.zeros(0))
+    centrifugal_load: FloatArray = field(default_factory=lambda: np.zeros(0))
     nonlinear: tuple[NonlinearConnector, ...] = ()
 
     def __post_init__(self) -> None:
         """Require a speed for each component, and loads of shape (n,); loads that are not given are zero."""
         if len(self.speeds) != len(self.components):
             raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
-        for attribute in ("load", "acceleration_load"):
+        for attribute in ("load", "acceleration_load", "centrifugal_load"):
             if getattr(self, attribute).shape == (0,):
                 object.__setattr__(self, attribute, np.zeros(self.size))
             if getattr(self, attribute).shape != (self.size,):
@@ -139,8 +146,10 @@ class CoupledSystem:
 
     @cached_property
     def own_stiffness(self) -> FloatArray:
-        """K of the components alone [1/s²], shape (n, n)."""
-        return self._blocks([component.stiffness for component in self.components])
+        """K of the components alone, with the terms of frames that turn [1/s²], shape (n, n)."""
+        return self._blocks(
+            [one.stiffness if one.frame is None else one.stiffness + one.frame.stiffness for one in self.components]
+        )
 
     @cached_property
     def own_damping(self) -> FloatArray:
@@ -159,9 +168,12 @@ class CoupledSystem:
 
     @cached_property
     def gyroscopic(self) -> FloatArray:
-        """G of all components, each times its nominal speed [1/s], shape (n, n): skew, and a part of C."""
-        pairs = zip(self.components, self.speeds, strict=True)
-        return self._blocks([speed * component.gyroscopic for component, speed in pairs])
+        """G of all components, each times its nominal speed, and Coriolis terms [1/s], (n, n): skew, a part of C."""
+        terms = []
+        for component, speed in zip(self.components, self.speeds, strict=True):
+            own = speed * component.gyroscopic
+            terms.append(own if component.frame is None else own + component.frame.coriolis)
+        return self._blocks(terms)
 
     @cached_property
     def connector_speed_ratios(self) -> FloatArray:

@@ -11,7 +11,8 @@ has in this frame, as C, G and K are alike in all directions,
     y'' + (C + Ω G + 2 f J) y' + (K + f (C + Ω G) J - f² n²) y = e^{-J f t} F:
 
 Coriolis and centripetal terms, and the turning of gyroscopic moment and damping (Lin & Parker, J. Vib. Acoust. 121,
-316, 1999, Eqs. 1 to 9, for rigid bodies in a plane). The frames coincide with the ground at t = 0.
+316, 1999, Eqs. 1 to 9, for rigid bodies in a plane). The frames coincide with the ground at t = 0. Where the speeds
+change with the nominal time s, f and Ω are multiplied by s', and the frame's angular acceleration adds s'' f J y.
 
 A connector fixed in a frame at f_c has the directions e^{J (f_c - f) t} D in the coordinates of a frame at f.
 """
@@ -23,7 +24,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.coupling.machine.components import Component, PedestalComponent, RotorComponent
+from gearwhine.coupling.machine.components import Component, FrameTerms, PedestalComponent, RotorComponent
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
@@ -68,12 +69,14 @@ def in_frame(component: Component, speed: float, frame: float) -> Component:
         return component
     orders, quarter = orders_and_quarter_turn(component)
     turn = orders[:, None] * quarter
-    opposing = component.damping + speed * component.gyroscopic
-    stiffness = component.stiffness + frame * opposing @ turn - np.diag(frame**2 * orders.astype(np.float64) ** 2)
-    if speed == 0.0:
-        return replace(component, stiffness=stiffness, damping=component.damping + 2.0 * frame * turn)
-    # What joins the damping in proportion to the speed is a gyroscopic term.
-    return replace(component, stiffness=stiffness, gyroscopic=component.gyroscopic + 2.0 * frame / speed * turn)
+    gyroscopic = frame * speed * component.gyroscopic @ turn
+    terms = FrameTerms(
+        coriolis=2.0 * frame * turn,
+        circulatory=frame * component.damping @ turn,
+        centripetal=gyroscopic - np.diag(frame**2 * orders.astype(np.float64) ** 2),
+        angular=frame * turn,
+    )
+    return replace(component, frame=terms)
 
 
 _TURN = np.zeros((5, 5))
@@ -174,6 +177,10 @@ class Frames:
         for load in (part for whole in [still, *acting.harmonic] for part in self.harmonics(whole, 0.0)):
             if load.frequency == 0.0:
                 moved.constant += load.amplitude.real
+                if load.circling:
+                    # An eccentric mass that circles with the frame.
+                    moved.centrifugal = moved.centrifugal + load.amplitude.real
+                    moved.angular = moved.angular + load.amplitude.imag / load.circling
             else:
                 moved.harmonic.append(load)
         return moved
@@ -190,6 +197,8 @@ class Frames:
         if not np.any(load.amplitude[turned]):
             yield load
             return
+        if load.follows == "unbalance" and load.circling is None:
+            load = replace(load, circling=load.frequency)
         stands = np.where(turned, 0.0, load.amplitude)
         if np.any(stands):
             yield replace(load, amplitude=stands)

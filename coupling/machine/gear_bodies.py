@@ -181,7 +181,7 @@ def body_out_of_plane(gear: Gear, inertia: tuple[float, float, float], limit: fl
     return BodyOutOfPlane(tuple(modes), below)
 
 
-def transport(mode: PlateMode, damping_ratio: float, speed: float) -> tuple[FloatArray, FloatArray]:
+def transport(mode: PlateMode, damping_ratio: float, speed: float, frame: float = 0.0) -> tuple[FloatArray, FloatArray]:
     """Stiffness and damping by the rotation of a mode with nodal diameters, over its cosine and sine, (2, 2) each.
 
     Parameters
@@ -190,8 +190,12 @@ def transport(mode: PlateMode, damping_ratio: float, speed: float) -> tuple[Floa
     damping_ratio : float
     speed : float
         Ω [rad/s].
+    frame : float
+        Speed f of the frame of the coordinates [rad/s], which turns these forces of the velocity: f C n J, J the
+        quarter turn, joins the stiffness.
     """
     n, g = mode.nodal_diameters, mode.rotation
     turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
     circulating = 2.0 * damping_ratio * mode.frequency * n * speed * turn
-    return (n**2 - 2.0 * n * g) * speed**2 * np.eye(2) + circulating, 2.0 * speed * g * turn
+    damping = 2.0 * speed * g * turn
+    return (n**2 - 2.0 * n * g) * speed**2 * np.eye(2) + circulating - n * frame * damping @ turn, damping

@@ -12,13 +12,15 @@ import numpy.typing as npt
 
 from gearwhine.coupling.machine.base_motion import rotor_participation
 from gearwhine.coupling.machine.components import HousingComponent, RotorComponent
-from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
+from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable, TurningPart
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.frames import Frames, is_isotropic
 from gearwhine.coupling.machine.mesh_kinematics import FlankMotion
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 
 FloatArray = npt.NDArray[np.float64]
+
+_SPEEDS_OF_A_RUN = 33  # number of speeds between which the square of the speed is taken as linear
 
 
 def shaft_around(mounted: MountedBearing, coordinates: MachineCoordinates) -> RotorComponent | None:
@@ -84,13 +86,18 @@ def centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatAr
 
 
 def centrifugal_stiffness(
-    coordinates: MachineCoordinates, planet: RotorComponent, bearings: Sequence[MountedBearing], frames: Frames
+    coordinates: MachineCoordinates,
+    planet: RotorComponent,
+    bearings: Sequence[MountedBearing],
+    frames: Frames,
+    speed_range: tuple[float, float] = (1.0, 1.0),
 ) -> LinearConnector:
     """Geometric stiffness of a pin under the centrifugal force N = m a f² of its planet.
 
     The force follows the carrier: a rotation θ beyond the nominal one turns it, and the planet's tangential motion u
     beside the carrier's gives it an arm. By the second-order terms of the pin's deflection in the carrier's own frame
-    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium.
+    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium. N follows the
+    square of the speed, tabulated over the speeds of a run, ``speed_range``.
     """
     carrier = coordinates.rotor(planet.carrier or "")
     outward = np.subtract(planet.axis, carrier.axis)
@@ -106,7 +113,12 @@ def centrifugal_stiffness(
     force = mass * distance * frames.of(planet.name) ** 2
     law = force * np.array([[0.0, 1.0], [1.0, -distance]])
     directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
-    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
+    none = np.zeros((2, 2))
+    table = None
+    if speed_range[0] != speed_range[1] and force != 0.0:
+        ratios = np.linspace(*speed_range, _SPEEDS_OF_A_RUN)
+        table = SpeedTable(ratios, ratios[:, None, None] ** 2 * law, np.zeros((len(ratios), 2, 2)))
+    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, none, table)
 
 
 def mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:

@@ -39,7 +39,6 @@ Law = TypeVar("Law", LinearConnector, NonlinearConnector, Sliding)
 
 _DEFAULT_LIMIT = 2.0 * np.pi * LATERAL_LIMIT_HZ
 _ABOVE_CERTIFIED = 1.0 + 1e-6  # ratio to the highest certified mode from which a frequency is above it
-_NO_COUPLING = 1e-4  # part of the stiffnesses of a residual coordinate and another below which they are not coupled
 _SINGULAR_VALUE_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
 
 
@@ -107,16 +106,10 @@ def _with_static_attachments(component: Component) -> Component:
         float(found.max(initial=0.0) if len(found) > FEWEST_MODES else min(found.max(initial=0.0), _DEFAULT_LIMIT))
         for found in certified
     )
-    own_stiffness = np.diag(component.stiffness)
-    own = np.sqrt(np.abs(own_stiffness))
+    own = np.sqrt(np.abs(np.diag(component.stiffness)))
     is_static = (own > _ABOVE_CERTIFIED * limit) & np.isin(component.kinds, ["rotor", "torsion", "axial"])
     kinds = tuple("residual" if static else kind for kind, static in zip(component.kinds, is_static, strict=True))
-    # A spring has no Coriolis and gyroscopic terms: these couplings, tiny beside its stiffness, would make the rank of
-    # what is not diagonal as large as the number of coordinates.
-    coupling = component.stiffness - np.diag(own_stiffness)
-    of_static = is_static[:, None] | is_static
-    dropped = of_static & (np.abs(coupling) < _NO_COUPLING * np.outer(own, own))
-    return replace(component, kinds=kinds, stiffness=np.where(dropped, 0.0, coupling) + np.diag(own_stiffness))
+    return replace(component, kinds=kinds)
 
 
 def condensed(system: CoupledSystem) -> Condensed:
@@ -130,7 +123,9 @@ def condensed(system: CoupledSystem) -> Condensed:
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     is_retained = ~stiff
     condensed_coordinates, retained = np.flatnonzero(stiff), np.flatnonzero(is_retained)
-    stiffness, damping = system.stiffness, system.damping
+    # What the turning of a frame adds to a coordinate without inertia is nothing beside its stiffness.
+    resting = replace(system, components=tuple(replace(one, frame=None) for one in system.components))
+    stiffness, damping = resting.stiffness, resting.damping
     follow = -np.linalg.solve(
         stiffness[np.ix_(condensed_coordinates, condensed_coordinates)],
         stiffness[np.ix_(condensed_coordinates, retained)],
@@ -161,6 +156,7 @@ def condensed(system: CoupledSystem) -> Condensed:
         harmonic_loads=tuple(replace(load, amplitude=load.amplitude @ recovery) for load in system.harmonic_loads),
         timed_loads=tuple(replace(load, direction=load.direction @ recovery) for load in system.timed_loads),
         acceleration_load=system.acceleration_load @ recovery,
+        centrifugal_load=system.centrifugal_load @ recovery,
         nonlinear=tuple(_projected(connector, recovery) for connector in system.nonlinear),
     )
     return Condensed(less, retained, recovery)
@@ -200,6 +196,7 @@ def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
         component.stiffness[square],
         component.damping[square],
         component.gyroscopic[square],
+        frame=None if component.frame is None else component.frame.among(among),
     )
 
 

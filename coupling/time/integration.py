@@ -268,9 +268,8 @@ class Integration:
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
         """Start from static equilibrium under the initial loads, coasting where nothing resists, or a given state."""
         system, (_, rates, accelerations) = self.system, self.profile.at(0.0)
-        load = sum(
-            (load.at(0.0) for load in system.timed_loads), system.load + accelerations[0] * system.acceleration_load
-        )
+        steady = system.load + (rates[0] ** 2 - 1.0) * system.centrifugal_load
+        load = sum((load.at(0.0) for load in system.timed_loads), steady + accelerations[0] * system.acceleration_load)
         resting = system if np.array_equal(load, system.load) else replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)

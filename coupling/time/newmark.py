@@ -3,11 +3,12 @@ r"""Newmark's method (Newmark-β): the time step in modal coordinates with tooth
 One step of size h from (q, v, a), with the mass the identity and the contacts' directions D:
 
     q* = q + h v + (1/2 - β) h² a,            v* = v + (1 - γ) h a,
-    S a₁ = F(t₁) - K q* - (C + s' G) v* - s'' G q* - D f,
+    S a₁ = F(t₁) - (K + P) q* - (C + s' G) v* - D f,
     q₁ = q* + β h² a₁,                        v₁ = v* + γ h a₁,
 
-S as in :mod:`gearwhine.coupling.time.step_kernels`, where K and C are diagonal but for the connectors' directions U.
-With W = S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear bearings remain unknown: their deflections
+S and P as in :mod:`gearwhine.coupling.time.step_kernels`, where K and C are diagonal but for the connectors'
+directions U. With W = S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear bearings remain unknown: their
+deflections
 
     δ = δ* - β h² H f(δ, δ'),    δ' = δ'* - γ h H f(δ, δ'),
 
@@ -81,7 +82,7 @@ from gearwhine.coupling.connector_forces.turning_kernels import (
     turn_directions,
     turned_flexibility,
 )
-from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base
+from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base, apply_block
 from gearwhine.numerics.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
@@ -90,16 +91,16 @@ FloatArray = npt.NDArray[np.float64]
 @inner(forceinline=True)
 def load_at(dynamics: Dynamics, time: float, nominal_time: float, speed: float, alpha: float, out: FloatArray) -> None:
     """All loads at a time."""
-    n = out.size
+    n, gained = out.size, speed * speed - 1.0
     for i in range(n):
-        out[i] = dynamics.constant[i] + alpha * dynamics.acceleration_load[i]
+        out[i] = dynamics.constant[i] + gained * dynamics.centrifugal[i] + alpha * dynamics.acceleration_load[i]
     for w in range(dynamics.frequency.size):
         frequency, follows = dynamics.frequency[w], dynamics.follows[w]
         angle = frequency * (time if follows == BY_TIME else nominal_time)
         cosine, sine = math.cos(angle), math.sin(angle)
         if follows == BY_UNBALANCE:
-            # (s'² - i s''/w) e^{iws}: inertia force of an eccentric mass, by differentiating twice.
-            square, side = speed * speed, alpha / frequency
+            # (s'² - i s''/Ω) e^{iws}: inertia force of an eccentric mass, by differentiating twice.
+            square, side = speed * speed, alpha / dynamics.circling[w]
             cosine, sine = square * cosine + side * sine, square * sine - side * cosine
         for i in range(n):
             out[i] += cosine * dynamics.cosine[w, i] - sine * dynamics.sine[w, i]
@@ -166,7 +167,7 @@ def evaluate_powers(
         for i in range(tv.size):
             for j in range(tv.size):
                 by_damping += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    by_rotation = scratch.bearing_work[BEARING_POWER] * speed
+    by_rotation = scratch.bearing_work[BEARING_POWER] * speed + scratch.position_power[0]
     for k in range(laws.shape[0]):
         by_rotation -= laws[k, FORCE] * scratch.slip[k]
         by_damping += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
@@ -385,12 +386,13 @@ def newmark_steps(
         speed = speed0 + alpha * inside
         nominal_time = nominal_time0 + inside * (speed0 + 0.5 * alpha * inside)
         middle_speed = speed0 + 0.5 * alpha * (t1 - t0)
+        positioned = dynamics.has_frames or alpha != 0.0
         load_at(dynamics, t0, nominal_time0, speed0, alpha, scratch.load)
         if turning.speed_ratios.size > 0:
             set_laws_at_speed(turning, bearings, middle_speed)
         fresh = _start_segment(
-            q, v, dynamics, contacts, turning, bearings, matrices, slot, nominal_time, speed, middle_speed, alpha,
-            scratch,
+            q, v, dynamics, contacts, turning, bearings, matrices, slot, nominal_time, speed, middle_speed,
+            positioned, scratch,
         )  # fmt: skip
         totals[ROTATION_WORK] += fresh - stored
         stored, evaluated = fresh, nominal_time
@@ -400,7 +402,7 @@ def newmark_steps(
             nominal_time = nominal_time0 + after * (speed0 + 0.5 * alpha * after)
             load_at(dynamics, t0 + after, nominal_time, speed, alpha, scratch.load)
             _predict(q, v, dynamics, h, scratch)
-            _accelerations_without_contact(dynamics, matrices, slot, h, alpha, scratch)
+            _accelerations_without_contact(dynamics, matrices, slot, h, positioned, scratch)
             if step == count - 1:
                 # The teeth are last evaluated just inside the segment.
                 speed = speed0 + alpha * (after - inside)
@@ -421,8 +423,8 @@ def newmark_steps(
                 curvature += curved
                 acceleration += size
             _correct(q, v, dynamics, h, scratch)
-            if alpha != 0.0:
-                _add_drive_load(q, dynamics, alpha, scratch)
+            if positioned:
+                _evaluate_position_power(q, v, dynamics, matrices, slot, scratch)
             stored = _accumulate(
                 v, dynamics, contacts, turning, bearings, matrices, slot, t, h, evaluated, nominal_time, speed, totals,
                 contact_totals, scratch,
@@ -444,7 +446,7 @@ def _start_segment(
     nominal_time: float,
     speed: float,
     middle_speed: float,
-    alpha: float,
+    positioned: bool,
     scratch: Scratch,
 ) -> float:
     """Accelerations and powers just inside a segment with given loads; returns the energy in teeth and connectors.
@@ -464,9 +466,10 @@ def _start_segment(
         a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
     blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
     add_gyroscopic(blocks, first, size, -middle_speed, v, a, work)
-    if alpha != 0.0:
-        add_gyroscopic(blocks, first, size, -alpha, q, a, work)
-        _add_drive_load(q, dynamics, alpha, scratch)
+    scratch.position_power[0] = 0.0
+    if positioned:
+        add_gyroscopic(matrices.position[slot], first, size, -1.0, q, a, work)
+        _evaluate_position_power(q, v, dynamics, matrices, slot, scratch)
     _connector_forces(matrices, slot, scratch.tq, scratch.tv, scratch)
     add_rows(dynamics.connectors, scratch.connector_force, -1.0, a)
     pushed = push
@@ -524,10 +527,19 @@ def _deflections(
 
 
 @inner()
-def _add_drive_load(q: FloatArray, dynamics: Dynamics, alpha: float, scratch: Scratch) -> None:
-    """Load of the drive on a tilted shaft that it accelerates: it does work, and counts among the loads."""
-    first, size = dynamics.block_start, dynamics.block_size
-    add_gyroscopic(dynamics.gyroscopic, first, size, -alpha, q, scratch.load, scratch.block)
+def _evaluate_position_power(
+    q: FloatArray, v: FloatArray, dynamics: Dynamics, matrices: StepMatrices, slot: int, scratch: Scratch
+) -> None:
+    """Power -vᵀ P q of the rotation: of centrifugal and circulatory forces, and of the drive on a tilted shaft [W]."""
+    first, size, work = dynamics.block_start, dynamics.block_size, scratch.block
+    power = 0.0
+    for g in range(first.size):
+        among = slice(first[g], first[g] + size[g])
+        apply_block(matrices.position[slot, g], q[among], -1.0, work)
+        rates = v[among]
+        for i in range(rates.size):
+            power += rates[i] * work[i]
+    scratch.position_power[0] = power
 
 
 @inner(forceinline=True)
@@ -557,7 +569,7 @@ def _predict(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch
 
 @inner(forceinline=True)
 def _accelerations_without_contact(
-    dynamics: Dynamics, matrices: StepMatrices, slot: int, h: float, alpha: float, scratch: Scratch
+    dynamics: Dynamics, matrices: StepMatrices, slot: int, h: float, positioned: bool, scratch: Scratch
 ) -> None:
     """Accelerations without the forces of the laws, into ``a_end``, and their projections on the connectors."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
@@ -570,12 +582,14 @@ def _accelerations_without_contact(
     )
     for i in range(q_predicted.size):
         unbalanced[i] = scratch.load[i] - dynamics.stiffness[i] * q_predicted[i] - dynamics.damping[i] * v_predicted[i]
-    blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
-    if alpha != 0.0:
-        add_gyroscopic(blocks, first, size, -alpha, q_predicted, unbalanced, work)
-        add_gyroscopic(blocks, first, size, ratio * alpha, v_predicted, unbalanced, work)
-    # With D the diagonal of S₀ = D + (γ h s' + β h² s'') G, S₀ (a + v*/γh) = r + D v*/γh + β/γ h s'' G v* has
-    # no term s' G v*: most of the gyroscopic part comes without a product of its own.
+    first, size, work = dynamics.block_start, dynamics.block_size, scratch.block
+    # With D the diagonal of S₀ = D + γ h s' G + β h² P, S₀ (a + v*/γh) = r + D v*/γh + s' G v* + β/γ h P v*: the
+    # gyroscopic part comes without a product of its own, as r has -s' G v*, and that of P with one, P (q* - β/γ h v*).
+    if positioned:
+        shifted = scratch.x
+        for i in range(shifted.size):
+            shifted[i] = q_predicted[i] - ratio * v_predicted[i]
+        add_gyroscopic(matrices.position[slot], first, size, -1.0, shifted, unbalanced, work)
     for g in range(first.size):
         among = slice(first[g], first[g] + size[g])
         part, rates, stiffness, damping = (
@@ -642,7 +656,7 @@ def _contact_response(
     )  # fmt: skip
     flexibility, pushed = of_columns, scratch.push
     if turns:
-        turned_flexibility(turning, scratch.mix, of_columns, scratch.mixed, scratch.flexibility)
+        turned_flexibility(turning, scratch.mix, of_columns, scratch.mixed, scratch.mixed_across, scratch.flexibility)
         flexibility, pushed = scratch.flexibility, scratch.pushed
     converged = solve_contact_forces(contacts, bearings, nominal_time, flexibility, displaced, moved, scratch)
     if turns:

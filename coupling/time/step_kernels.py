@@ -4,9 +4,13 @@ Importing this module imports numba.
 
 With the mass the identity, one step of Newmark's method solves S a = r with
 
-    S = I + γ h (C + s' G) + β h² (K + s'' G) = S₀ + U E Uᵀ,        E = γ h C_t + β h² K_t,
+    S = I + γ h (C + s' G) + β h² (K + P) = S₀ + U E Uᵀ,        E = γ h C_t + β h² K_t,
 
-S₀ diagonal but for one block for each shaft that turns, U the few directions of bearings, mounts and the like. With
+    P = s'' A + s' N + s'² Z,
+
+G the gyroscopic and Coriolis terms, A those of the angular acceleration, which are G where no frame turns, N and Z the
+circulatory and centripetal terms of frames that turn (:class:`gearwhine.coupling.machine.components.FrameTerms`).
+S₀ is diagonal but for one block for each shaft that turns, U the few directions of bearings, mounts and the like. With
 B = S₀⁻¹, by Sherman, Morrison and Woodbury,
 
     S⁻¹ = B - B U (I + E Uᵀ B U)⁻¹ E Uᵀ B.
@@ -107,14 +111,19 @@ def build_steps(
         for i in range(n):
             diagonal = 1.0 + by_velocity * dynamics.damping[i] + by_displacement * dynamics.stiffness[i]
             matrices.base[slot, i] = 1.0 / diagonal
-        by_gyroscopic = by_velocity * speed + by_displacement * acceleration
+        rate = by_velocity * speed
         for g in range(first_of.size):
             first, size = first_of[g], size_of[g]
             # The block is transposed, as its inverse is the transposed inverse.
             block, inverse = np.zeros((size, size)), np.eye(size)
             for i in range(size):
                 for j in range(size):
-                    block[i, j] = by_gyroscopic * dynamics.gyroscopic[g, i, j]
+                    position = acceleration * dynamics.angular[g, i, j]
+                    if dynamics.has_frames:
+                        position += speed * dynamics.circulatory[g, i, j]
+                        position += speed * speed * dynamics.centripetal[g, i, j]
+                    matrices.position[slot, g, i, j] = position
+                    block[i, j] = rate * dynamics.gyroscopic[g, i, j] + by_displacement * position
                 block[i, i] += 1.0 / matrices.base[slot, first + i]
             solve_in_place(block, inverse)
             for i in range(size):

@@ -3,6 +3,7 @@
 `stored_energy` at the start of a time integration is in plain Python, as it is evaluated once.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -26,7 +27,7 @@ from gearwhine.coupling.connector_forces.kernel_arrays import (
     bearing_arrays,
 )
 from gearwhine.coupling.machine.connectors import SpeedTable
-from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.condensation import common_span
 from gearwhine.coupling.time.settings import TransientOutputs
@@ -96,8 +97,10 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         "bearing_work": (8, 5),
         "powers": (5,),
         "powers_before": (5,),
+        "position_power": (1,),
         "block": (arrays.dynamics.gyroscopic.shape[2],),
         "mixed": (turned, m),
+        "mixed_across": (m if e else 0, turned),
         "flexibility": (turned, turned),
         "pushed": (m if e else 0,),
     }
@@ -187,6 +190,7 @@ def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
         size=np.zeros(m),
         base=np.zeros((m, n)),
         blocks=np.zeros((m, g, b, b)),
+        position=np.zeros((m, g, b, b)),
         connector_stiffness=np.zeros((m, r, r)),
         connector_damping=np.zeros((m, r, r)),
         connectors=np.zeros((m, r, n)),
@@ -200,9 +204,10 @@ def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
 
 def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     n = system.size
-    starts, sizes, gyroscopic = _gyroscopic_blocks(system)
+    starts, sizes, blocks = _rotating_blocks(system)
     # Components are mostly diagonal; their other terms join those of the connectors.
-    whole = system.own_stiffness, system.own_damping
+    resting = replace(system, components=tuple(replace(one, frame=None) for one in system.components))
+    whole = resting.own_stiffness, resting.own_damping
     diagonals = [matrix.diagonal().copy() for matrix in whole]
     beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
     # Connectors that turn are laws of their own.
@@ -216,7 +221,8 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     directions, cores = common_span(matrices)
     connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
     skew = np.abs(connector_stiffness - connector_stiffness.transpose(0, 2, 1)).max(initial=0.0)
-    amplitudes = np.array([load.amplitude for load in system.harmonic_loads], dtype=np.complex128).reshape(-1, n)
+    harmonic = _loads_of_one_frequency(system.harmonic_loads)
+    amplitudes = np.array([load.amplitude for load in harmonic], dtype=np.complex128).reshape(-1, n)
     longest = max((len(load.times) for load in system.timed_loads), default=0)
     times, values = np.zeros((len(system.timed_loads), longest)), np.zeros((len(system.timed_loads), longest))
     for row, load in enumerate(system.timed_loads):
@@ -226,16 +232,24 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
         damping=diagonals[1],
         block_start=starts,
         block_size=sizes,
-        gyroscopic=gyroscopic,
+        gyroscopic=blocks[0],
+        angular=blocks[1],
+        circulatory=blocks[2],
+        centripetal=blocks[3],
+        has_frames=any(component.frame is not None for component in system.components),
         connectors=np.ascontiguousarray(directions.T),
         connector_speed_ratios=ratios,
         connector_stiffness=connector_stiffness,
         connector_damping=connector_damping,
         has_skew=bool(skew > 1e-12 * np.abs(connector_stiffness).max(initial=0.0)),
         constant=system.load,
+        centrifugal=system.centrifugal_load,
         acceleration_load=system.acceleration_load,
-        frequency=np.array([load.frequency for load in system.harmonic_loads], dtype=np.float64),
-        follows=np.array([_FOLLOWS[load.follows] for load in system.harmonic_loads], dtype=np.int64),
+        frequency=np.array([load.frequency for load in harmonic], dtype=np.float64),
+        circling=np.array(
+            [load.frequency if load.circling is None else load.circling for load in harmonic], dtype=np.float64
+        ),
+        follows=np.array([_FOLLOWS[load.follows] for load in harmonic], dtype=np.int64),
         cosine=np.ascontiguousarray(amplitudes.real),
         sine=np.ascontiguousarray(amplitudes.imag),
         timed_times=times,
@@ -248,23 +262,42 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     )
 
 
-def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, FloatArray]:
-    """First coordinate, size and transposed matrix of each component's gyroscopic terms at nominal speed."""
+def _loads_of_one_frequency(loads: Sequence[HarmonicLoad]) -> list[HarmonicLoad]:
+    """Add up the loads that follow each other exactly: frames split one load into many of the same few frequencies."""
+    together: dict[tuple[float, str, float | None], HarmonicLoad] = {}
+    for load in loads:
+        key = load.frequency, load.follows, load.circling
+        before = together.get(key)
+        together[key] = load if before is None else replace(before, amplitude=before.amplitude + load.amplitude)
+    return list(together.values())
+
+
+def _rotating_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, FloatArray]:
+    """First coordinate, size and transposed matrices (4, g, b, b) of each component's terms of rotation.
+
+    At nominal speed: gyroscopic with Coriolis terms G, A of the angular acceleration, N and Z of the frame.
+    """
     placed = []
     start = 0
     for component, speed in zip(system.components, system.speeds, strict=True):
-        touched = np.flatnonzero(np.any(component.gyroscopic != 0.0, axis=0))
-        if speed != 0.0 and touched.size:
+        own, frame = speed * component.gyroscopic, component.frame
+        none = np.zeros_like(own)
+        terms = [own, own, none, none]
+        if frame is not None:
+            terms = [own + frame.coriolis, own + frame.angular, frame.circulatory, frame.centripetal]
+        touched = np.flatnonzero(np.any([np.any(term != 0.0, axis=0) for term in terms], axis=0))
+        if touched.size:
             among = slice(touched[0], touched[-1] + 1)
-            placed.append((start + int(touched[0]), speed * component.gyroscopic[among, among].T))
+            placed.append((start + int(touched[0]), [term[among, among].T for term in terms]))
         start += component.size
-    largest = -(-max((len(matrix) for _, matrix in placed), default=0) // _WIDTH) * _WIDTH
-    blocks = np.zeros((len(placed), largest, largest))
-    for block, (_, matrix) in zip(blocks, placed, strict=True):
-        block[: len(matrix), : len(matrix)] = matrix
+    largest = -(-max((len(terms[0]) for _, terms in placed), default=0) // _WIDTH) * _WIDTH
+    blocks = np.zeros((4, len(placed), largest, largest))
+    for number, (_, terms) in enumerate(placed):
+        for block, term in zip(blocks, terms, strict=True):
+            block[number, : len(term), : len(term)] = term
     return (
         np.array([first for first, _ in placed], dtype=np.int64),
-        np.array([len(matrix) for _, matrix in placed], dtype=np.int64),
+        np.array([len(terms[0]) for _, terms in placed], dtype=np.int64),
         blocks,
     )
 

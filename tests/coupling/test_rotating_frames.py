@@ -6,13 +6,29 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
-from gearwhine.coupling import CoupledMachine, Machine
+from gearwhine.coupling import (
+    CoupledMachine,
+    CoupledSystem,
+    Machine,
+    TransientOutputs,
+    TransientSettings,
+    simulate,
+)
 from gearwhine.coupling.assembly import assemble_machine
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.frequency_response import response
 from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.machine.components import RotorComponent, rotor_component
+from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
+from gearwhine.coupling.machine.coordinates import CoordinateLoads
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.machine.frames import Frames, in_frame, orders_and_quarter_turn, stiffness_in_frame
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from tests.machines.plane_planetary_set import (
     TEETH,
     eigenvalues,
@@ -93,3 +109,66 @@ def test_response_does_not_depend_on_the_frames_of_the_coordinates(standing: Col
         torsion = slice(start + 2 * m, start + size)
         assert np.abs(found[(0,)][torsion] - expected[torsion]).max() < 1e-9 * scale
         start += size
+
+
+# ------------------------------------------------------------------------------------ a disc that runs up, in a frame
+
+SPIN, FRAME = 300.0, 110.0
+RUN = SpeedProfile(np.array([0.0, 0.06]), np.array([0.4, 1.6]))
+SPRINGS, DASHPOT = 4e4, 30.0
+
+
+def _disc() -> RotorComponent:
+    steel = ShaftMaterial(210e9, 80e9, 7800.0)
+    shaft = Rotor("disc", [Segment(0.4, 0.012, 0.0, steel)], [Disc(0.1, 3.0, 0.06, 0.033)])
+    return rotor_component("disc", modal_rotor(shaft, [], count=3), start=0.0, damping_ratio=0.03)
+
+
+def _running_up(frame: float) -> CoupledSystem:
+    """The disc on springs and dashpots, alike all round, with an unbalance and a weight, in coordinates of a frame."""
+    disc = _disc()
+    where = np.vstack([disc.motions(at)[:2] for at in (0.0, 0.4)])
+    coupling = ShaftDashpots("coupling", "disc", 0.1, 0.4, lateral=20.0, tilt=0.5)
+    stretched, dashpots = shaft_dashpots(coupling, disc, SPIN - frame, (0.4, 1.6))
+    plane = disc.motions(0.1)[:2]
+    unbalance = HarmonicLoad(SPIN, 2.0 * (plane[0] - 1j * plane[1]), "unbalance")
+    frames = Frames([disc], {"disc": frame})
+    acting = frames.loads(CoordinateLoads(-30.0 * plane[1], [unbalance]))
+    spring = np.kron(np.eye(2), stiffness_in_frame(SPRINGS * np.eye(5), DASHPOT * np.eye(5), frame)[:2, :2])
+    damping = DASHPOT * np.eye(4)
+    rates = np.array([0.4, 1.6])
+    skew = spring - SPRINGS * np.eye(4)
+    table = SpeedTable(rates, SPRINGS * np.eye(4) + rates[:, None, None] * skew, np.stack([damping, damping]))
+    return CoupledSystem(
+        (in_frame(disc, SPIN, frame),),
+        (SPIN,),
+        (
+            LinearConnector("springs", where.T, spring, damping, table),
+            replace(dashpots, directions=stretched.T),
+        ),
+        load=acting.constant,
+        harmonic_loads=tuple(acting.harmonic),
+        acceleration_load=np.zeros(disc.size) + acting.angular,
+        centrifugal_load=np.zeros(disc.size) + acting.centrifugal,
+    )
+
+
+@pytest.mark.parametrize("frame", [FRAME, SPIN])
+def test_a_run_up_does_not_depend_on_the_frame_of_the_coordinates(frame: float) -> None:
+    """Coriolis, centripetal and gyroscopic terms, those of the angular acceleration, and all loads, by the speed."""
+    disc = _disc()
+    orders, quarter = orders_and_quarter_turn(disc)
+    turn = orders[:, None] * quarter
+    rng = np.random.default_rng(3)
+    q, v = 1e-3 * rng.normal(size=disc.size) * orders, 0.1 * rng.normal(size=disc.size) * orders
+    settings = TransientSettings(0.06, 0.0, 1e-3, 1e-4, tolerance=2e-6)
+    outputs = TransientOutputs(np.eye(disc.size), np.eye(disc.size), np.eye(disc.size))
+    still = simulate(_running_up(0.0), settings, outputs, speed_profile=RUN, initial=(q, v))
+    start = q, v - 0.4 * frame * turn @ q
+    moving = simulate(_running_up(frame), settings, outputs, speed_profile=RUN, initial=start)
+    angles = frame * RUN.at(moving.times)[0]
+    found = np.array([expm(angle * turn) @ y for angle, y in zip(angles, moving.displacement, strict=True)])
+    size = np.abs(still.displacement).max(axis=0)
+    assert np.abs(found - still.displacement).max() < 2e-4 * size.max()
+    assert moving.energy.error < 1e-4
+    assert still.energy.error < 1e-4
