@@ -12,10 +12,9 @@ D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. It is the ampl
 the housing shows; a frozen picture of the carrier would put all of them into one line.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -34,10 +33,12 @@ Excitation = tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]
 """Loads on the coordinates by the order of their frequency, and errors of contacts that turn by their number [m]."""
 
 SIDEBANDS = 6
-"""Number of multiples of each rate of turning on either side of an excitation."""
+"""Number of times that connectors hand a motion on to other orders."""
 
 _LARGEST_MULTIPLE = 12  # of a rate of turning that is a multiple of another one
+_LARGEST_DENOMINATOR = 3  # of the ratio of two rates that are both multiples of a third
 _SAME_RATE = 1e-9  # relative difference of rates that are one
+_SAME_SHIFT = 1e-6  # part of the largest rate by which shifts of one order differ from rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +60,8 @@ class TurningResponse:
     contact : ContactState
         Tooth contacts about their mean forces.
     sidebands : int
-        Number of multiples of each rate of turning that are followed on either side of an excitation.
+        Number of times that connectors that turn may hand a motion on, each time by the orders of their directions.
+        Sums of as many of these orders are followed, up to that number or twice the highest of them.
     """
 
     system: CoupledSystem
@@ -68,27 +70,44 @@ class TurningResponse:
 
     @cached_property
     def rates(self) -> tuple[float, ...]:
-        """Rates of turning f of which all others are multiples [rad/s], ascending."""
+        """Rates of turning f of which all others are multiples [rad/s], ascending.
+
+        Rates of one carrier, such as 2 f and 3 f of a ring that bends, have its speed f as their base.
+        """
         found: list[float] = []
         turning = [one.turning for one in self.system.linear] + [one.turning for one in self.system.contacts]
         parts = [part for some in turning for part in some]
         for rate in sorted({abs(part.rate) for part in parts}):
-            if not any(self._multiple(rate, base) for base in found):
+            if any(0 < self._multiple(rate, base) <= _LARGEST_MULTIPLE for base in found):
+                continue
+            for place, base in enumerate(found):
+                parts_of_base = [base / q for q in range(2, _LARGEST_DENOMINATOR + 1)]
+                divided = [part for part in parts_of_base if 0 < self._multiple(rate, part) <= _LARGEST_MULTIPLE]
+                if divided:
+                    found[place] = divided[0]
+                    break
+            else:
                 found.append(rate)
-        return tuple(found)
+        return tuple(sorted(found))
 
     @staticmethod
     def _multiple(rate: float, base: float) -> int:
         """Return the whole number that a rate is of another one; 0 where it is none."""
         number = round(rate / base)
         near = abs(rate - number * base) <= _SAME_RATE * abs(rate)
-        return number if near and 1 <= abs(number) <= _LARGEST_MULTIPLE else 0
+        return number if near else 0
 
     @cached_property
     def orders(self) -> tuple[Order, ...]:
         """Orders m of the motions beside an excitation: m = 0 is the excitation's own frequency."""
-        reach = range(-self.sidebands, self.sidebands + 1)
-        return tuple(product(reach, repeat=len(self.rates)))
+        # A bore's high orders reach far in few steps; what is handed on twice is what counts of them.
+        farthest = np.abs(self._offsets).max(axis=0, initial=0)
+        bounds = np.maximum(self.sidebands, 2 * farthest)
+        reached = {self.still}
+        for _ in range(self.sidebands):
+            next_orders = {_plus(order, step) for order in reached for step in self._offsets}
+            reached |= {order for order in next_orders if np.all(np.abs(order) <= bounds)}
+        return tuple(sorted(reached))
 
     @property
     def still(self) -> Order:
@@ -178,30 +197,12 @@ class TurningResponse:
             return None
         return pairs if pairs.sum_rule <= SUM_RULE else None
 
-    @cached_property
-    def _modal_columns(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Left and right vectors of the eigenpairs on the columns, (m, l d) both, and the drift between columns."""
-        assert self._pairs is not None
-        columns = self._columns
-        drift = columns.T @ self._pairs.drift @ columns
-        return self._pairs.left.conj() @ columns, self._pairs.right @ columns, np.asarray(drift)
-
     def _dynamic(self, w: float) -> ComplexArray:
         """Z at a frequency without the connectors that turn, (n, n)."""
         stiffness, damping = self._constant
         dynamic = np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
         dynamic[np.diag_indices(len(dynamic))] -= w**2
         return dynamic
-
-    def _compliance(self, w: float) -> ComplexArray:
-        """Compliance between all directions at a frequency, (l, d, l, d)."""
-        shape = (len(self._offsets), self._width) * 2
-        if self._pairs is None or w == 0.0:
-            return np.asarray(self._columns.T @ np.linalg.solve(self._dynamic(w), self._columns)).reshape(shape)
-        left, right, drift = self._modal_columns
-        s = 1j * w
-        gains = self._pairs.values / (s * (s - self._pairs.values))
-        return np.asarray((right.T * gains) @ left + drift / s**2).reshape(shape)
 
     def _moved(self, w: float, loads: ComplexArray) -> ComplexArray:
         """Coordinates (n, i) under loads (n, i) at a frequency, without the connectors that turn."""
@@ -261,19 +262,25 @@ class TurningResponse:
             for order in self.orders
             if any(order in one for one, _ in excitations)
         }
+        # Motions under unit forces along all columns, and under the loads, of each order that is asked for.
+        moved: dict[Order, ComplexArray] = {}
+        asked = set(self.orders if orders is None else orders)
         for order in self.orders:
-            w = frequency + self.shift(order)
-            compliance = self._compliance(w)
+            columns = self._columns
+            if order in loads:
+                columns = np.concatenate([columns, loads[order]], axis=1)
+            alone = self._moved(frequency + self.shift(order), columns)
+            if order in asked:
+                moved[order] = alone
+            seen_by = (self._columns.T @ alone).reshape(len(self._offsets), width, -1)
+            compliance = seen_by[:, :, : self._columns.shape[1]].reshape(len(self._offsets), width, -1, width)
             # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
             gaps = list(enumerate(self._offsets))
             acting = [(n, places[other]) for n, gap in gaps if (other := _minus(order, gap)) in places]
             seen = [(n, places[other]) for n, gap in gaps if (other := _plus(order, gap)) in places]
-            alone = None
-            if order in loads:
-                alone = (self._columns.T @ self._moved(w, loads[order])).reshape(len(self._offsets), width, -1)
             for row, deflected in seen:
-                if alone is not None:
-                    free[deflected] += alone[row]
+                if order in loads:
+                    free[deflected] += seen_by[row, :, self._columns.shape[1] :]
                 for column, force in acting:
                     between[deflected, :, force, :] += compliance[row, :, column, :]
         free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
@@ -281,23 +288,59 @@ class TurningResponse:
         deflections = np.linalg.solve(np.eye(count * width) + matrix, free.reshape(count * width, -1))
         forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
         motion = {}
-        for order in self.orders if orders is None else orders:
-            acting_load = loads.get(order, np.zeros((self.system.size, len(excitations)), dtype=np.complex128)).copy()
+        for order, alone in moved.items():
+            total = np.zeros((self.system.size, len(excitations)), dtype=np.complex128)
+            if order in loads:
+                total += alone[:, self._columns.shape[1] :]
             for n, gap in enumerate(self._offsets):
                 source = _minus(order, gap)
                 if source in places:
-                    acting_load -= self._columns[:, n * width : (n + 1) * width] @ forces[places[source]]
-            motion[order] = self._moved(frequency + self.shift(order), acting_load).T
+                    total -= alone[:, n * width : (n + 1) * width] @ forces[places[source]]
+            motion[order] = total.T
         return motion
 
-    def at_excitation(
+    def force_along(self, number: int, force: complex) -> dict[Order, ComplexArray]:
+        """Split a harmonic force along the line of action of a contact into loads by order, (n,) each."""
+        tooth = self.system.contacts[number]
+        parts = self._by_order(tooth.direction[:, None], tooth.turning)
+        return {order: np.asarray(force * direction[:, 0]) for order, direction in parts.items()}
+
+    def deflection(
         self,
-        frequencies: FloatArray,
-        excitation: Callable[[float], Excitation],
+        motion: Mapping[Order, ComplexArray],
+        directions: FloatArray,
+        turning: Sequence[TurningPart],
+        order: Order | None = None,
     ) -> ComplexArray:
-        """Coordinates (f, n) at each frequency ω by an excitation at ω alone, without the sidebands ω + m·f."""
-        moved = [self.respond(w, [excitation(w)], [self.still])[self.still][0] for w in frequencies.tolist()]
-        return np.array(moved).reshape(-1, self.system.size)
+        """Deflection Σ_l D_lᵀ q_{m-l} of a connector at an order m, by default that of the excitation.
+
+        Parameters
+        ----------
+        motion : mapping of order to ndarray of complex, shape (..., n)
+            Coordinates at all orders.
+        directions : ndarray, shape (n, d)
+            Directions D(0).
+        turning : sequence of TurningPart
+            Their parts that turn.
+        order : order, optional
+
+        Returns
+        -------
+        ndarray of complex, shape (..., d)
+        """
+        at = self.still if order is None else order
+        parts = self._by_order(directions, turning)
+        found = np.zeros((*motion[self.still].shape[:-1], directions.shape[1]), dtype=np.complex128)
+        for gap, direction in parts.items():
+            if (source := _minus(at, gap)) in motion:
+                found += motion[source] @ direction
+        return found
+
+    def order_of(self, shift: float) -> Order | None:
+        """Order m of a shift m·f of frequency [rad/s]; None where no order that is followed has it."""
+        scale = max(self.rates, default=1.0)
+        near = [order for order in self.orders if abs(self.shift(order) - shift) <= _SAME_SHIFT * scale]
+        return min(near, key=lambda order: sum(map(abs, order)), default=None)
 
     def _law(self, frequency: float) -> ComplexArray:
         """Laws k + i ω_m c of the connectors that turn by order, (m, d, d)."""
