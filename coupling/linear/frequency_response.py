@@ -40,6 +40,7 @@ from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpair
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.machine.connectors import TurningPart
+from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
@@ -339,8 +340,8 @@ def unbalance_response(
     """Unbalance response of a rotor with its own unbalances alone, over the speed of the leading rotor.
 
     The machine is assembled at each speed: gyroscopic terms and bearings with tables follow. Of a machine whose
-    directions turn it is the motion at the frequency of the unbalance in the rotor's coordinates; see
-    `unbalance_responses` for its sidebands.
+    directions turn it is the motion at the frequency of the unbalance in space, which the housing feels; see
+    `unbalance_responses` for its sidebands, in which bearings and meshes that turn have their forces.
 
     Parameters
     ----------
@@ -354,7 +355,8 @@ def unbalance_response(
     Returns
     -------
     FrequencyResponse
-        Response with w the signed speeds of that rotor, in the frame of its coordinates: amplitudes rotate with it.
+        Response with w the signed speeds of that rotor: amplitudes rotate with it. Where its coordinates turn with a
+        carrier and no directions turn against them, w is the speed over the carrier's.
 
     Raises
     ------
@@ -373,8 +375,8 @@ def unbalance_responses(
 ) -> tuple[FrequencyResponse, ...]:
     """Unbalance response of a rotor, as of `unbalance_response`, and its sidebands by the turning of carriers.
 
-    The unbalance of a planet, at Ω in space, has the frequency Ω - f in the coordinates of its carrier, which turns at
-    f; the housing feels it at Ω, the sideband by one turn of the carrier.
+    The unbalance of a planet, at Ω in space, shakes the planets and their meshes at Ω - f, seen from the carrier, which
+    turns at f: the sideband by one turn. The housing feels it at Ω, and the others as far as it is not alike all round.
 
     Returns
     -------
@@ -388,29 +390,30 @@ def unbalance_responses(
     CouplingError
         As `unbalance_response`.
     """
-    if not any(load.rotor == rotor and load.moment != 0.0 for load in machine.loads.unbalances):
+    own = [load for load in machine.loads.unbalances if load.rotor == rotor and load.moment != 0.0]
+    if not own:
         raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
     at_speeds = [machine.at_speed(float(speed)) for speed in speeds]
     if any(at_speed.speeds[rotor] == 0.0 for at_speed in at_speeds):
         raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
     state = mean_contact(at_speeds[0].system) if contact is None else contact
-    number = [part.name for part in machine.system.components].index(rotor)
-    rows = _rows_of(machine.system, number)
+    named, unit = f"unbalance of {rotor}", "unbalance as it is"
     by_sideband: dict[str, list[FrequencyResponse]] = {}
     for at_speed in at_speeds:
-        # A bow or a ripple of torque may have the same frequency; unbalances of other rotors are on other coordinates.
-        own = [each for each in at_speed.system.harmonic_loads if each.follows == "unbalance"]
-        own = [each for each in own if np.any(each.amplitude[rows])]
-        w = own[0].frequency
-        load = sum((each.amplitude for each in own), np.zeros(at_speed.system.size, dtype=np.complex128))
-        alone = np.where(rows, load, 0.0)
-        named, unit = f"unbalance of {rotor}", "unbalance as it is"
+        acting = CoordinateLoads(np.zeros(at_speed.system.size))
+        for unbalance in own:
+            MachineCoordinates(at_speed.system.components, at_speed.speeds).add_unbalance(acting, unbalance)
+        turning, w = CarrierSidebands(at_speed, state), at_speed.speeds[rotor]
+        rotating = replace(acting.harmonic[0], amplitude=np.sum([each.amplitude for each in acting.harmonic], axis=0))
         if not at_speed.system.turns:
-            motion = _Motion(response(at_speed.system, alone[None, None, :], np.array([w]), state)[:, 0])
-            by_sideband.setdefault("", []).append(_named(at_speed, state, np.array([w]), motion, named, unit))
+            # Where the rotor's coordinates turn with a carrier, so do those of all that is coupled to it.
+            (load,) = turning.frames.harmonics(rotating, 0.0)
+            at = np.array([load.frequency])
+            motion = _Motion(response(at_speed.system, load.amplitude[None, None, :], at, state)[:, 0])
+            by_sideband.setdefault("", []).append(_named(at_speed, state, at, motion, named, unit))
             continue
-        turning = CarrierSidebands(at_speed, state)
-        moved = [{order: q[0] for order, q in turning.respond(w, [{turning.model.still: alone}]).items()}]
+        solved = turning.respond(w, [turning.by_order(w, rotating, 0.0)])
+        moved = [{order: q[0] for order, q in solved.items()}]
         for order in turning.model.orders:
             at, words = np.array([w + turning.model.shift(order)]), turning.sideband(order).words
             motion = _turning_motion(turning.model, moved, order)
@@ -446,12 +449,6 @@ def _along_speeds(parts: Sequence[FrequencyResponse]) -> FrequencyResponse:
         bearing_load=_joined([part.bearing_load for part in parts]),
         mesh_force=_joined([part.mesh_force for part in parts]),
     )
-
-
-def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
-    """Mask of a component's coordinates, shape (n,)."""
-    owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
-    return np.asarray(owners == number)
 
 
 def _joined(responses: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:

@@ -8,8 +8,10 @@ that turn, of directions D(t) = Σ D_l e^{i l·f t} and laws φ = k δ + c δ', 
     Z(ω_m) q_m + Σ_l D_l φ_{m-l} = F_m,     φ_m = (k + i ω_m c) (Σ_l D_lᵀ q_{m-l} - e_m),
 
 F the loads and e the transmission errors of the connectors that turn. Only the few φ are sought: with the compliances
-D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. It is the amplitudes of the sidebands ω + m·f that a sensor on
-the housing shows; a frozen picture of the carrier would put all of them into one line.
+D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. Without the connectors that turn, parts of a train turn
+freely: springs κ on these motions are added to Z, and springs -κ to the connectors sought. It is the amplitudes of the
+sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the carrier would put all of them into one
+line.
 """
 
 from collections.abc import Mapping, Sequence
@@ -38,6 +40,9 @@ SIDEBANDS = 6
 _LARGEST_MULTIPLE = 12  # of a rate of turning that is a multiple of another one
 _LARGEST_DENOMINATOR = 3  # of the ratio of two rates that are both multiples of a third
 _SAME_RATE = 1e-9  # relative difference of rates that are one
+_RESTRAINT = 17.3  # frequency of a free motion on its spring, over the largest rate
+_FREE_MOTION = 1e-9  # part of the largest stiffness up to which a motion is free
+_STANDSTILL = 1e-9  # part of the largest rate up to which a frequency is zero
 _SAME_SHIFT = 1e-6  # part of the largest rate by which shifts of one order differ from rounding
 
 
@@ -119,7 +124,7 @@ class TurningResponse:
         return float(np.dot(order, self.rates)) if order else 0.0
 
     @cached_property
-    def _constant(self) -> tuple[FloatArray, FloatArray]:
+    def _unrestrained(self) -> tuple[FloatArray, FloatArray]:
         """Stiffness and damping without the connectors that turn, (n, n) both."""
         system = self.system
         stiffness, damping = system.own_stiffness.copy(), system.own_damping + system.gyroscopic
@@ -128,6 +133,22 @@ class TurningResponse:
                 stiffness += directions @ law_stiffness @ directions.T
                 damping += directions @ law_damping @ directions.T
         return stiffness, damping
+
+    @cached_property
+    def _restraint(self) -> tuple[FloatArray, float]:
+        """Motions that no connector but those that turn resists, (n, r), and the stiffness κ that is put on them."""
+        stiffness = self._unrestrained[0]
+        values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+        free = np.abs(values) <= _FREE_MOTION * max(abs(values[-1]), 1e-300)
+        # No multiple of the rates is near √κ; small beside other springs, κ costs no digits.
+        return vectors[:, free], (_RESTRAINT * max(self.rates, default=1.0)) ** 2
+
+    @cached_property
+    def _constant(self) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping without the connectors that turn, with springs on free motions, (n, n) both."""
+        stiffness, damping = self._unrestrained
+        free, spring = self._restraint
+        return stiffness + spring * free @ free.T, damping
 
     @cached_property
     def _laws(self) -> list[tuple[FloatArray, FloatArray, FloatArray, tuple[TurningPart, ...]]]:
@@ -147,11 +168,17 @@ class TurningResponse:
 
     @cached_property
     def _turning(self) -> list[_Turning]:
-        """The connectors that turn, linear ones first, in their order."""
+        """Springs that undo those on free motions, then the connectors that turn, linear ones first, in their order."""
+        free, spring = self._restraint
+        count = free.shape[1]
+        undoing = _Turning(-spring * np.eye(count), np.zeros((count, count)), {self.still: free.astype(np.complex128)})
         return [
-            _Turning(stiffness, damping, self._by_order(directions, turning))
-            for directions, stiffness, damping, turning in self._laws
-            if turning
+            *([undoing] if count else []),
+            *(
+                _Turning(stiffness, damping, self._by_order(directions, turning))
+                for directions, stiffness, damping, turning in self._laws
+                if turning
+            ),
         ]
 
     def _by_order(self, directions: FloatArray, turning: Sequence[TurningPart]) -> dict[Order, ComplexArray]:
@@ -285,7 +312,13 @@ class TurningResponse:
                     between[deflected, :, force, :] += compliance[row, :, column, :]
         free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
         matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
-        deflections = np.linalg.solve(np.eye(count * width) + matrix, free.reshape(count * width, -1))
+        matrix += np.eye(count * width)
+        scale = max(self.rates, default=0.0)
+        if any(abs(frequency + self.shift(order)) <= _STANDSTILL * scale for order in self.orders):
+            # What is constant in time leaves the train's own turning open.
+            deflections = np.linalg.lstsq(matrix, free.reshape(count * width, -1), rcond=_STANDSTILL)[0]
+        else:
+            deflections = np.linalg.solve(matrix, free.reshape(count * width, -1))
         forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
         motion = {}
         for order, alone in moved.items():

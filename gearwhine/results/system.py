@@ -344,6 +344,14 @@ LINE = (
 
 UNBALANCE = (
     Quantity("", "response.excitation", "unbalance_of"),
+    Quantity(
+        "",
+        lambda row: np.abs(row.response.frequencies) / HERTZ,
+        "unbalance_response_frequency",
+        ("unbalance_speed",),
+        "Hz",
+        long_name="frequency of the motion at each speed",
+    ),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
 )
 """Quantities of the response to one rotor's unbalances over absolute speeds of the first driver."""

@@ -8,6 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.linear.frequency_response import unbalance_responses
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
@@ -169,3 +170,35 @@ def test_lines_are_those_of_an_integration_in_time(angles: tuple[float, ...] | N
         others = [at for at in range(RING // 2, int(2.5 * RING)) if at not in expected]
         assert np.abs(spectrum[others]).max() < 1e-3 * highest
     assert checked >= 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rotor", ["planet 1", "carrier"])
+def test_sidebands_of_an_unbalance_are_those_of_an_integration_in_time(rotor: str) -> None:
+    machine = turning_machine(ANISOTROPIC, unbalanced=rotor)
+    carrier = machine.speeds["carrier"]
+    found = unbalance_responses(machine, [machine.speed], rotor=rotor)
+    period = 2.0 * np.pi / carrier
+    settings = TransientSettings(
+        duration=9.0 * period, record_from=3.0 * period, sample_interval=period / 1024, largest_step=period / 8192
+    )
+    result = simulate(machine.system, settings, transient_outputs(machine))
+    motion = histories(machine, result).sensor_acceleration
+    # Frequencies that are not commensurate with the record: they are fitted, with what the planets' forces make.
+    lines = {one.excitation: one.at_positive_frequencies() for one in found}
+    passes = [n * carrier for n in range(1, 7)]
+    rates = sorted({round(at, 9) for at in (*(float(one.frequencies[0]) for one in lines.values()), *passes)})
+    waves = np.exp(1j * np.outer(result.times, rates))
+    columns = np.concatenate([waves.real, -waves.imag, np.ones((len(waves), 1))], axis=1)
+    for sensor, acceleration in motion.items():
+        fitted = np.linalg.lstsq(columns, acceleration, rcond=None)[0]
+        amplitudes = dict(zip(rates, fitted[: len(rates)] + 1j * fitted[len(rates) : 2 * len(rates)], strict=True))
+        expected = dict.fromkeys(amplitudes, 0.0j)
+        for one in lines.values():
+            expected[round(float(one.frequencies[0]), 9)] += complex(one.sensor_acceleration[sensor][0])
+        highest = max(map(abs, expected.values()))
+        strong = [at for at, amplitude in expected.items() if abs(amplitude) > 0.02 * highest]
+        for at in strong:
+            assert abs(amplitudes[at] - expected[at]) < 0.01 * highest
+    assert {one.frequencies[0] for one in found if one.excitation == f"unbalance of {rotor}"} == {machine.speeds[rotor]}
+    assert len(found) == (2 if rotor == "planet 1" else 1)

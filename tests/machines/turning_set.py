@@ -9,6 +9,7 @@ import numpy as np
 from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.gears import TableStiffness
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.rotors import Unbalance
 from tests.machines.plane_planetary_set import MESH_STIFFNESS, STEEL, equal_angles, plane_set
 
 PRESSURE_ANGLE = np.radians(20.0)
@@ -37,9 +38,16 @@ def housing(natural_hz: Sequence[float], shape: float = 0.2, damping_ratio: floa
 
 
 def turning_set(
-    natural_hz: Sequence[float], *, speed: float = 300.0, angles_deg: Sequence[float] | None = None
+    natural_hz: Sequence[float],
+    *,
+    speed: float = 300.0,
+    angles_deg: Sequence[float] | None = None,
+    unbalanced: str | None = None,
 ) -> Machine:
-    """Sun, carrier and planets on rigid ground, the ring in the housing; by default three planets at equal angles."""
+    """Sun, carrier and planets on rigid ground, the ring in the housing; by default three planets at equal angles.
+
+    Where a shaft is unbalanced, its unbalance is all that varies: the mesh stiffness is constant.
+    """
     parts = plane_set(
         equal_angles(3) if angles_deg is None else np.radians(angles_deg),
         pressure_angle=PRESSURE_ANGLE,
@@ -54,7 +62,11 @@ def turning_set(
     ]
     position = np.linspace(0.0, 1.0, 401)
     wave = np.cos(2.0 * np.pi * position) + np.sin(4.0 * np.pi * position)
-    law = TableStiffness(position, MESH_STIFFNESS * (1.0 + RIPPLE * wave))
+    law = TableStiffness(position, MESH_STIFFNESS * (1.0 + (0.0 if unbalanced else RIPPLE) * wave))
+    parts["shafts"] = [
+        replace(shaft, unbalances=[Unbalance(0.05, 1e-4, 0.4)]) if shaft.name == unbalanced else shaft
+        for shaft in parts["shafts"]
+    ]
     parts["gear_pairs"] = [replace(pair, stiffness=law) for pair in parts["gear_pairs"]]
     return Machine(**parts, housing=housing(natural_hz), speed=speed, torque=200.0)
 
