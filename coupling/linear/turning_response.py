@@ -175,13 +175,13 @@ class TurningResponse:
         return [
             *([undoing] if count else []),
             *(
-                _Turning(stiffness, damping, self._by_order(directions, turning))
+                _Turning(stiffness, damping, self.directions_by_order(directions, turning))
                 for directions, stiffness, damping, turning in self._laws
                 if turning
             ),
         ]
 
-    def _by_order(self, directions: FloatArray, turning: Sequence[TurningPart]) -> dict[Order, ComplexArray]:
+    def directions_by_order(self, directions: FloatArray, turning: Sequence[TurningPart]) -> dict[Order, ComplexArray]:
         """Fourier coefficients D_l of directions by their order l, (n, d) each."""
         still = self.still
         found: dict[Order, ComplexArray] = {still: directions.astype(np.complex128)}
@@ -335,7 +335,7 @@ class TurningResponse:
     def force_along(self, number: int, force: complex) -> dict[Order, ComplexArray]:
         """Split a harmonic force along the line of action of a contact into loads by order, (n,) each."""
         tooth = self.system.contacts[number]
-        parts = self._by_order(tooth.direction[:, None], tooth.turning)
+        parts = self.directions_by_order(tooth.direction[:, None], tooth.turning)
         return {order: np.asarray(force * direction[:, 0]) for order, direction in parts.items()}
 
     def deflection(
@@ -362,7 +362,7 @@ class TurningResponse:
         ndarray of complex, shape (..., d)
         """
         at = self.still if order is None else order
-        parts = self._by_order(directions, turning)
+        parts = self.directions_by_order(directions, turning)
         found = np.zeros((*motion[self.still].shape[:-1], directions.shape[1]), dtype=np.complex128)
         for gap, direction in parts.items():
             if (source := _minus(at, gap)) in motion:

@@ -8,7 +8,9 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import unbalance_responses
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
@@ -142,6 +144,28 @@ def test_carrier_that_hardly_turns_gives_the_lines_of_one_that_stands() -> None:
     rows = np.array(list(machine.sensor_rows.values()))
     for line, still in zip(slow, frozen, strict=True):
         assert np.abs(rows @ (line.motion - still.motion)).max() < 1e-9 * np.abs(rows @ still.motion).max()
+
+
+def test_parts_and_bands_of_sidebands_are_those_of_lines_and_of_a_machine_with_other_damping() -> None:
+    machine = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL)
+    mechanisms = LineMechanisms(machine)
+    found = [line for line in lines(ANISOTROPIC, UNEQUAL) if abs(carrier_turns(line)) <= 3]
+    bands = DampingBand(mechanisms).at([line.frequency for line in found])
+    others = {scale: turning_machine(ANISOTROPIC, angles_deg=UNEQUAL, damping=scale) for scale in (0.5, 2.0)}
+    changed = {scale: MeshHarmonicModel(other).parts(LIMIT) for scale, other in others.items()}
+    for place, line in enumerate(found):
+        parts = mechanisms.parts(line.frequency)
+        for sensor, row in machine.sensor_rows.items():
+            amplitude = line.frequency**2 * abs(row @ line.motion)
+            assert parts[sensor].together == pytest.approx(amplitude, rel=1e-6)
+            assert set(parts[sensor].amplitudes) == {"transmission_error"}
+            levels = [0.0]
+            for scaled in changed.values():
+                (same,) = (one for one in scaled if one.frequency == pytest.approx(line.frequency, rel=1e-9))
+                levels.append(20.0 * np.log10(same.frequency**2 * abs(row @ same.motion) / amplitude))
+            # A dashpot of standing parts is a stiffness too, seen from the carrier: the band leaves that as it is.
+            assert bands[sensor][place] == pytest.approx([min(levels), max(levels)], abs=0.03)
+    assert len(found) == 6
 
 
 @pytest.mark.slow

@@ -43,16 +43,18 @@ def turning_set(
     speed: float = 300.0,
     angles_deg: Sequence[float] | None = None,
     unbalanced: str | None = None,
+    damping: float = 1.0,
 ) -> Machine:
     """Sun, carrier and planets on rigid ground, the ring in the housing; by default three planets at equal angles.
 
-    Where a shaft is unbalanced, its unbalance is all that varies: the mesh stiffness is constant.
+    Where a shaft is unbalanced, its unbalance is all that varies: the mesh stiffness is constant. All damping is
+    multiplied by ``damping``.
     """
     parts = plane_set(
         equal_angles(3) if angles_deg is None else np.radians(angles_deg),
         pressure_angle=PRESSURE_ANGLE,
         with_ring=True,
-        damping=1e-5,
+        damping=1e-5 * damping,
         material=STEEL,
         diameter=0.05,
         teeth=TEETH,
@@ -68,7 +70,7 @@ def turning_set(
         for shaft in parts["shafts"]
     ]
     parts["gear_pairs"] = [replace(pair, stiffness=law) for pair in parts["gear_pairs"]]
-    return Machine(**parts, housing=housing(natural_hz), speed=speed, torque=200.0)
+    return Machine(**parts, housing=housing(natural_hz, damping_ratio=0.03 * damping), speed=speed, torque=200.0)
 
 
 def turning_machine(natural_hz: Sequence[float], **how: Any) -> CoupledMachine:
