@@ -153,8 +153,9 @@ def _mesh_responses(
     if not touching:
         return (), None
     limit = _frequency_limit(machine)
-    frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
-    if machine.system.turns:
+    turns = machine.system.turns
+    frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit, coarse=turns)
+    if turns:
         # They are solved directly, by harmonic balance.
         return mesh_error_responses(machine, frequencies, meshes=touching, contact=contact), None
     try:

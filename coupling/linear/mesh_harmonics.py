@@ -88,22 +88,37 @@ class Response:
         return self.phasing < SUPPRESSED
 
     def cause(self, machine: CoupledMachine) -> str:
-        """Return the mesh harmonics that drive the line in words, with the turns of carriers that it is off them.
+        """Return the mesh harmonics that drive the line in words, with the turns of carriers that it is off them."""
+        return " and ".join(causes_in_words(machine, self.causes, self.sidebands))
 
-        Meshes of the planets of one carrier that have one harmonic are told together.
-        """
-        sidebands = self.sidebands or (Sideband(),) * len(self.causes)
-        together: dict[tuple[int, str | None, str], list[str]] = {}
-        for (number, harmonic), sideband in zip(self.causes, sidebands, strict=True):
-            mesh = machine.meshes[machine.flanks(number)[0]]
-            together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(
-                machine.system.contacts[number].name
-            )
-        words = []
-        for (harmonic, carrier, off), names in together.items():
-            meshes = names if carrier is None or len(names) == 1 else [f"planets' meshes of {carrier}"]
-            words += [f"{harmonic}× {name}{off}" for name in meshes]
-        return " and ".join(words)
+
+def causes_in_words(
+    machine: CoupledMachine, causes: Sequence[Cause], sidebands: Sequence[Sideband] = (), *, of_flanks: bool = True
+) -> list[str]:
+    """Return each mesh harmonic of a line in words, with the turns of carriers that the line is off it.
+
+    Meshes of the planets of one carrier that have one harmonic are told together.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    causes : sequence of (int, int)
+        As of a `Response`.
+    sidebands : sequence of Sideband
+        As of a `Response`.
+    of_flanks : bool
+        Whether meshes have the names of the contacts, which say which flanks touch, or of the gears alone.
+    """
+    together: dict[tuple[int, str | None, str], list[str]] = {}
+    for (number, harmonic), sideband in zip(causes, sidebands or [Sideband()] * len(causes), strict=True):
+        mesh = machine.meshes[machine.flanks(number)[0]]
+        name = machine.system.contacts[number].name if of_flanks else mesh.name
+        together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(name)
+    words = []
+    for (harmonic, carrier, off), names in together.items():
+        meshes = names if carrier is None or len(names) == 1 else [f"planets' meshes of {carrier}"]
+        words += [f"{harmonic}× {name}{off}" for name in meshes]
+    return words
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,8 +220,8 @@ class MeshHarmonicModel:
     def _sidebands(self, w: float, causes: tuple[Cause, ...]) -> list[ResponseParts]:
         """Solve the motions at a mesh harmonic [rad/s] and its sidebands."""
         turning, count = self.turning, len(causes)
-        loads = [self._turning_error_load(cause) for cause in causes]
-        loads += [self._turning_shuttling_load(w, cause) for cause in causes]
+        pairs = [self._turning_loads(w, cause) for cause in causes]
+        loads = [*(error for error, _ in pairs), *(shuttling for _, shuttling in pairs)]
         motion = turning.respond(w, loads)
         seen = self._housing_coordinates
         sizes = {order: np.linalg.norm((q[:count] + q[count:])[:, seen], axis=1).sum() for order, q in motion.items()}
@@ -231,6 +246,30 @@ class MeshHarmonicModel:
             )
         return lines
 
+    def moved_to(self, line: Response, frequencies: FloatArray) -> ComplexArray:
+        """Motions (f, n) of a line of a machine whose directions turn, were it at other frequencies [rad/s].
+
+        The excitation is as far off the line as it is, and its loads are the same; the carriers turn at their speeds.
+        """
+        model = self.turning.model
+        moved = np.zeros((len(frequencies), self.machine.system.size), dtype=np.complex128)
+        together: dict[float, list[Cause]] = {}
+        for number, harmonic in line.causes:
+            rate = abs(self.machine.system.contacts[number].mesh_frequency)
+            together.setdefault(round(2.0 * np.pi * harmonic * rate, 6), []).append((number, harmonic))
+        for w, causes in together.items():
+            loads = [load for cause in dict.fromkeys(causes) for load in self._turning_loads(w, cause)]
+            for sense in (1.0, -1.0):
+                order = model.order_of(sense * line.frequency - w)
+                if order is None:
+                    continue
+                for place, at in enumerate(frequencies.tolist()):
+                    excitation = sense * at - model.shift(order)
+                    if excitation > 0.0:
+                        motion = model.respond(excitation, [(load, {}) for load in loads], [order])[order].sum(axis=0)
+                        moved[place] += motion if sense > 0.0 else motion.conj()
+        return moved
+
     @cached_property
     def turning(self) -> CarrierSidebands:
         """Sidebands of the machine, whose directions turn."""
@@ -244,19 +283,13 @@ class MeshHarmonicModel:
             return np.ones(machine.system.size, dtype=np.bool_)
         return np.asarray(np.any(machine.rows(machine.housing.name, np.eye(machine.housing.size)) != 0.0, axis=0))
 
-    def _turning_error_load(self, cause: Cause) -> dict[Order, ComplexArray]:
-        """Return k e d(t) by order."""
+    def _turning_loads(self, w: float, cause: Cause) -> tuple[dict[Order, ComplexArray], dict[Order, ComplexArray]]:
+        """Return k e d(t) and the moments of load shuttling of a cause at ω by order."""
         number, harmonic = cause
         force = self.contact.stiffness[number] * self._errors[number][harmonic - 1]
-        return self.turning.model.force_along(number, force)
-
-    def _turning_shuttling_load(self, w: float, cause: Cause) -> dict[Order, ComplexArray]:
-        """Return the moments of load shuttling by order."""
-        number, harmonic = cause
-        amplitude = self._shuttling[number].get(harmonic)
-        if amplitude is None:
-            return {}
-        return self.turning.by_order(w, HarmonicLoad(w, amplitude), self.turning.frame_of_contact(number))
+        amplitude, frame = self._shuttling[number].get(harmonic), self.turning.frame_of_contact(number)
+        by_error = self.turning.model.force_along(number, force)
+        return by_error, {} if amplitude is None else self.turning.by_order(w, HarmonicLoad(w, amplitude), frame)
 
     def dynamic_stiffness(self, frequency: float) -> ComplexArray:
         """Z at a frequency [rad/s], shape (n, n)."""

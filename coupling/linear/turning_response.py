@@ -20,6 +20,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
@@ -30,6 +31,7 @@ from gearwhine.coupling.statics.mean_mesh import ContactState
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
 Order = tuple[int, ...]
 Excitation = tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]
 """Loads on the coordinates by the order of their frequency, and errors of contacts that turn by their number [m]."""
@@ -40,6 +42,7 @@ SIDEBANDS = 6
 _LARGEST_MULTIPLE = 12  # of a rate of turning that is a multiple of another one
 _LARGEST_DENOMINATOR = 3  # of the ratio of two rates that are both multiples of a third
 _SAME_RATE = 1e-9  # relative difference of rates that are one
+_DEPENDENT = 1e-14  # singular value of columns of size one that is rounding
 _RESTRAINT = 17.3  # frequency of a free motion on its spring, over the largest rate
 _FREE_MOTION = 1e-9  # part of the largest stiffness up to which a motion is free
 _STANDSTILL = 1e-9  # part of the largest rate up to which a frequency is zero
@@ -138,10 +141,16 @@ class TurningResponse:
     def _restraint(self) -> tuple[FloatArray, float]:
         """Motions that no connector but those that turn resists, (n, r), and the stiffness κ that is put on them."""
         stiffness = self._unrestrained[0]
-        values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
-        free = np.abs(values) <= _FREE_MOTION * max(abs(values[-1]), 1e-300)
+        free_motions = [np.zeros((len(stiffness), 0))]
+        for block in self._blocks:
+            own = stiffness[np.ix_(block, block)]
+            values, vectors = np.linalg.eigh(0.5 * (own + own.T))
+            free = np.abs(values) <= _FREE_MOTION * max(abs(values[-1]), 1e-300)
+            motions = np.zeros((len(stiffness), np.count_nonzero(free)))
+            motions[block] = vectors[:, free]
+            free_motions.append(motions)
         # No multiple of the rates is near √κ; small beside other springs, κ costs no digits.
-        return vectors[:, free], (_RESTRAINT * max(self.rates, default=1.0)) ** 2
+        return np.concatenate(free_motions, axis=1), (_RESTRAINT * max(self.rates, default=1.0)) ** 2
 
     @cached_property
     def _constant(self) -> tuple[FloatArray, FloatArray]:
@@ -206,6 +215,22 @@ class TurningResponse:
         return np.concatenate([np.zeros((self.system.size, 0)), *parts], axis=1)
 
     @cached_property
+    def _basis(self) -> tuple[ComplexArray, ComplexArray]:
+        """Basis B (n, r) of the columns and their parts M (r, l d): many columns are sums of others."""
+        columns = self._columns
+        sizes = np.linalg.norm(columns, axis=0)
+        sizes[sizes == 0.0] = 1.0
+        bases, parts = [], []
+        for block in self._blocks:
+            left, values, right = np.linalg.svd(columns[block] / sizes, full_matrices=False)
+            rank = int(np.count_nonzero(values > _DEPENDENT))
+            basis = np.zeros((len(columns), rank), dtype=np.complex128)
+            basis[block] = left[:, :rank]
+            bases.append(basis)
+            parts.append(values[:rank, None] * right[:rank] * sizes)
+        return np.concatenate(bases, axis=1), np.concatenate(parts)
+
+    @cached_property
     def _offsets(self) -> list[Order]:
         """Orders l of the directions."""
         return sorted({order for one in self._turning for order in one.directions})
@@ -231,11 +256,22 @@ class TurningResponse:
         dynamic[np.diag_indices(len(dynamic))] -= w**2
         return dynamic
 
+    @cached_property
+    def _blocks(self) -> list[IntArray]:
+        """Coordinates of parts that are coupled by connectors that turn alone, or not at all."""
+        coupled = sparse.csr_array(np.any([part != 0.0 for part in self._unrestrained], axis=0))
+        count, labels = sparse.csgraph.connected_components(coupled, directed=False)
+        return [np.flatnonzero(labels == number) for number in range(count)]
+
     def _moved(self, w: float, loads: ComplexArray) -> ComplexArray:
         """Coordinates (n, i) under loads (n, i) at a frequency, without the connectors that turn."""
-        if self._pairs is None or w == 0.0:
-            return np.asarray(np.linalg.solve(self._dynamic(w), loads))
-        return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
+        if self._pairs is not None and w != 0.0:
+            return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
+        dynamic, moved = self._dynamic(w), np.zeros(loads.shape, dtype=np.complex128)
+        for block in self._blocks:
+            pushed = np.flatnonzero(np.any(loads[block] != 0.0, axis=0))
+            moved[np.ix_(block, pushed)] = np.linalg.solve(dynamic[np.ix_(block, block)], loads[np.ix_(block, pushed)])
+        return moved
 
     def mesh_error(self, number: int, frequency: float) -> Excitation:
         """Load of a unit transmission error of a contact at ω [rad/s]: on coordinates by order, or as its own error.
@@ -289,27 +325,29 @@ class TurningResponse:
             for order in self.orders
             if any(order in one for one, _ in excitations)
         }
-        # Motions under unit forces along all columns, and under the loads, of each order that is asked for.
+        # Motions under unit forces along the columns' basis, and under the loads, of each order that is asked for.
+        basis, mix = self._basis
+        rank = basis.shape[1]
         moved: dict[Order, ComplexArray] = {}
         asked = set(self.orders if orders is None else orders)
         for order in self.orders:
-            columns = self._columns
-            if order in loads:
-                columns = np.concatenate([columns, loads[order]], axis=1)
-            alone = self._moved(frequency + self.shift(order), columns)
+            pushed = np.concatenate([basis, loads[order]], axis=1) if order in loads else basis
+            alone = self._moved(frequency + self.shift(order), pushed)
             if order in asked:
                 moved[order] = alone
-            seen_by = (self._columns.T @ alone).reshape(len(self._offsets), width, -1)
-            compliance = seen_by[:, :, : self._columns.shape[1]].reshape(len(self._offsets), width, -1, width)
+            # Deflections of all directions; the columns are complex, and not conjugated.
+            seen_by = mix.T @ (basis.T @ alone)
+            compliance = (seen_by[:, :rank] @ mix).reshape(len(self._offsets), width, -1, width)
+            by_load = seen_by[:, rank:].reshape(len(self._offsets), width, -1)
             # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
             gaps = list(enumerate(self._offsets))
             acting = [(n, places[other]) for n, gap in gaps if (other := _minus(order, gap)) in places]
             seen = [(n, places[other]) for n, gap in gaps if (other := _plus(order, gap)) in places]
-            for row, deflected in seen:
-                if order in loads:
-                    free[deflected] += seen_by[row, :, self._columns.shape[1] :]
-                for column, force in acting:
-                    between[deflected, :, force, :] += compliance[row, :, column, :]
+            rows, deflected = np.array(seen).T[:, :, None]
+            columns, acted = np.array(acting).T[:, None, :]
+            between[deflected, :, acted, :] += compliance[rows, :, columns, :]
+            if order in loads:
+                free[deflected[:, 0]] += by_load[rows[:, 0]]
         free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
         matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
         matrix += np.eye(count * width)
@@ -322,13 +360,14 @@ class TurningResponse:
         forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
         motion = {}
         for order, alone in moved.items():
-            total = np.zeros((self.system.size, len(excitations)), dtype=np.complex128)
-            if order in loads:
-                total += alone[:, self._columns.shape[1] :]
+            acting_forces = np.zeros((rank, len(excitations)), dtype=np.complex128)
             for n, gap in enumerate(self._offsets):
                 source = _minus(order, gap)
                 if source in places:
-                    total -= alone[:, n * width : (n + 1) * width] @ forces[places[source]]
+                    acting_forces += mix[:, n * width : (n + 1) * width] @ forces[places[source]]
+            total = -alone[:, :rank] @ acting_forces
+            if order in loads:
+                total += alone[:, rank:]
             motion[order] = total.T
         return motion
 

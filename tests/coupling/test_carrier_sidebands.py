@@ -14,6 +14,8 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
+from gearwhine.coupling.signals.spectrum import decibels
+from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, find_resonances
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import simulate
@@ -226,3 +228,25 @@ def test_sidebands_of_an_unbalance_are_those_of_an_integration_in_time(rotor: st
             assert abs(amplitudes[at] - expected[at]) < 0.01 * highest
     assert {one.frequencies[0] for one in found if one.excitation == f"unbalance of {rotor}"} == {machine.speeds[rotor]}
     assert len(found) == (2 if rotor == "planet 1" else 1)
+
+
+def test_sweep_has_each_sideband_and_its_level_where_it_meets_a_mode() -> None:
+    machine = turning_machine(ANISOTROPIC)
+    resonances = find_resonances(machine, LIMIT / (2.0 * np.pi))
+    assert resonances is not None
+    orders = machine.speeds["carrier"] / machine.speed * np.array([RING + 1.0, 2.0 * RING - 1.0])
+    kept = [int(np.argmin(np.abs(resonances.line_orders - order))) for order in orders]
+    assert resonances.line_orders[kept] == pytest.approx(orders, rel=1e-9)
+    assert resonances.lines[kept[0]] == "1× planets' meshes of carrier + 1× carrier"
+    (mode,) = np.flatnonzero(np.abs(resonances.frequencies - 995.0) < 2.0)
+    # The machine itself, at the speed at which the sideband has the frequency of the mode.
+    speed = 2.0 * np.pi * float(resonances.frequencies[mode]) / orders[0]
+    there = turning_machine(ANISOTROPIC, speed=speed)
+    model = MeshHarmonicModel(there)
+    (line,) = (one for one in model.parts(LIMIT) if one.frequency == pytest.approx(orders[0] * speed, rel=1e-9))
+    for place, (sensor, row) in enumerate(there.sensor_rows.items()):
+        expected = decibels(line.frequency**2 * abs(row @ line.motion))
+        found = resonances.levels_near[place, kept[0], mode, len(PLACES_ABOUT_MODE) // 2]
+        assert resonances.outputs[place] == sensor
+        assert found == pytest.approx(expected, abs=0.2)
+        assert found > resonances.line_levels[place, kept[0]] + 1.0
