@@ -14,10 +14,10 @@ from gearwhine.coupling.linear.complex_modes import stability as coupled_stabili
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.linear.frequency_response import (
     FrequencyResponse,
-    mesh_error_response,
+    mesh_error_responses,
     resonance_grid,
     touching_meshes,
-    unbalance_response,
+    unbalance_responses,
 )
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
@@ -55,11 +55,13 @@ class SolvedSystem:
     responses : tuple of FrequencyResponse
         Responses to a unit transmission error of each mesh.
     superposition_error : float or None
-        Largest difference of these from direct solutions, at some frequencies, as a part of the largest amplitude.
+        Largest difference of these from direct solutions, at some frequencies, as a part of the largest amplitude; None
+        where they are solved directly.
     campbell : SystemCampbell or None
         Campbell diagram, where it is asked for.
     unbalance : tuple of FrequencyResponse
-        Responses to the unbalances of each rotor that has any, over the speeds of the diagram, at w > 0.
+        Responses to the unbalances of each rotor that has any, over the speeds of the diagram, at w > 0; where
+        directions turn, each is followed by its sidebands at the sensors.
     unbalance_speeds : ndarray, shape (u,)
         Speeds of the leading rotor [rad/s].
     lines : tuple of ResponseParts
@@ -151,22 +153,23 @@ def _mesh_responses(
     if not touching:
         return (), None
     limit = _frequency_limit(machine)
-    frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
+    turns = machine.system.turns
+    frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit, coarse=turns)
+    if turns:
+        # They are solved directly, by harmonic balance.
+        return mesh_error_responses(machine, frequencies, meshes=touching, contact=contact), None
     try:
-        responses = [
-            mesh_error_response(machine, frequencies, mesh=number, contact=contact, modes=modes) for number in touching
-        ]
+        responses = mesh_error_responses(machine, frequencies, meshes=touching, contact=contact, modes=modes)
     except ModesError:
         # Nearly parallel modes cannot be superposed; the system itself can always be solved.
-        solved = [mesh_error_response(machine, frequencies, mesh=number, contact=contact) for number in touching]
-        return tuple(solved), None
+        return mesh_error_responses(machine, frequencies, meshes=touching, contact=contact), None
     chosen = np.unique(np.linspace(0, frequencies.size - 1, _DIRECT).astype(int))
     largest = 0.0
-    for number, by_modes in zip(touching, responses, strict=True):
-        direct = mesh_error_response(machine, frequencies[chosen], mesh=number, contact=contact)
+    directs = mesh_error_responses(machine, frequencies[chosen], meshes=touching, contact=contact)
+    for direct, by_modes in zip(directs, responses, strict=True):
         difference = np.abs(by_modes.coordinates[chosen] - direct.coordinates)
         largest = max(largest, float(difference.max() / np.abs(direct.coordinates).max()))
-    return tuple(responses), largest
+    return responses, largest
 
 
 def _sensor_lines(machine: CoupledMachine) -> tuple[ResponseParts, ...]:
@@ -216,9 +219,9 @@ def _over_speed(
         if machine.speeds[rotor] == 0.0:
             continue
         progress(f"response to the unbalance of {rotor}")
-        response = unbalance_response(machine, turning, rotor=rotor, contact=mean)
+        responses = unbalance_responses(machine, turning, rotor=rotor, contact=mean)
         # A clockwise rotor's phases are those of its signals, not of e^{iwt} at its negative speed.
-        unbalance.append(response.at_positive_frequencies())
+        unbalance += [response.at_positive_frequencies() for response in responses]
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)
 
 

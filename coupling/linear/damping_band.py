@@ -12,7 +12,7 @@ since mass or stiffness holds the motion there; near one it reaches from -6 to +
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,7 @@ from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpair
 from gearwhine.coupling.linear.frequency_response import excitations
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
+from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 FloatArray = npt.NDArray[np.float64]
@@ -70,9 +71,12 @@ class DampingBand:
         if not w.size or not self.machine.sensor_rows:
             return {name: np.zeros((w.size, 2)) for name in self.machine.sensor_rows}
         rows = np.array(list(self.machine.sensor_rows.values()))
-        driven = [self.mechanisms.loads(frequency, within) for frequency in w.tolist()]
-        loads = [[np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in groups] for groups in driven]
-        levels = np.array([self._levels(number, w, loads, rows) for number in range(len(SCALES))])
+        if self.machine.system.turns:
+            levels = np.array([self._turning_levels(number, w, within, rows) for number in range(len(SCALES))])
+        else:
+            driven = [self.mechanisms.loads(frequency, within) for frequency in w.tolist()]
+            loads = [[np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in groups] for groups in driven]
+            levels = np.array([self._levels(number, w, loads, rows) for number in range(len(SCALES))])
         tiny = np.finfo(np.float64).tiny
         change = 20.0 * np.log10(np.maximum(levels, tiny) / np.maximum(levels[SCALES.index(1.0)], tiny))
         change = np.clip(change, -_WIDEST, _WIDEST)
@@ -86,6 +90,32 @@ class DampingBand:
             if of_line:
                 sizes[number] = np.linalg.norm(self._motion(scale, np.array([of_line]), w[[number]], rows)[0], axis=0)
         return np.asarray(sizes)
+
+    def _turning_levels(self, scale: int, w: FloatArray, within: float, rows: FloatArray) -> FloatArray:
+        """Size of the motion along each sensor of a machine whose directions turn, shape (f, sensors)."""
+        model = self._scaled_turning[scale]
+        units = [model.force_along(n, 1.0) for n, tooth in enumerate(self.machine.system.contacts) if tooth.loaded]
+        sizes = np.zeros((len(w), len(rows)))
+        for number, frequency in enumerate(w.tolist()):
+            driven = self.mechanisms.turning_motions(model, frequency, within)
+            motions = [np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in driven]
+            if not driven and units:
+                motions = list(model.respond(frequency, [(unit, {}) for unit in units], [model.still])[model.still])
+            if motions:
+                sizes[number] = np.linalg.norm(np.array(motions) @ rows.T, axis=0)
+        return sizes
+
+    @cached_property
+    def _scaled_turning(self) -> list[TurningResponse]:
+        """Harmonic balances with damping by each scale."""
+        system, contact = self.machine.system, self.mechanisms.model.contact
+        models = []
+        for scale in SCALES:
+            parts = [replace(one, damping=scaled_damping(one.damping, scale)) for one in system.components]
+            linear = [replace(one, damping=scaled_damping(one.damping, scale)) for one in system.linear]
+            scaled = replace(system, components=tuple(parts), linear=tuple(linear))
+            models.append(TurningResponse(scaled, replace(contact, damping=scale * contact.damping)))
+        return models
 
     def _motion(self, scale: int, loads: FloatArray | ComplexArray, w: FloatArray, rows: FloatArray) -> ComplexArray:
         """Motion along the sensors under loads (1, i, n), shape (f, i, sensors)."""

@@ -25,7 +25,7 @@ chance; the factor of two covers directions in which the other basis is no bette
 that both bases share, such as the one damping ratio of all modes above the limit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -34,10 +34,13 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError, ModesError
+from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
-from gearwhine.coupling.linear.turning_response import Excitation, TurningResponse
+from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
+from gearwhine.coupling.machine.connectors import TurningPart
+from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
@@ -46,7 +49,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _EVEN_POINTS = 600  # evenly spaced points of a band, in addition to those of each resonance
+_FAINT_SIDEBAND = 1e-3  # part of a sensor's highest amplitude up to which a sideband of unbalance is left out
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
+
+
+_COARSE_EVEN_POINTS, _COARSELY_AROUND = 200, np.array([-1.0, 0.0, 1.0])  # the same of a coarse grid
 
 
 def receptance(
@@ -134,8 +141,10 @@ def _pairs_of(modes: CoupledModes | None) -> Eigenpairs | None:
     return None if modes is None else modes.pairs
 
 
-def resonance_grid(modes: CoupledModes, low: float, high: float) -> FloatArray:
+def resonance_grid(modes: CoupledModes, low: float, high: float, *, coarse: bool = False) -> FloatArray:
     """Frequency grid of a band that resolves every resonance, ascending [rad/s].
+
+    A coarse one, for responses that take long, has a third of the points.
 
     Raises
     ------
@@ -145,8 +154,9 @@ def resonance_grid(modes: CoupledModes, low: float, high: float) -> FloatArray:
     if not 0.0 < low < high:
         raise CouplingError(f"a band from {low:g} to {high:g} rad/s; expected 0 < from < to")
     swinging = modes.eigenvalues[modes.eigenvalues.imag > 0.0]
-    near = swinging.imag[:, None] + np.abs(swinging.real)[:, None] * _AROUND
-    grid = np.unique(np.concatenate([np.linspace(low, high, _EVEN_POINTS), near.ravel()]))
+    near = swinging.imag[:, None] + np.abs(swinging.real)[:, None] * (_COARSELY_AROUND if coarse else _AROUND)
+    points = _COARSE_EVEN_POINTS if coarse else _EVEN_POINTS
+    grid = np.unique(np.concatenate([np.linspace(low, high, points), near.ravel()]))
     # An undamped mode has no finite response at its own frequency.
     undamped = swinging.imag[np.abs(swinging.real) <= 1e-12 * np.abs(swinging)]
     return np.asarray(grid[(grid >= low) & (grid <= high) & ~np.isin(grid, undamped)])
@@ -224,6 +234,8 @@ def mesh_error_response(
 ) -> FrequencyResponse:
     """Response to a unit transmission error of the loaded flanks of a mesh, along their line of action [1/m].
 
+    Of a machine whose directions turn it is the motion at the frequency of the error, without its sidebands.
+
     Parameters
     ----------
     machine : CoupledMachine
@@ -243,21 +255,52 @@ def mesh_error_response(
     ModesError
         As :func:`gearwhine.coupling.linear.frequency_response`.
     """
-    if not 0 <= mesh < len(machine.meshes):
-        raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
+    return mesh_error_responses(machine, frequencies, meshes=[mesh], contact=contact, modes=modes)[0]
+
+
+def mesh_error_responses(
+    machine: CoupledMachine,
+    frequencies: FloatArray,
+    *,
+    meshes: Sequence[int],
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> tuple[FrequencyResponse, ...]:
+    """Responses as of `mesh_error_response` to the errors of several meshes, each alone."""
     state = mean_contact(machine.system) if contact is None else contact
-    flanks = machine.loaded_contacts[mesh]
-    tooth = machine.system.contacts[flanks]
-    law = state.stiffness[flanks] + 1j * frequencies * state.damping[flanks]
-    if state.stiffness[flanks] == 0.0:
-        raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
+    contacts = machine.system.contacts
+    for mesh in meshes:
+        if not 0 <= mesh < len(machine.meshes):
+            raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
+        if state.stiffness[machine.loaded_contacts[mesh]] == 0.0:
+            tooth = contacts[machine.loaded_contacts[mesh]]
+            raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
+    flanks = [machine.loaded_contacts[mesh] for mesh in meshes]
     if machine.system.turns:
         model = TurningResponse(machine.system, state)
-        moved = model.at_excitation(frequencies, lambda w: model.mesh_error(flanks, w))
+        solved = [model.respond(w, [model.mesh_error(number, w) for number in flanks]) for w in frequencies.tolist()]
+        motions: list[_Motion] = [
+            _turning_motion(model, [{order: moved[place] for order, moved in at.items()} for at in solved])
+            for place in range(len(flanks))
+        ]
     else:
-        loads = law[:, None, None] * tooth.direction
-        moved = response(machine.system, loads, frequencies, state, _pairs_of(modes))[:, 0]
-    return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", flanks)
+        laws = [state.stiffness[number] + 1j * frequencies * state.damping[number] for number in flanks]
+        motions = [
+            _Motion(
+                response(
+                    machine.system,
+                    law[:, None, None] * contacts[number].direction,
+                    frequencies,
+                    state,
+                    _pairs_of(modes),
+                )[:, 0]
+            )
+            for number, law in zip(flanks, laws, strict=True)
+        ]
+    return tuple(
+        _named(machine, state, frequencies, motion, f"transmission error of {contacts[number].name}", "m", number)
+        for number, motion in zip(flanks, motions, strict=True)
+    )
 
 
 def sensor_force_response(
@@ -281,9 +324,16 @@ def sensor_force_response(
     if sensor not in rows:
         raise CouplingError(f"no sensor {sensor!r}; there are: {', '.join(rows) or 'none'}")
     state = mean_contact(machine.system) if contact is None else contact
+    if machine.system.turns:
+        model = TurningResponse(machine.system, state)
+        load = {model.still: rows[sensor].astype(np.complex128)}
+        by_order = [
+            {order: moved[0] for order, moved in model.respond(w, [(load, {})]).items()} for w in frequencies.tolist()
+        ]
+        return _named(machine, state, frequencies, _turning_motion(model, by_order), f"force at {sensor}", "N")
     loads = np.broadcast_to(rows[sensor], (len(frequencies), 1, machine.system.size))
     moved = response(machine.system, loads, frequencies, state, _pairs_of(modes))[:, 0]
-    return _named(machine, state, frequencies, moved, f"force at {sensor}", "N")
+    return _named(machine, state, frequencies, _Motion(moved), f"force at {sensor}", "N")
 
 
 def unbalance_response(
@@ -295,7 +345,9 @@ def unbalance_response(
 ) -> FrequencyResponse:
     """Unbalance response of a rotor with its own unbalances alone, over the speed of the leading rotor.
 
-    The machine is assembled at each speed: gyroscopic terms and bearings with tables follow.
+    The machine is assembled at each speed: gyroscopic terms and bearings with tables follow. Of a machine whose
+    directions turn it is the motion at the frequency of the unbalance in space, which the housing feels; see
+    `unbalance_responses` for its sidebands, in which bearings and meshes that turn have their forces.
 
     Parameters
     ----------
@@ -309,37 +361,95 @@ def unbalance_response(
     Returns
     -------
     FrequencyResponse
-        Response with w the signed speeds of that rotor: amplitudes rotate with it.
+        Response with w the signed speeds of that rotor: amplitudes rotate with it. Where its coordinates turn with a
+        carrier and no directions turn against them, w is the speed over the carrier's.
 
     Raises
     ------
     CouplingError
         Where the rotor has no unbalance, or a speed is 0.
     """
-    if not any(load.rotor == rotor and load.moment != 0.0 for load in machine.loads.unbalances):
+    return unbalance_responses(machine, speeds, rotor=rotor, contact=contact)[0]
+
+
+def unbalance_responses(
+    machine: CoupledMachine,
+    speeds: Sequence[float] | FloatArray,
+    *,
+    rotor: str,
+    contact: ContactState | None = None,
+) -> tuple[FrequencyResponse, ...]:
+    """Unbalance response of a rotor, as of `unbalance_response`, and its sidebands by the turning of carriers.
+
+    The unbalance of a planet, at Ω in space, shakes the planets and their meshes at Ω - f, seen from the carrier, which
+    turns at f: the sideband by one turn. The housing feels it at Ω, and the others as far as it is not alike all round.
+
+    Returns
+    -------
+    tuple of FrequencyResponse
+        The response, and each sideband at which a sensor moves by more than a thousandth of its highest amplitude, the
+        highest first; its name says by how many turns of which carriers it is off. Frequencies w of a sideband may have
+        the other sign.
+
+    Raises
+    ------
+    CouplingError
+        As `unbalance_response`.
+    """
+    own = [load for load in machine.loads.unbalances if load.rotor == rotor and load.moment != 0.0]
+    if not own:
         raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
     at_speeds = [machine.at_speed(float(speed)) for speed in speeds]
-    frequencies = np.array([at_speed.speeds[rotor] for at_speed in at_speeds])
-    if np.any(frequencies == 0.0):
+    if any(at_speed.speeds[rotor] == 0.0 for at_speed in at_speeds):
         raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
     state = mean_contact(at_speeds[0].system) if contact is None else contact
-    number = [part.name for part in machine.system.components].index(rotor)
-    rows = _rows_of(machine.system, number)
-    parts = []
-    for at_speed, w in zip(at_speeds, frequencies, strict=True):
-        # A bow or a ripple of torque may have the same frequency; unbalances of other rotors are on other coordinates.
-        load = sum(
-            (each.amplitude for each in at_speed.system.harmonic_loads if each.follows == "unbalance"),
-            np.zeros(at_speed.system.size, dtype=np.complex128),
-        )
-        alone = np.where(rows, load, 0.0)
-        moved = response(at_speed.system, alone[None, None, :], np.array([w]), state)[:, 0]
-        parts.append(_named(at_speed, state, np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is"))
+    named, unit = f"unbalance of {rotor}", "unbalance as it is"
+    by_sideband: dict[str, list[FrequencyResponse]] = {}
+    for at_speed in at_speeds:
+        acting = CoordinateLoads(np.zeros(at_speed.system.size))
+        for unbalance in own:
+            MachineCoordinates(at_speed.system.components, at_speed.speeds).add_unbalance(acting, unbalance)
+        turning, w = CarrierSidebands(at_speed, state), at_speed.speeds[rotor]
+        rotating = replace(acting.harmonic[0], amplitude=np.sum([each.amplitude for each in acting.harmonic], axis=0))
+        if not at_speed.system.turns:
+            # Where the rotor's coordinates turn with a carrier, so do those of all that is coupled to it.
+            (load,) = turning.frames.harmonics(rotating, 0.0)
+            at = np.array([load.frequency])
+            motion = _Motion(response(at_speed.system, load.amplitude[None, None, :], at, state)[:, 0])
+            by_sideband.setdefault("", []).append(_named(at_speed, state, at, motion, named, unit))
+            continue
+        solved = turning.respond(w, [turning.by_order(w, rotating, 0.0)])
+        moved = [{order: q[0] for order, q in solved.items()}]
+        for order in turning.model.orders:
+            at, words = np.array([w + turning.model.shift(order)]), turning.sideband(order).words
+            motion = _turning_motion(turning.model, moved, order)
+            by_sideband.setdefault(words, []).append(_named(at_speed, state, at, motion, named + words, unit))
+    joined = {words: _along_speeds(parts) for words, parts in by_sideband.items()}
+    main = joined.pop("")
+    highest = {
+        name: max(float(np.abs(one.sensor_acceleration[name]).max()) for one in (main, *joined.values()))
+        for name in main.sensor_acceleration
+    }
+
+    def share(one: FrequencyResponse) -> float:
+        parts = [
+            float(np.abs(signal).max()) / highest[name]
+            for name, signal in one.sensor_acceleration.items()
+            if highest[name] > 0.0
+        ]
+        return max(parts, default=0.0)
+
+    seen = [one for one in joined.values() if share(one) > _FAINT_SIDEBAND]
+    return (main, *sorted(seen, key=lambda one: -share(one)))
+
+
+def _along_speeds(parts: Sequence[FrequencyResponse]) -> FrequencyResponse:
+    """Join responses at single speeds."""
     first = parts[0]
     return FrequencyResponse(
         excitation=first.excitation,
         unit=first.unit,
-        frequencies=frequencies,
+        frequencies=np.concatenate([part.frequencies for part in parts]),
         coordinates=np.concatenate([part.coordinates for part in parts]),
         sensor_acceleration=_joined([part.sensor_acceleration for part in parts]),
         bearing_load=_joined([part.bearing_load for part in parts]),
@@ -347,30 +457,57 @@ def unbalance_response(
     )
 
 
-def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
-    """Mask of a component's coordinates, shape (n,)."""
-    owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
-    return np.asarray(owners == number)
-
-
 def _joined(responses: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:
     return {name: np.concatenate([part[name] for part in responses]) for name in responses[0]}
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Coordinates (f, n) of a motion, and the deflections of connectors in it, shape (f, d)."""
+
+    coordinates: ComplexArray
+
+    def deflection(self, directions: FloatArray, turning: Sequence[TurningPart]) -> ComplexArray:
+        """Deflection of a connector of directions (n, d), which stand still."""
+        return np.asarray(self.coordinates @ directions)
+
+
+@dataclass(frozen=True)
+class _TurningMotion(_Motion):
+    """Motion at one order of a machine whose directions turn, with its coordinates by all orders."""
+
+    model: TurningResponse
+    by_order: Mapping[Order, ComplexArray]
+    order: Order
+
+    def deflection(self, directions: FloatArray, turning: Sequence[TurningPart]) -> ComplexArray:
+        """Deflection at the order, by motions of the orders from which the directions turn them to it."""
+        return self.model.deflection(self.by_order, directions, turning, self.order)
+
+
+def _turning_motion(
+    model: TurningResponse, motions: Sequence[Mapping[Order, ComplexArray]], order: Order | None = None
+) -> _TurningMotion:
+    """Motion at an order, by default the excitation's, from coordinates (n,) by order at each frequency."""
+    at = model.still if order is None else order
+    by_order = {one: np.array([motion[one] for motion in motions]) for one in motions[0]}
+    return _TurningMotion(by_order[at], model, by_order, at)
 
 
 def _named(
     machine: CoupledMachine,
     state: ContactState,
     frequencies: FloatArray,
-    moved: ComplexArray,
+    motion: _Motion,
     excitation: str,
     unit: str,
     erring: int | None = None,
 ) -> FrequencyResponse:
-    """Response at sensors, bearings and meshes from coordinates (f, n); one contact may have a unit error."""
-    system, rate = machine.system, 1j * frequencies
+    """Response at sensors, bearings and meshes from a motion; one contact may have a unit error."""
+    system, rate, moved = machine.system, 1j * frequencies, motion.coordinates
     loads = {}
     for connector in system.linear[: len(machine.bearings)]:
-        deflection = moved @ connector.directions
+        deflection = motion.deflection(connector.directions, connector.turning)
         loads[connector.name] = np.zeros((len(moved), 5), dtype=np.complex128)
         loads[connector.name][:, list(connector.axes or range(deflection.shape[1]))] = (
             deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T
@@ -378,7 +515,8 @@ def _named(
     mesh_forces = {}
     for number, tooth in enumerate(system.contacts):
         if state.stiffness[number] != 0.0 or state.damping[number] != 0.0:
-            compression = moved @ tooth.direction - (1.0 if number == erring else 0.0)
+            compression = motion.deflection(tooth.direction[:, None], tooth.turning)[:, 0]
+            compression = compression - (1.0 if number == erring else 0.0)
             mesh_forces[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
     return FrequencyResponse(
         excitation=excitation,

@@ -17,6 +17,9 @@ s the row of a sensor, f_m the load of the mechanism m:
   period, e the loaded transmission error less that of teeth that are alike; and (k + iω c) e d by the runout of gears;
 - ``unbalance``, ``shaft_bow``, ``torque_ripple``, ``base_motion``: as given.
 
+Where directions turn with carriers, an excitation at ω_e moves a sensor at all ω_e + m f too, so that a line is made by
+all excitations that are so many turns off it (:mod:`gearwhine.coupling.linear.turning_response`).
+
 The parts add up with their phases to the line of the linear model. A motion has other lines than that where flanks
 part, where the mesh stiffness that changes with the phase meets large vibration (parametric excitation), and where a
 bearing's law bends within the motion.
@@ -39,7 +42,8 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
     polygon_phasors,
 )
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
+from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -96,6 +100,75 @@ class LineParts:
 
 
 @dataclass(frozen=True, eq=False)
+class Force:
+    """A harmonic force: its directions, which may turn, and its amplitudes along them.
+
+    Attributes
+    ----------
+    directions : ndarray, shape (n, d)
+        Directions D(0).
+    amplitudes : ndarray of complex, shape (d,)
+    turning : tuple of TurningPart
+        Parts of the directions that turn.
+    """
+
+    directions: npt.NDArray[np.float64] | ComplexArray
+    amplitudes: ComplexArray
+    turning: tuple[TurningPart, ...] = ()
+
+    @property
+    def load(self) -> ComplexArray:
+        """Load on the coordinates with the directions as they stand at t = 0, shape (n,)."""
+        return np.asarray(self.directions @ self.amplitudes)
+
+    def by_order(self, model: TurningResponse) -> dict[Order, ComplexArray]:
+        """Split the force into loads on the coordinates by the order of their frequency, shape (n,) each."""
+        if not self.turning:
+            return {model.still: self.load}
+        parts = model.directions_by_order(self.directions.real, self.turning)
+        return {order: np.asarray(directions @ self.amplitudes) for order, directions in parts.items()}
+
+
+def _along(direction: FloatArray, amplitude: complex, turning: tuple[TurningPart, ...] = ()) -> Force:
+    """Force along one direction (n,)."""
+    return Force(direction[:, None], np.array([amplitude], dtype=np.complex128), turning)
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """An excitation of a line of a machine whose directions turn.
+
+    Attributes
+    ----------
+    line : float
+        Frequency of the line, its sign that of the motion's e^{iωt} [rad/s].
+    excitation : float
+        Frequency ω_e > 0 of the excitation [rad/s].
+    order : tuple of int
+        Turns m of the line off it.
+    forces : dict of str to list of Force
+        Forces by mechanism.
+    """
+
+    line: float
+    excitation: float
+    order: Order
+    forces: dict[str, list[Force]]
+
+    def motions(self, model: TurningResponse) -> dict[str, ComplexArray]:
+        """Motions at the line's positive frequency by mechanism, shape (n,) each."""
+        loads: list[Excitation] = []
+        for forces in self.forces.values():
+            total: dict[Order, ComplexArray] = {}
+            for force in forces:
+                for order, load in force.by_order(model).items():
+                    total[order] = total.get(order, 0.0) + load
+            loads.append((total, {}))
+        moved = model.respond(self.excitation, loads, [self.order])[self.order]
+        return dict(zip(self.forces, moved if self.line > 0.0 else moved.conj(), strict=True))
+
+
+@dataclass(frozen=True, eq=False)
 class LineMechanisms:
     """Loads that excite a machine about its mean load at a frequency, by mechanism.
 
@@ -137,10 +210,11 @@ class LineMechanisms:
         """
         together: list[tuple[float, dict[str, ComplexArray]]] = []
         reach = max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
-        for at, mechanism, load in self._sources(frequency, reach):
+        for at, mechanism, force in self._sources(frequency, reach):
+            load = force.load
             if not np.any(load):
                 continue
-            place = next((known for w, known in together if abs(w - at) <= _SAME_FREQUENCY_DIFFERENCE * at), None)
+            place = next((known for w, known in together if _are_one(w, at)), None)
             if place is None:
                 place = {}
                 together.append((at, place))
@@ -149,11 +223,54 @@ class LineMechanisms:
 
     def motions(self, frequency: float, within: float = 0.0) -> list[tuple[float, dict[str, ComplexArray]]]:
         """Motions q by the mechanisms, shape (n,) each; frequencies and parameters as of `loads`."""
+        if self.machine.system.turns:
+            return self.turning_motions(self.turning, frequency, within)
         solved = []
         for at, loads in self.loads(frequency, within):
             moved = linalg.solve(self.model.dynamic_stiffness(at), np.stack([*loads.values()], axis=1)).T
             solved.append((at, dict(zip(loads, moved, strict=True))))
         return solved
+
+    @cached_property
+    def turning(self) -> TurningResponse:
+        """Harmonic balance of a machine whose directions turn."""
+        return TurningResponse(self.machine.system, self.model.contact)
+
+    def drives(self, frequency: float, within: float = 0.0) -> list[Drive]:
+        """Return the excitations of a line of a machine whose directions turn; parameters as of `loads`."""
+        model, reach = self.turning, max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
+        found: list[Drive] = []
+        for order in model.orders:
+            for sense in (1.0, -1.0):
+                excitation = sense * frequency - model.shift(order)
+                if excitation <= reach:
+                    continue
+                for at, mechanism, force in self._sources(excitation, reach):
+                    if not np.any(force.load):
+                        continue
+                    one = next(
+                        (drive for drive in found if drive.order == order and _are_one(drive.excitation, at)), None
+                    )
+                    if one is None:
+                        one = Drive(at + model.shift(order), at, order, {})
+                        found.append(one)
+                    one.forces.setdefault(mechanism, []).append(force)
+        return found
+
+    def turning_motions(
+        self, model: TurningResponse, frequency: float, within: float = 0.0
+    ) -> list[tuple[float, dict[str, ComplexArray]]]:
+        """Motions as of `motions`, by a harmonic balance of the machine, perhaps with other damping."""
+        together: list[tuple[float, dict[str, ComplexArray]]] = []
+        for drive in self.drives(frequency, within):
+            at = abs(drive.line)
+            place = next((known for w, known in together if _are_one(w, at)), None)
+            if place is None:
+                place = {}
+                together.append((at, place))
+            for mechanism, motion in drive.motions(model).items():
+                place[mechanism] = place.get(mechanism, 0.0) + motion
+        return together
 
     def parts(self, frequency: float, within: float = 0.0) -> dict[str, LineParts]:
         """Amplitudes of acceleration of each sensor's line by the mechanism, and that of their sum.
@@ -186,22 +303,22 @@ class LineMechanisms:
             return 0.0
         return complex(base.harmonic_amplitude(frequency) @ self._base_rows[sensor])
 
-    def _sources(self, frequency: float, reach: float) -> Iterator[tuple[float, str, ComplexArray]]:
-        """Yield frequency [rad/s], mechanism and load of every excitation within a reach of a frequency."""
+    def _sources(self, frequency: float, reach: float) -> Iterator[tuple[float, str, Force]]:
+        """Yield frequency [rad/s], mechanism and force of every excitation within a reach of a frequency."""
         for number in self.model.loaded:
             yield from self._of_contact(number, frequency, reach)
         for number, contact in enumerate(self.machine.system.contacts):
-            for at, load in self._runout(number, contact):
+            for at, force in self._runout(number, contact):
                 if abs(at - frequency) <= reach:
-                    yield at, "pitch_errors", load
+                    yield at, "pitch_errors", force
         for harmonic in self.machine.system.harmonic_loads:
             at = abs(harmonic.frequency)
             if at > 0.0 and abs(at - frequency) <= reach:
                 # F = Re(a e^{iwt}) of a negative w is Re(conj(a) e^{i|w|t}).
                 amplitude = harmonic.amplitude if harmonic.frequency > 0.0 else harmonic.amplitude.conj()
-                yield at, harmonic.mechanism, amplitude
+                yield at, harmonic.mechanism, Force(amplitude[:, None], np.ones(1, dtype=np.complex128))
 
-    def _of_contact(self, number: int, frequency: float, reach: float) -> Iterator[tuple[float, str, ComplexArray]]:
+    def _of_contact(self, number: int, frequency: float, reach: float) -> Iterator[tuple[float, str, Force]]:
         """Yield what a loaded contact excites near a frequency by its phase."""
         contact, stiffness = self.machine.system.contacts[number], self.model.contact.stiffness[number]
         rate = 2.0 * np.pi * abs(contact.mesh_frequency)
@@ -210,10 +327,12 @@ class LineMechanisms:
         if order > 0 and abs(order * rate - frequency) <= reach:
             error = _at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
             if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
-                yield order * rate, "transmission_error", stiffness * error[0] * contact.direction
+                force = _along(contact.direction, stiffness * error[0], contact.turning)
+                yield order * rate, "transmission_error", force
             if friction is not None and contact.sliding is not None:
                 shares = _at_time_zero(polygon_phasors(alike.phases, friction, [order]), contact, order)
-                yield order * rate, "friction", -contact.sliding.directions @ shares[:, 0]
+                sliding = contact.sliding
+                yield order * rate, "friction", Force(sliding.directions, -shares[:, 0], sliding.turning)
         periods = contact.contact.hunting_period
         if periods == 1:
             return
@@ -227,16 +346,17 @@ class LineMechanisms:
                 error = error - polygon_phasors(same.phases, same.transmission_error, [at])
             error = _at_time_zero(error, contact, at)
             if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max():
-                yield at * rate, "pitch_errors", stiffness * error[0] * contact.direction
+                yield at * rate, "pitch_errors", _along(contact.direction, stiffness * error[0], contact.turning)
 
-    def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, ComplexArray]]:
-        """Yield frequency [rad/s] and load (k + iω c) e d of each harmonic of a contact's runout."""
+    def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, Force]]:
+        """Yield frequency [rad/s] and force (k + iω c) e d of each harmonic of a contact's runout."""
         state = self.model.contact
         for amplitude, frequency, phase in contact.errors.tolist():
             at = abs(frequency)
             if at > 0.0 and amplitude != 0.0 and state.stiffness[number] > 0.0:
                 error = amplitude * np.exp(1j * phase * np.sign(frequency))
-                yield at, (state.stiffness[number] + 1j * at * state.damping[number]) * error * contact.direction
+                law = complex(state.stiffness[number], at * state.damping[number])
+                yield at, _along(contact.direction, law * error, contact.turning)
 
     @cached_property
     def _alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
@@ -273,6 +393,11 @@ class LineMechanisms:
         force = self.model.contact.force
         assert force is not None
         return [float(value) for value in force]
+
+
+def _are_one(first: float, second: float) -> bool:
+    """Whether two frequencies are one but for rounding."""
+    return abs(first - second) <= _SAME_FREQUENCY_DIFFERENCE * abs(second)
 
 
 def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:

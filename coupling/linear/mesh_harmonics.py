@@ -9,9 +9,13 @@ machine is
 K and C with the tangents of bearings and meshes, d the directions of the meshes. Both excitations of a mesh are
 periodic with it, and their phases are those of one mesh period: at a harmonic they add as complex numbers, and one may
 be far above the other at a sensor. A transmissibility by transmission error alone misses the second.
+
+Where directions turn with planet carriers, the force k e acts along d(t) and the moments turn with the mesh, and the
+motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carrier_sidebands`), each a response of its own here.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -27,6 +31,9 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
     mesh_period_phases,
     transmission_error_phasors,
 )
+from gearwhine.coupling.linear.carrier_sidebands import SUPPRESSED, CarrierSidebands, Sideband, phasing
+from gearwhine.coupling.linear.turning_response import Order
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
@@ -36,25 +43,82 @@ HARMONICS = 12
 """Largest number of harmonics of a mesh."""
 _POINTS = 200  # number of phases of a mesh period, as in the mean mesh
 _SAME_FREQUENCY_DIFFERENCE = 1e-9  # relative difference below which frequencies are equal
+_FAINT_SIDEBAND = 1e-4  # part of the largest motion by its meshes one by one below which a sideband is left out
+
+Cause = tuple[int, int]
+"""Number of a contact in the system, and harmonic of its mesh frequency."""
 
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Motion of the machine at a mesh harmonic.
+    """Motion of the machine at a mesh harmonic, or at a sideband of one.
 
     Attributes
     ----------
     frequency : float
-        Circular frequency ω [rad/s].
+        Circular frequency ω of the motion [rad/s].
     causes : tuple of (int, int)
         For each mesh that drives the motion, number of its contact in the system and harmonic of its mesh frequency.
     motion : ndarray of complex, shape (n,)
         Motion q by the coordinates of the system.
+    sidebands : tuple of Sideband
+        Place of the motion beside the mesh harmonic of each cause; empty of a machine whose directions stand still.
+    phasing : float
+        Size of the housing's motion over the sum of its sizes by each mesh alone, see
+        :mod:`gearwhine.coupling.linear.carrier_sidebands`; 1 of a machine whose directions stand still.
     """
 
     frequency: float
-    causes: tuple[tuple[int, int], ...]
+    causes: tuple[Cause, ...]
     motion: ComplexArray
+    sidebands: tuple[Sideband, ...] = field(default=(), kw_only=True)
+    phasing: float = field(default=1.0, kw_only=True)
+
+    @property
+    def kind(self) -> str:
+        """Kind of the line: ``mesh harmonic``, ``planet pass`` or ``carrier sideband``."""
+        kinds = [one.kind for one in self.sidebands]
+        return next(
+            (kind for kind in ("mesh harmonic", "planet pass") if kind in kinds or not kinds), "carrier sideband"
+        )
+
+    @property
+    def is_suppressed(self) -> bool:
+        """Whether the meshes nearly cancel each other at the housing."""
+        return self.phasing < SUPPRESSED
+
+    def cause(self, machine: CoupledMachine) -> str:
+        """Return the mesh harmonics that drive the line in words, with the turns of carriers that it is off them."""
+        return " and ".join(causes_in_words(machine, self.causes, self.sidebands))
+
+
+def causes_in_words(
+    machine: CoupledMachine, causes: Sequence[Cause], sidebands: Sequence[Sideband] = (), *, of_flanks: bool = True
+) -> list[str]:
+    """Return each mesh harmonic of a line in words, with the turns of carriers that the line is off it.
+
+    Meshes of the planets of one carrier that have one harmonic are told together.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    causes : sequence of (int, int)
+        As of a `Response`.
+    sidebands : sequence of Sideband
+        As of a `Response`.
+    of_flanks : bool
+        Whether meshes have the names of the contacts, which say which flanks touch, or of the gears alone.
+    """
+    together: dict[tuple[int, str | None, str], list[str]] = {}
+    for (number, harmonic), sideband in zip(causes, sidebands or [Sideband()] * len(causes), strict=True):
+        mesh = machine.meshes[machine.flanks(number)[0]]
+        name = machine.system.contacts[number].name if of_flanks else mesh.name
+        together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(name)
+    words = []
+    for (harmonic, carrier, off), names in together.items():
+        meshes = names if carrier is None or len(names) == 1 else [f"planets' meshes of {carrier}"]
+        words += [f"{harmonic}× {name}{off}" for name in meshes]
+    return words
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +150,7 @@ class MeshLoad:
     """
 
     frequency: float
-    causes: tuple[tuple[int, int], ...]
+    causes: tuple[Cause, ...]
     load: ComplexArray
 
 
@@ -123,7 +187,11 @@ class MeshHarmonicModel:
         return tuple(MeshLoad(w, causes, self._load(causes)) for w, causes in self._harmonics(limit))
 
     def responses(self, limit: float) -> tuple[Response, ...]:
-        """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""
+        """Solve the motions at the mesh harmonics, and their sidebands, up to a limit [rad/s], ascending."""
+        return self.parts(limit) if self.machine.system.turns else self.frozen_responses(limit)
+
+    def frozen_responses(self, limit: float) -> tuple[Response, ...]:
+        """Solve the motions of `responses` with directions that turn frozen as they stand at t = 0."""
         return tuple(
             Response(w, causes, linalg.solve(self._dynamic(w), self._load(causes)))
             for w, causes in self._harmonics(limit)
@@ -131,12 +199,97 @@ class MeshHarmonicModel:
 
     def parts(self, limit: float) -> tuple[ResponseParts, ...]:
         """Solve the motions of `responses` with their parts by transmission error and by load shuttling."""
+        if self.machine.system.turns:
+            return self._turning_parts(limit)
         parts = []
         for w, causes in self._harmonics(limit):
             loads = np.stack([self._error_load(causes), self._shuttling_load(causes)], axis=1)
             by_error, by_shuttling = linalg.solve(self._dynamic(w), loads).T
             parts.append(ResponseParts(w, causes, by_error + by_shuttling, by_error, by_shuttling))
         return tuple(parts)
+
+    def _turning_parts(self, limit: float) -> tuple[ResponseParts, ...]:
+        """Solve the motions at mesh harmonics and their sidebands of a machine whose directions turn."""
+        lines: list[ResponseParts] = []
+        # A sideband below the limit may belong to a harmonic above it.
+        reach = max((abs(self.turning.model.shift(order)) for order in self.turning.model.orders), default=0.0)
+        for w, causes in self._harmonics(limit + reach):
+            lines += [line for line in self._sidebands(w, causes) if 0.0 < line.frequency <= limit]
+        return tuple(_merged(sorted(lines, key=lambda line: line.frequency)))
+
+    def _sidebands(self, w: float, causes: tuple[Cause, ...]) -> list[ResponseParts]:
+        """Solve the motions at a mesh harmonic [rad/s] and its sidebands."""
+        turning, count = self.turning, len(causes)
+        pairs = [self._turning_loads(w, cause) for cause in causes]
+        loads = [*(error for error, _ in pairs), *(shuttling for _, shuttling in pairs)]
+        motion = turning.respond(w, loads)
+        seen = self._housing_coordinates
+        sizes = {order: np.linalg.norm((q[:count] + q[count:])[:, seen], axis=1).sum() for order, q in motion.items()}
+        lines = []
+        for order, q in motion.items():
+            if sizes[order] <= _FAINT_SIDEBAND * max(sizes.values()):
+                continue
+            at = w + turning.model.shift(order)
+            # A motion Re(q e^{iωt}) of a negative ω is Re(conj(q) e^{i|ω|t}).
+            moved = q if at > 0.0 else q.conj()
+            by_error, by_shuttling = moved[:count].sum(axis=0), moved[count:].sum(axis=0)
+            lines.append(
+                ResponseParts(
+                    abs(at),
+                    causes,
+                    by_error + by_shuttling,
+                    by_error,
+                    by_shuttling,
+                    sidebands=(turning.sideband(order),) * count,
+                    phasing=phasing((q[:count] + q[count:])[:, seen]),
+                )
+            )
+        return lines
+
+    def moved_to(self, line: Response, frequencies: FloatArray) -> ComplexArray:
+        """Motions (f, n) of a line of a machine whose directions turn, were it at other frequencies [rad/s].
+
+        The excitation is as far off the line as it is, and its loads are the same; the carriers turn at their speeds.
+        """
+        model = self.turning.model
+        moved = np.zeros((len(frequencies), self.machine.system.size), dtype=np.complex128)
+        together: dict[float, list[Cause]] = {}
+        for number, harmonic in line.causes:
+            rate = abs(self.machine.system.contacts[number].mesh_frequency)
+            together.setdefault(round(2.0 * np.pi * harmonic * rate, 6), []).append((number, harmonic))
+        for w, causes in together.items():
+            loads = [load for cause in dict.fromkeys(causes) for load in self._turning_loads(w, cause)]
+            for sense in (1.0, -1.0):
+                order = model.order_of(sense * line.frequency - w)
+                if order is None:
+                    continue
+                for place, at in enumerate(frequencies.tolist()):
+                    excitation = sense * at - model.shift(order)
+                    if excitation > 0.0:
+                        motion = model.respond(excitation, [(load, {}) for load in loads], [order])[order].sum(axis=0)
+                        moved[place] += motion if sense > 0.0 else motion.conj()
+        return moved
+
+    @cached_property
+    def turning(self) -> CarrierSidebands:
+        """Sidebands of the machine, whose directions turn."""
+        return CarrierSidebands(self.machine, self.contact)
+
+    @property
+    def _housing_coordinates(self) -> npt.NDArray[np.bool_]:
+        """Mask of the coordinates of the housing; of all coordinates without one, shape (n,)."""
+        machine = self.machine
+        if machine.housing is None:
+            return np.ones(machine.system.size, dtype=np.bool_)
+        return np.asarray(np.any(machine.rows(machine.housing.name, np.eye(machine.housing.size)) != 0.0, axis=0))
+
+    def _turning_loads(self, w: float, cause: Cause) -> tuple[dict[Order, ComplexArray], dict[Order, ComplexArray]]:
+        """Return k e d(t) and the moments of load shuttling of a cause at ω by order."""
+        number, harmonic = cause
+        force = self.contact.stiffness[number] * self._errors[number][harmonic - 1]
+        amplitude, frame = self._shuttling[number].get(harmonic), self.turning.frame_of_contact(number)
+        by_error = self.turning.model.force_along(number, force)
+        return by_error, {} if amplitude is None else self.turning.by_order(w, HarmonicLoad(w, amplitude), frame)
 
     def dynamic_stiffness(self, frequency: float) -> ComplexArray:
         """Z at a frequency [rad/s], shape (n, n)."""
@@ -177,9 +330,9 @@ class MeshHarmonicModel:
     def _matrices(self) -> tuple[FloatArray, FloatArray]:
         return linear_matrices(self.machine.system, self.contact)
 
-    def _harmonics(self, limit: float) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
+    def _harmonics(self, limit: float) -> list[tuple[float, tuple[Cause, ...]]]:
         """Frequencies of the mesh harmonics up to a limit [rad/s], ascending, and the meshes that drive each."""
-        harmonics: list[tuple[float, tuple[tuple[int, int], ...]]] = []
+        harmonics: list[tuple[float, tuple[Cause, ...]]] = []
         every = [
             (2.0 * np.pi * h * abs(self.machine.system.contacts[n].mesh_frequency), (n, h))
             for n in self.loaded
@@ -194,11 +347,11 @@ class MeshHarmonicModel:
                 harmonics.append((w, (cause,)))
         return harmonics
 
-    def _load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+    def _load(self, causes: tuple[Cause, ...]) -> ComplexArray:
         """Return f by the meshes alone, shape (n,): torque ripple of a mesh's frequency has no part in it."""
         return self._error_load(causes) + self._shuttling_load(causes)
 
-    def _error_load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+    def _error_load(self, causes: tuple[Cause, ...]) -> ComplexArray:
         """Return Σ k e d, shape (n,)."""
         system = self.machine.system
         total = np.zeros(system.size, dtype=np.complex128)
@@ -207,7 +360,7 @@ class MeshHarmonicModel:
             total += self.contact.stiffness[number] * self._errors[number][harmonic - 1] * direction
         return total
 
-    def _shuttling_load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+    def _shuttling_load(self, causes: tuple[Cause, ...]) -> ComplexArray:
         """Return the moments of load shuttling, shape (n,)."""
         total = np.zeros(self.machine.system.size, dtype=np.complex128)
         for number, harmonic in causes:
@@ -240,3 +393,24 @@ class MeshHarmonicModel:
         """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
         period = self.machine.system.contacts[number].contact.hunting_period
         return self.transmission_error(number, mesh, hunting_period=period)
+
+
+def _merged(lines: Sequence[ResponseParts]) -> list[ResponseParts]:
+    """Add lines of one frequency, in ascending order; the phasing of the sum is that of the larger one."""
+    merged: list[ResponseParts] = []
+    for line in lines:
+        if not merged or line.frequency > merged[-1].frequency * (1.0 + _SAME_FREQUENCY_DIFFERENCE):
+            merged.append(line)
+            continue
+        last = merged[-1]
+        larger = last if np.linalg.norm(last.motion) >= np.linalg.norm(line.motion) else line
+        merged[-1] = ResponseParts(
+            last.frequency,
+            (*last.causes, *line.causes),
+            last.motion + line.motion,
+            last.by_error + line.by_error,
+            last.by_shuttling + line.by_shuttling,
+            sidebands=(*last.sidebands, *line.sidebands),
+            phasing=larger.phasing,
+        )
+    return merged

@@ -8,17 +8,19 @@ that turn, of directions D(t) = Σ D_l e^{i l·f t} and laws φ = k δ + c δ', 
     Z(ω_m) q_m + Σ_l D_l φ_{m-l} = F_m,     φ_m = (k + i ω_m c) (Σ_l D_lᵀ q_{m-l} - e_m),
 
 F the loads and e the transmission errors of the connectors that turn. Only the few φ are sought: with the compliances
-D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. It is the amplitudes of the sidebands ω + m·f that a sensor on
-the housing shows; a frozen picture of the carrier would put all of them into one line.
+D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. Without the connectors that turn, parts of a train turn
+freely: springs κ on these motions are added to Z, and springs -κ to the connectors sought. It is the amplitudes of the
+sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the carrier would put all of them into one
+line.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
@@ -29,15 +31,22 @@ from gearwhine.coupling.statics.mean_mesh import ContactState
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
 Order = tuple[int, ...]
 Excitation = tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]
 """Loads on the coordinates by the order of their frequency, and errors of contacts that turn by their number [m]."""
 
 SIDEBANDS = 6
-"""Number of multiples of each rate of turning on either side of an excitation."""
+"""Number of times that connectors hand a motion on to other orders."""
 
 _LARGEST_MULTIPLE = 12  # of a rate of turning that is a multiple of another one
+_LARGEST_DENOMINATOR = 3  # of the ratio of two rates that are both multiples of a third
 _SAME_RATE = 1e-9  # relative difference of rates that are one
+_DEPENDENT = 1e-14  # singular value of columns of size one that is rounding
+_RESTRAINT = 17.3  # frequency of a free motion on its spring, over the largest rate
+_FREE_MOTION = 1e-9  # part of the largest stiffness up to which a motion is free
+_STANDSTILL = 1e-9  # part of the largest rate up to which a frequency is zero
+_SAME_SHIFT = 1e-6  # part of the largest rate by which shifts of one order differ from rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +68,8 @@ class TurningResponse:
     contact : ContactState
         Tooth contacts about their mean forces.
     sidebands : int
-        Number of multiples of each rate of turning that are followed on either side of an excitation.
+        Number of times that connectors that turn may hand a motion on, each time by the orders of their directions.
+        Sums of as many of these orders are followed, up to that number or twice the highest of them.
     """
 
     system: CoupledSystem
@@ -68,27 +78,44 @@ class TurningResponse:
 
     @cached_property
     def rates(self) -> tuple[float, ...]:
-        """Rates of turning f of which all others are multiples [rad/s], ascending."""
+        """Rates of turning f of which all others are multiples [rad/s], ascending.
+
+        Rates of one carrier, such as 2 f and 3 f of a ring that bends, have its speed f as their base.
+        """
         found: list[float] = []
         turning = [one.turning for one in self.system.linear] + [one.turning for one in self.system.contacts]
         parts = [part for some in turning for part in some]
         for rate in sorted({abs(part.rate) for part in parts}):
-            if not any(self._multiple(rate, base) for base in found):
+            if any(0 < self._multiple(rate, base) <= _LARGEST_MULTIPLE for base in found):
+                continue
+            for place, base in enumerate(found):
+                parts_of_base = [base / q for q in range(2, _LARGEST_DENOMINATOR + 1)]
+                divided = [part for part in parts_of_base if 0 < self._multiple(rate, part) <= _LARGEST_MULTIPLE]
+                if divided:
+                    found[place] = divided[0]
+                    break
+            else:
                 found.append(rate)
-        return tuple(found)
+        return tuple(sorted(found))
 
     @staticmethod
     def _multiple(rate: float, base: float) -> int:
         """Return the whole number that a rate is of another one; 0 where it is none."""
         number = round(rate / base)
         near = abs(rate - number * base) <= _SAME_RATE * abs(rate)
-        return number if near and 1 <= abs(number) <= _LARGEST_MULTIPLE else 0
+        return number if near else 0
 
     @cached_property
     def orders(self) -> tuple[Order, ...]:
         """Orders m of the motions beside an excitation: m = 0 is the excitation's own frequency."""
-        reach = range(-self.sidebands, self.sidebands + 1)
-        return tuple(product(reach, repeat=len(self.rates)))
+        # A bore's high orders reach far in few steps; what is handed on twice is what counts of them.
+        farthest = np.abs(self._offsets).max(axis=0, initial=0)
+        bounds = np.maximum(self.sidebands, 2 * farthest)
+        reached = {self.still}
+        for _ in range(self.sidebands):
+            next_orders = {_plus(order, step) for order in reached for step in self._offsets}
+            reached |= {order for order in next_orders if np.all(np.abs(order) <= bounds)}
+        return tuple(sorted(reached))
 
     @property
     def still(self) -> Order:
@@ -100,7 +127,7 @@ class TurningResponse:
         return float(np.dot(order, self.rates)) if order else 0.0
 
     @cached_property
-    def _constant(self) -> tuple[FloatArray, FloatArray]:
+    def _unrestrained(self) -> tuple[FloatArray, FloatArray]:
         """Stiffness and damping without the connectors that turn, (n, n) both."""
         system = self.system
         stiffness, damping = system.own_stiffness.copy(), system.own_damping + system.gyroscopic
@@ -109,6 +136,28 @@ class TurningResponse:
                 stiffness += directions @ law_stiffness @ directions.T
                 damping += directions @ law_damping @ directions.T
         return stiffness, damping
+
+    @cached_property
+    def _restraint(self) -> tuple[FloatArray, float]:
+        """Motions that no connector but those that turn resists, (n, r), and the stiffness κ that is put on them."""
+        stiffness = self._unrestrained[0]
+        free_motions = [np.zeros((len(stiffness), 0))]
+        for block in self._blocks:
+            own = stiffness[np.ix_(block, block)]
+            values, vectors = np.linalg.eigh(0.5 * (own + own.T))
+            free = np.abs(values) <= _FREE_MOTION * max(abs(values[-1]), 1e-300)
+            motions = np.zeros((len(stiffness), np.count_nonzero(free)))
+            motions[block] = vectors[:, free]
+            free_motions.append(motions)
+        # No multiple of the rates is near √κ; small beside other springs, κ costs no digits.
+        return np.concatenate(free_motions, axis=1), (_RESTRAINT * max(self.rates, default=1.0)) ** 2
+
+    @cached_property
+    def _constant(self) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping without the connectors that turn, with springs on free motions, (n, n) both."""
+        stiffness, damping = self._unrestrained
+        free, spring = self._restraint
+        return stiffness + spring * free @ free.T, damping
 
     @cached_property
     def _laws(self) -> list[tuple[FloatArray, FloatArray, FloatArray, tuple[TurningPart, ...]]]:
@@ -128,14 +177,20 @@ class TurningResponse:
 
     @cached_property
     def _turning(self) -> list[_Turning]:
-        """The connectors that turn, linear ones first, in their order."""
+        """Springs that undo those on free motions, then the connectors that turn, linear ones first, in their order."""
+        free, spring = self._restraint
+        count = free.shape[1]
+        undoing = _Turning(-spring * np.eye(count), np.zeros((count, count)), {self.still: free.astype(np.complex128)})
         return [
-            _Turning(stiffness, damping, self._by_order(directions, turning))
-            for directions, stiffness, damping, turning in self._laws
-            if turning
+            *([undoing] if count else []),
+            *(
+                _Turning(stiffness, damping, self.directions_by_order(directions, turning))
+                for directions, stiffness, damping, turning in self._laws
+                if turning
+            ),
         ]
 
-    def _by_order(self, directions: FloatArray, turning: Sequence[TurningPart]) -> dict[Order, ComplexArray]:
+    def directions_by_order(self, directions: FloatArray, turning: Sequence[TurningPart]) -> dict[Order, ComplexArray]:
         """Fourier coefficients D_l of directions by their order l, (n, d) each."""
         still = self.still
         found: dict[Order, ComplexArray] = {still: directions.astype(np.complex128)}
@@ -160,6 +215,22 @@ class TurningResponse:
         return np.concatenate([np.zeros((self.system.size, 0)), *parts], axis=1)
 
     @cached_property
+    def _basis(self) -> tuple[ComplexArray, ComplexArray]:
+        """Basis B (n, r) of the columns and their parts M (r, l d): many columns are sums of others."""
+        columns = self._columns
+        sizes = np.linalg.norm(columns, axis=0)
+        sizes[sizes == 0.0] = 1.0
+        bases, parts = [], []
+        for block in self._blocks:
+            left, values, right = np.linalg.svd(columns[block] / sizes, full_matrices=False)
+            rank = int(np.count_nonzero(values > _DEPENDENT))
+            basis = np.zeros((len(columns), rank), dtype=np.complex128)
+            basis[block] = left[:, :rank]
+            bases.append(basis)
+            parts.append(values[:rank, None] * right[:rank] * sizes)
+        return np.concatenate(bases, axis=1), np.concatenate(parts)
+
+    @cached_property
     def _offsets(self) -> list[Order]:
         """Orders l of the directions."""
         return sorted({order for one in self._turning for order in one.directions})
@@ -178,14 +249,6 @@ class TurningResponse:
             return None
         return pairs if pairs.sum_rule <= SUM_RULE else None
 
-    @cached_property
-    def _modal_columns(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Left and right vectors of the eigenpairs on the columns, (m, l d) both, and the drift between columns."""
-        assert self._pairs is not None
-        columns = self._columns
-        drift = columns.T @ self._pairs.drift @ columns
-        return self._pairs.left.conj() @ columns, self._pairs.right @ columns, np.asarray(drift)
-
     def _dynamic(self, w: float) -> ComplexArray:
         """Z at a frequency without the connectors that turn, (n, n)."""
         stiffness, damping = self._constant
@@ -193,21 +256,22 @@ class TurningResponse:
         dynamic[np.diag_indices(len(dynamic))] -= w**2
         return dynamic
 
-    def _compliance(self, w: float) -> ComplexArray:
-        """Compliance between all directions at a frequency, (l, d, l, d)."""
-        shape = (len(self._offsets), self._width) * 2
-        if self._pairs is None or w == 0.0:
-            return np.asarray(self._columns.T @ np.linalg.solve(self._dynamic(w), self._columns)).reshape(shape)
-        left, right, drift = self._modal_columns
-        s = 1j * w
-        gains = self._pairs.values / (s * (s - self._pairs.values))
-        return np.asarray((right.T * gains) @ left + drift / s**2).reshape(shape)
+    @cached_property
+    def _blocks(self) -> list[IntArray]:
+        """Coordinates of parts that are coupled by connectors that turn alone, or not at all."""
+        coupled = sparse.csr_array(np.any([part != 0.0 for part in self._unrestrained], axis=0))
+        count, labels = sparse.csgraph.connected_components(coupled, directed=False)
+        return [np.flatnonzero(labels == number) for number in range(count)]
 
     def _moved(self, w: float, loads: ComplexArray) -> ComplexArray:
         """Coordinates (n, i) under loads (n, i) at a frequency, without the connectors that turn."""
-        if self._pairs is None or w == 0.0:
-            return np.asarray(np.linalg.solve(self._dynamic(w), loads))
-        return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
+        if self._pairs is not None and w != 0.0:
+            return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
+        dynamic, moved = self._dynamic(w), np.zeros(loads.shape, dtype=np.complex128)
+        for block in self._blocks:
+            pushed = np.flatnonzero(np.any(loads[block] != 0.0, axis=0))
+            moved[np.ix_(block, pushed)] = np.linalg.solve(dynamic[np.ix_(block, block)], loads[np.ix_(block, pushed)])
+        return moved
 
     def mesh_error(self, number: int, frequency: float) -> Excitation:
         """Load of a unit transmission error of a contact at ω [rad/s]: on coordinates by order, or as its own error.
@@ -261,43 +325,94 @@ class TurningResponse:
             for order in self.orders
             if any(order in one for one, _ in excitations)
         }
+        # Motions under unit forces along the columns' basis, and under the loads, of each order that is asked for.
+        basis, mix = self._basis
+        rank = basis.shape[1]
+        moved: dict[Order, ComplexArray] = {}
+        asked = set(self.orders if orders is None else orders)
         for order in self.orders:
-            w = frequency + self.shift(order)
-            compliance = self._compliance(w)
+            pushed = np.concatenate([basis, loads[order]], axis=1) if order in loads else basis
+            alone = self._moved(frequency + self.shift(order), pushed)
+            if order in asked:
+                moved[order] = alone
+            # Deflections of all directions; the columns are complex, and not conjugated.
+            seen_by = mix.T @ (basis.T @ alone)
+            compliance = (seen_by[:, :rank] @ mix).reshape(len(self._offsets), width, -1, width)
+            by_load = seen_by[:, rank:].reshape(len(self._offsets), width, -1)
             # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
             gaps = list(enumerate(self._offsets))
             acting = [(n, places[other]) for n, gap in gaps if (other := _minus(order, gap)) in places]
             seen = [(n, places[other]) for n, gap in gaps if (other := _plus(order, gap)) in places]
-            alone = None
+            rows, deflected = np.array(seen).T[:, :, None]
+            columns, acted = np.array(acting).T[:, None, :]
+            between[deflected, :, acted, :] += compliance[rows, :, columns, :]
             if order in loads:
-                alone = (self._columns.T @ self._moved(w, loads[order])).reshape(len(self._offsets), width, -1)
-            for row, deflected in seen:
-                if alone is not None:
-                    free[deflected] += alone[row]
-                for column, force in acting:
-                    between[deflected, :, force, :] += compliance[row, :, column, :]
+                free[deflected[:, 0]] += by_load[rows[:, 0]]
         free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
         matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
-        deflections = np.linalg.solve(np.eye(count * width) + matrix, free.reshape(count * width, -1))
+        matrix += np.eye(count * width)
+        scale = max(self.rates, default=0.0)
+        if any(abs(frequency + self.shift(order)) <= _STANDSTILL * scale for order in self.orders):
+            # What is constant in time leaves the train's own turning open.
+            deflections = np.linalg.lstsq(matrix, free.reshape(count * width, -1), rcond=_STANDSTILL)[0]
+        else:
+            deflections = np.linalg.solve(matrix, free.reshape(count * width, -1))
         forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
         motion = {}
-        for order in self.orders if orders is None else orders:
-            acting_load = loads.get(order, np.zeros((self.system.size, len(excitations)), dtype=np.complex128)).copy()
+        for order, alone in moved.items():
+            acting_forces = np.zeros((rank, len(excitations)), dtype=np.complex128)
             for n, gap in enumerate(self._offsets):
                 source = _minus(order, gap)
                 if source in places:
-                    acting_load -= self._columns[:, n * width : (n + 1) * width] @ forces[places[source]]
-            motion[order] = self._moved(frequency + self.shift(order), acting_load).T
+                    acting_forces += mix[:, n * width : (n + 1) * width] @ forces[places[source]]
+            total = -alone[:, :rank] @ acting_forces
+            if order in loads:
+                total += alone[:, rank:]
+            motion[order] = total.T
         return motion
 
-    def at_excitation(
+    def force_along(self, number: int, force: complex) -> dict[Order, ComplexArray]:
+        """Split a harmonic force along the line of action of a contact into loads by order, (n,) each."""
+        tooth = self.system.contacts[number]
+        parts = self.directions_by_order(tooth.direction[:, None], tooth.turning)
+        return {order: np.asarray(force * direction[:, 0]) for order, direction in parts.items()}
+
+    def deflection(
         self,
-        frequencies: FloatArray,
-        excitation: Callable[[float], Excitation],
+        motion: Mapping[Order, ComplexArray],
+        directions: FloatArray,
+        turning: Sequence[TurningPart],
+        order: Order | None = None,
     ) -> ComplexArray:
-        """Coordinates (f, n) at each frequency ω by an excitation at ω alone, without the sidebands ω + m·f."""
-        moved = [self.respond(w, [excitation(w)], [self.still])[self.still][0] for w in frequencies.tolist()]
-        return np.array(moved).reshape(-1, self.system.size)
+        """Deflection Σ_l D_lᵀ q_{m-l} of a connector at an order m, by default that of the excitation.
+
+        Parameters
+        ----------
+        motion : mapping of order to ndarray of complex, shape (..., n)
+            Coordinates at all orders.
+        directions : ndarray, shape (n, d)
+            Directions D(0).
+        turning : sequence of TurningPart
+            Their parts that turn.
+        order : order, optional
+
+        Returns
+        -------
+        ndarray of complex, shape (..., d)
+        """
+        at = self.still if order is None else order
+        parts = self.directions_by_order(directions, turning)
+        found = np.zeros((*motion[self.still].shape[:-1], directions.shape[1]), dtype=np.complex128)
+        for gap, direction in parts.items():
+            if (source := _minus(at, gap)) in motion:
+                found += motion[source] @ direction
+        return found
+
+    def order_of(self, shift: float) -> Order | None:
+        """Order m of a shift m·f of frequency [rad/s]; None where no order that is followed has it."""
+        scale = max(self.rates, default=1.0)
+        near = [order for order in self.orders if abs(self.shift(order) - shift) <= _SAME_SHIFT * scale]
+        return min(near, key=lambda order: sum(map(abs, order)), default=None)
 
     def _law(self, frequency: float) -> ComplexArray:
         """Laws k + i ω_m c of the connectors that turn by order, (m, d, d)."""

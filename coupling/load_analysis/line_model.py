@@ -74,8 +74,7 @@ class SolvedLines:
 
     def cause(self, line: Line) -> str:
         """Return the mesh harmonics that drive a line, in words."""
-        contacts = self.model.machine.system.contacts
-        return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in line.causes)
+        return line.cause(self.model.machine)
 
     @property
     def held(self) -> str | None:

@@ -5,20 +5,26 @@ transmission errors and the load shuttling of all meshes of its order together, 
 (:mod:`gearwhine.coupling.linear.mesh_harmonics`), which stay what they are as long as the load does. So the response at
 other frequencies than that of the point has the peaks that the points pass by
 (:mod:`gearwhine.coupling.sweep.missed_peaks`).
+
+Where directions turn with carriers, each line n f_m + k f_c is one of its own, of the order that it has over the first
+driver (:mod:`gearwhine.coupling.linear.carrier_sidebands`). The modes are those with the carriers frozen, and the lines
+are solved about those that are near them, by harmonic balance; about others they are taken as silent.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicSpline
 
 from gearwhine.coupling import CoupledMachine, ModesError, coupled_modes
 from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad, ResponseParts, causes_in_words
 from gearwhine.coupling.linear.modal_superposition import superposed
 from gearwhine.coupling.signals.spectrum import decibels
 from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
@@ -32,6 +38,9 @@ SOUND = "sound"
 PLACES_ABOUT_MODE = np.concatenate([[-2.0], np.linspace(-1.0, 1.0, 21), [2.0]])
 """Places about a mode at which the lines are solved, in half-power half-widths; the first and the last are outside."""
 
+_SOLVED_PLACES = np.array([0, 1, 6, 11, 16, 21, 22])  # places that are solved of a line with turning directions
+_NEAR_MODES = 0.2  # relative distance of a mode up to which such a line is solved about it
+_TURNING_LINES = 4  # highest of such lines of each output
 _TWO_PI = 2.0 * np.pi
 _LOWEST_HZ = 20.0
 _LOWEST_DB = -1000.0  # level of silence
@@ -50,7 +59,8 @@ class Resonances:
     names : tuple of str
         Kind and place of each mode in words.
     lines : tuple of str
-        Names of the mesh harmonics below the limit at this speed, with all meshes that drive each.
+        Names of the mesh harmonics below the limit at this speed, with all meshes that drive each; where directions
+        turn, of the highest ones and their sidebands.
     line_orders : ndarray, shape (l,)
         Frequency of each over the speed of the first driver.
     outputs : tuple of str
@@ -100,14 +110,19 @@ def find_resonances(
     if not (steady and listens and limit_hz > _LOWEST_HZ):
         return None
     model = MeshHarmonicModel(machine)
+    driven: Sequence[MeshLoad | ResponseParts]
     try:
-        driven = model.loads(_TWO_PI * limit_hz)
         modes = coupled_modes(machine.system, model.contact)
-        if not driven:
-            return None
         chosen = _swinging(modes, limit_hz)
         damped, widths = modes.eigenvalues.imag[chosen], -modes.eigenvalues.real[chosen]
-        lines = [_solve_line(machine, modes, line, damped, widths, speed_of_sound) for line in driven]
+        if machine.system.turns:
+            driven = _highest(machine, model.parts(_TWO_PI * limit_hz))
+            lines = [_solve_turning_line(model, line, damped, widths, speed_of_sound) for line in driven]
+        else:
+            driven = model.loads(_TWO_PI * limit_hz)
+            lines = [_solve_line(machine, modes, line, damped, widths, speed_of_sound) for line in driven]
+        if not driven:
+            return None
     except (GearError, ModesError):
         return None
     return Resonances(
@@ -118,7 +133,7 @@ def find_resonances(
             modes.kinds[number] if modes.kinds[number] == modes.where[number] else modes.labels[number]
             for number in chosen.tolist()
         ),
-        lines=tuple(_name(machine, line.causes) for line in driven),
+        lines=tuple(_name(machine, line) for line in driven),
         line_orders=np.array([line.frequency for line in driven]) / abs(machine.speeds[machine.leading_rotor]),
         outputs=(*machine.sensor_rows, *([SOUND] * heard)),
         line_levels=np.array([line.level for line in lines]).T,
@@ -126,6 +141,12 @@ def find_resonances(
         line_rates=np.array([line.rates for line in lines]),
         mode_rates=np.array([line.mode_rates for line in lines]),
     )
+
+
+def _name(machine: CoupledMachine, line: MeshLoad | ResponseParts) -> str:
+    """Name a line by the harmonics of all meshes that drive it, as the lines of a motion are named."""
+    sidebands = line.sidebands if isinstance(line, ResponseParts) else ()
+    return ", ".join(causes_in_words(machine, line.causes, sidebands, of_flanks=False))
 
 
 class _Line(NamedTuple):
@@ -146,16 +167,66 @@ def _solve_line(
     speed_of_sound: float | None,
 ) -> _Line:
     """Solve a line at its own frequency and about each mode [rad/s]."""
+    omega, rows = _near(line.frequency, damped, widths), _output_rows(machine, speed_of_sound)
+    moved = superposed(modes.pairs, line.load[None, None], omega, rows)[:, 0]
+    return _line(machine, omega, moved, len(damped), speed_of_sound)
+
+
+def _solve_turning_line(
+    model: MeshHarmonicModel,
+    line: ResponseParts,
+    damped: FloatArray,
+    widths: FloatArray,
+    speed_of_sound: float | None,
+) -> _Line:
+    """Solve a line of a machine whose directions turn, as `_solve_line` does, about modes that are near it."""
+    machine = model.machine
+    omega, rows = _near(line.frequency, damped, widths), _output_rows(machine, speed_of_sound)
+    moved = np.zeros((len(omega), len(rows)), dtype=np.complex128)
+    moved[0] = rows @ line.motion
+    places = np.arange(len(damped)) * len(PLACES_ABOUT_MODE) + 1
+    for first in places[np.abs(damped / line.frequency - 1.0) <= _NEAR_MODES].tolist():
+        solved = omega[first + _SOLVED_PLACES]
+        about = slice(first, first + len(PLACES_ABOUT_MODE))
+        found = CubicSpline(PLACES_ABOUT_MODE[_SOLVED_PLACES], model.moved_to(line, solved) @ rows.T)
+        moved[about] = found(PLACES_ABOUT_MODE)
+    return _line(machine, omega, moved, len(damped), speed_of_sound)
+
+
+def _highest(machine: CoupledMachine, lines: Sequence[ResponseParts]) -> list[ResponseParts]:
+    """Return the highest lines of the sensors, and those by which the housing moves most, in their order."""
+    assert machine.housing is not None
+    rows = [*machine.sensor_rows.values(), *machine.rows(machine.housing.name, np.eye(machine.housing.size))]
+    sizes = [line.frequency**2 * np.abs(np.array(rows) @ line.motion) for line in lines]
+    sensors = len(machine.sensor_rows)
+    heights = np.array([[*size[:sensors], np.linalg.norm(size[sensors:])] for size in sizes]).reshape(-1, sensors + 1)
+    kept = {int(place) for column in heights.T for place in np.argsort(-column)[:_TURNING_LINES]}
+    return [line for place, line in enumerate(lines) if place in kept]
+
+
+def _near(frequency: float, damped: FloatArray, widths: FloatArray) -> FloatArray:
+    """Return a line's own frequency, and those of the places about each mode, [rad/s]."""
+    # Two half-widths below a mode that is nearly overdamped may be below zero.
+    near = np.maximum(damped[:, None] + widths[:, None] * PLACES_ABOUT_MODE, _TWO_PI)
+    return np.concatenate([[frequency], near.ravel()])
+
+
+def _output_rows(machine: CoupledMachine, speed_of_sound: float | None) -> FloatArray:
+    """Displacements of the sensors, and, where it is heard, of the housing's coordinates, shape (s + h, n)."""
     housing = machine.housing
     assert housing is not None
     sensors = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
     coordinates = sensors[:0] if speed_of_sound is None else machine.rows(housing.name, np.eye(housing.size))
-    # Two half-widths below a mode that is nearly overdamped may be below zero.
-    near = np.maximum(damped[:, None] + widths[:, None] * PLACES_ABOUT_MODE, _TWO_PI)
-    omega = np.concatenate([[line.frequency], near.ravel()])
-    moved = superposed(modes.pairs, line.load[None, None], omega, np.concatenate([sensors, coordinates]))[:, 0]
-    levels = decibels(omega[:, None] ** 2 * np.abs(moved[:, : len(sensors)]))
-    rates = 1j * omega[:, None] * moved[:, len(sensors) :]
+    return np.concatenate([sensors, coordinates])
+
+
+def _line(
+    machine: CoupledMachine, omega: FloatArray, moved: ComplexArray, modes: int, speed_of_sound: float | None
+) -> _Line:
+    """Take the outputs of a line's displacements at its own frequency and about each mode, as of `_output_rows`."""
+    sensors, shape = len(machine.sensor_rows), (modes, len(PLACES_ABOUT_MODE))
+    levels = decibels(omega[:, None] ** 2 * np.abs(moved[:, :sensors]))
+    rates = 1j * omega[:, None] * moved[:, sensors:]
     if speed_of_sound is not None:
         # The surface is not known here: a body of a square metre stands for it, in proportion alone.
         efficiency = pulsating_efficiency(omega / _TWO_PI, 1.0, speed_of_sound)
@@ -163,13 +234,8 @@ def _solve_line(
             sound = 10.0 * np.log10((np.abs(rates) ** 2).sum(axis=1) * efficiency)
         levels = np.column_stack([levels, sound])
     levels = np.maximum(levels, _LOWEST_DB)
-    at_modes = rates[1:].reshape(*near.shape, len(coordinates))[:, len(PLACES_ABOUT_MODE) // 2]
-    return _Line(levels[0], levels[1:].T.reshape(levels.shape[1], *near.shape), rates[0], at_modes)
-
-
-def _name(machine: CoupledMachine, causes: tuple[tuple[int, int], ...]) -> str:
-    """Name a line by the harmonics of all meshes that drive it, as the lines of a motion are named."""
-    return ", ".join(f"{harmonic}× {machine.meshes[machine.flanks(number)[0]].name}" for number, harmonic in causes)
+    at_modes = rates[1:].reshape(*shape, rates.shape[1])[:, len(PLACES_ABOUT_MODE) // 2]
+    return _Line(levels[0], levels[1:].T.reshape(levels.shape[1], *shape), rates[0], at_modes)
 
 
 def _swinging(modes: CoupledModes, limit_hz: float) -> npt.NDArray[np.intp]:

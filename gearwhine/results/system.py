@@ -319,23 +319,39 @@ def _line_part(name: str, attribute: str, part: str) -> Quantity:
     return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", long_name=long_name)
 
 
-def _line_cause(row: _Line) -> str:
-    """Return the mesh harmonics that drive a line, in words."""
-    contacts = row.system.machine.system.contacts
-    return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in row.line.causes)
+def _of_turning(attribute: str) -> Any:
+    """Return the getter of an attribute that lines have where directions turn with a carrier."""
+    return lambda row: getattr(row.line, attribute) if row.line.sidebands else ABSENT
 
 
 LINE = (
     Quantity(
         "frequency_hz", "line.frequency", "system_line_frequency", long_name="frequency of a mesh harmonic at operation"
     ),
-    Quantity("cause", _line_cause, "system_line_cause", long_name="mesh harmonics that drive the line"),
+    Quantity(
+        "cause",
+        lambda row: row.line.cause(row.system.machine),
+        "system_line_cause",
+        long_name="mesh harmonics that drive the line, and the turns of carriers that it is off them",
+    ),
+    Quantity("kind", _of_turning("kind"), "system_line_kind"),
+    Quantity("order", lambda row: row.line.frequency / abs(row.system.speed), "system_line_order", unit="1"),
+    Quantity("phasing", _of_turning("phasing"), "system_line_phasing", unit="1"),
+    Quantity("suppressed", _of_turning("is_suppressed")),
     Part("sensor_acceleration_m_per_s2", ".", tuple(_line_part(*part) for part in _PARTS)),
 )
 """Quantities of a mesh harmonic at operation."""
 
 UNBALANCE = (
     Quantity("", "response.excitation", "unbalance_of"),
+    Quantity(
+        "",
+        lambda row: np.abs(row.response.frequencies) / HERTZ,
+        "unbalance_response_frequency",
+        ("unbalance_speed",),
+        "Hz",
+        long_name="frequency of the motion at each speed",
+    ),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
 )
 """Quantities of the response to one rotor's unbalances over absolute speeds of the first driver."""
@@ -529,6 +545,10 @@ _PICTURES = (
         "dashed: mesh frequencies at operation. A peak at a dashed line is a loud mesh. Load shuttling of helical, "
         "crowned or misaligned teeth excites beside it and may lead: see the lines of the sensors.",
     ),
+    Picture(
+        "system-lines",
+        "Lines of the sensors at operation: mesh harmonics and their sidebands by the turning of the carriers.",
+    ),
     Picture("system", "Coupled modes of the machine."),
 )
 _CURVES = (
@@ -684,23 +704,42 @@ def _peaks(response: Document) -> Iterator[str | Table]:
 
 
 _LINES = 3  # of each sensor, the highest
+_SIDEBANDS = 8  # of each sensor, the highest, where carriers turn
+_SUPPRESSED_LINES = 6  # suppressed lines that are listed by name
 
 
 def _lines(lines: list[Document]) -> Iterator[str | Table]:
     """Yield the highest lines of each sensor by transmission error, by load shuttling and by both."""
     rows: list[dict[str, Any]] = []
+    turning = any("kind" in line for line in lines)
+    keys = ("frequency_hz", "cause", "kind", "phasing")
     for sensor in lines[0]["sensor_acceleration_m_per_s2"]["together"] if lines else ():
         of_sensor = [
-            {"sensor": sensor, "frequency_hz": line["frequency_hz"], "cause": line["cause"]}
+            {"sensor": sensor}
+            | {key: line[key] for key in keys if key in line}
             | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name, _, _ in _PARTS}
             | ({"band_db": line["band_db"][sensor]} if "band_db" in line else {})
             for line in lines
         ]
-        rows += sorted(of_sensor, key=lambda row: -row["together"])[:_LINES]
+        highest = sorted(of_sensor, key=lambda row: -row["together"])
+        rows += [row for row in highest if row["together"] > 0.0][: _SIDEBANDS if turning else _LINES]
     if rows:
         yield "Highest lines of the sensors at operation, linear response about the mean load [m/s²]:"
-        yield from table_of(_LINE_COLUMNS, rows)
+        yield from table_of(_TURNING_LINE_COLUMNS if turning else _LINE_COLUMNS, rows)
         yield "Together: the sum with phase, above or below either part."
+    if turning:
+        yield "Phasing: the housing's motion by all meshes together, as part of the sum by each mesh alone."
+        yield from _suppressed([line for line in lines if line.get("suppressed")])
+
+
+def _suppressed(lines: list[Document]) -> Iterator[str]:
+    """Yield the lines in which the planets cancel each other, those of the lowest frequencies first."""
+    if not lines:
+        return
+    listed = ", ".join(f"{line['frequency_hz']:.1f} Hz ({line['cause']})" for line in lines[:_SUPPRESSED_LINES])
+    rest = len(lines) - _SUPPRESSED_LINES
+    more = f", and {counted(rest, 'more line')}" if rest > 0 else ""
+    yield f"Suppressed by the phasing of the planets: {listed}{more}."
 
 
 _LINE_COLUMNS = (
@@ -711,6 +750,12 @@ _LINE_COLUMNS = (
     Column("by load shuttling", "by_load_shuttling", ".3g"),
     Column("together", "together", ".3g"),
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
+)
+_TURNING_LINE_COLUMNS = (
+    *_LINE_COLUMNS[:3],
+    Column("kind", "kind"),
+    Column("phasing", "phasing", ".2f"),
+    *_LINE_COLUMNS[3:],
 )
 
 _CROSSING_COLUMNS = (

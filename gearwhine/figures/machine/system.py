@@ -1,4 +1,4 @@
-"""Coupled system figures: Campbell diagram and transmissibility.
+"""Coupled system figures: Campbell diagram, transmissibility, lines of sensors with sidebands of carriers.
 
 The Campbell diagram colours modes by the part that moves, and shows shaft and mesh orders as lines. The
 transmissibility gives mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency.
@@ -12,10 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.linear.campbell import SystemCampbell
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -58,6 +60,8 @@ KIND_COLORS = {
     "pedestal": SERIES[7],
     "residual": "#c9ced3",
 }
+LINE_COLORS = {"mesh harmonic": INK, "planet pass": BLUE, "carrier sideband": RED}
+"""Colours of lines by their place beside a mesh harmonic."""
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # height of the panel [mm]
 _LARGEST_MARK_AREA = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
@@ -65,6 +69,9 @@ _MICROMETRE = 1e-6
 _RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # height of a panel and gap between two [mm]
 _DECADES = 4.0  # decades of amplitude that a panel shows at most
 _MOST_COLOURED_CURVES = 8  # number of curves that a panel distinguishes by colour
+_MOST_PANELS = 4  # sensors whose lines are drawn
+_NAMED_LINES = 4  # highest lines of a sensor that have their name
+_LINE_GAP = 9.0  # gap between two panels of lines [mm]
 _COLUMNS = 4  # columns of their names above it
 _CAMPBELL_COLUMNS = 8  # columns of the kinds of modes below the Campbell diagram
 
@@ -240,6 +247,55 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     )
 
 
+def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -> Figure:
+    """Draw the lines of the sensors at operation: mesh harmonics and their sidebands by carriers.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+        Machine with sensors.
+    lines : sequence of ResponseParts
+        Motions at its lines, one or more.
+    """
+    sensors = dict(list(machine.sensor_rows.items())[:_MOST_PANELS])
+    note = "peak amplitudes, linear response about the mean load; numbers: mesh harmonic, and turns of carriers off it"
+    figure = sheet(HEAD + len(sensors) * (_RESPONSE_HEIGHT + _LINE_GAP) + FOOT, "Lines of the sensors", note)
+    frequencies = np.array([line.frequency for line in lines]) / HERTZ
+    bottom = FOOT
+    for number, (name, row) in enumerate(reversed(sensors.items())):
+        axes = panel(figure, bottom, _RESPONSE_HEIGHT)
+        bottom += _RESPONSE_HEIGHT + _LINE_GAP
+        heights = np.array([line.frequency**2 * abs(row @ line.motion) for line in lines])
+        top = float(heights.max())
+        least = top * 10.0**-_DECADES
+        axes.set_yscale("log")
+        if top > 0.0:
+            axes.set_ylim(least, 50.0 * top)
+        for kind, color in LINE_COLORS.items():
+            own = np.array([line.kind == kind for line in lines]) & (heights > least)
+            axes.vlines(frequencies[own], least, heights[own], color=color, lw=1.4, label=kind, zorder=3)
+        for place in np.argsort(-heights)[:_NAMED_LINES].tolist():
+            if heights[place] > least:
+                at = (frequencies[place], heights[place])
+                text = _place_beside_harmonic(lines[place])
+                axes.annotate(text, at, (-3, 3), textcoords="offset points", rotation=60, fontsize=NOTE)
+        axes.set_xlim(0.0, 1.15 * float(frequencies.max()))
+        axes.set_ylabel(f"{shortened(name, 14)} [m/s²]")
+        if number == 0:
+            axes.set_xlabel("frequency [Hz]")
+        else:
+            axes.tick_params(labelbottom=False)
+        if number == len(sensors) - 1:
+            axes.legend(loc="upper right", ncols=3, fontsize=NOTE, frameon=False)
+    return figure
+
+
+def _place_beside_harmonic(line: ResponseParts) -> str:
+    """Mesh harmonic of a line and the turns of carriers that it is off it, such as ``1 +3``."""
+    turns = "".join(f" {number:+g}" for _, number in line.sidebands[0].turns)
+    return f"{line.causes[0][1]}{turns}"
+
+
 def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
     """Draw the linear analyses of a machine.
 
@@ -251,7 +307,7 @@ def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
     ------
     str
         Name of the figure: ``system-campbell`` where there is a diagram, ``transmissibility-PAIR`` for each gear pair
-        that touches.
+        that touches, ``system-lines`` where carriers turn and sensors have lines.
     matplotlib.figure.Figure
     """
     if solved.campbell is not None:
@@ -268,3 +324,5 @@ def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
         limit = float(response.frequencies[-1] / (2.0 * np.pi))
         heading = f"From the transmission error of {shortened(arrowed(name), 30)}"
         yield stem, draw_transmissibility(heading, response, mesh_frequencies=meshes, limit=limit)
+    if any(line.sidebands for line in solved.lines) and solved.machine.sensor_rows:
+        yield "system-lines", draw_sensor_lines(solved.machine, solved.lines)

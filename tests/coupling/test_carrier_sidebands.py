@@ -1,0 +1,252 @@
+"""Lines at mesh harmonics and their sidebands by a carrier: phasing, limits without turning, integration in time."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.linear.damping_band import DampingBand
+from gearwhine.coupling.linear.frequency_response import unbalance_responses
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
+from gearwhine.coupling.machine.connectors import TurningPart
+from gearwhine.coupling.machine.frames import orders_and_quarter_turn
+from gearwhine.coupling.signals.spectrum import decibels
+from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, find_resonances
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.coupling.time.transient import simulate
+from tests.machines.turning_set import TEETH, turning_machine
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+ANISOTROPIC, ISOTROPIC = (900.0, 1300.0), (1000.0, 1000.0)  # natural frequencies of the housing along x and y [Hz]
+LIMIT = 2.0 * np.pi * 2500.0
+RING = TEETH[0] + 2 * TEETH[1]
+UNEQUAL = (0.0, 130.0, 240.0)
+"""Angles of three planets [deg], multiples of 360/108 as their assembly needs, that are not equal."""
+
+
+@cache
+def lines(natural_hz: tuple[float, float], angles: tuple[float, ...] | None = None) -> tuple[ResponseParts, ...]:
+    return MeshHarmonicModel(turning_machine(natural_hz, angles_deg=angles)).parts(LIMIT)
+
+
+def carrier_turns(line: ResponseParts) -> int:
+    """Signed turns of the carrier that a line is off its mesh harmonic."""
+    (turns,) = {sideband.turns for sideband in line.sidebands}
+    return int(dict(turns).get("carrier", 0.0))
+
+
+def test_equal_planets_keep_every_third_line_by_their_phases() -> None:
+    found = lines(ANISOTROPIC)
+    assert {(line.causes[0][1], carrier_turns(line)) for line in found} >= {(1, -1), (1, 1), (2, -1), (2, 1)}
+    for line in found:
+        (harmonic,) = {harmonic for _, harmonic in line.causes}
+        # Lines are at multiples n z_r + k of the carrier's speed, of which three planets keep multiples of three.
+        order = harmonic * RING + carrier_turns(line)
+        assert line.is_suppressed == (order % 3 != 0)
+        assert (line.phasing < 1e-10) == line.is_suppressed
+        assert line.kind == "carrier sideband"
+
+
+def test_planets_at_unequal_angles_suppress_no_line() -> None:
+    machine = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL)
+    found = lines(ANISOTROPIC, UNEQUAL)
+    carrier = machine.speeds["carrier"]
+    assert not any(line.is_suppressed for line in found)
+    assert {carrier_turns(line) for line in found} >= {-3, -1, 1, 3}
+    for line in found:
+        at = (line.causes[0][1] * RING + carrier_turns(line)) * carrier
+        assert line.frequency == pytest.approx(at, rel=1e-12)
+        off = carrier_turns(line)
+        assert line.cause(machine).endswith(f" {'+' if off > 0 else '-'} {abs(off)}× carrier")
+        assert line.kind == ("planet pass" if off % 3 == 0 else "carrier sideband")
+
+
+def _as_by_time_invariant_equations(machine: CoupledMachine, harmonic: int) -> dict[int, ComplexArray]:
+    """Housing's x and y by the turns of the carrier, from equations in the carrier's frame, written out anew.
+
+    All that stands still is alike all round: with q = e^{Jft} y of its coordinates, nothing varies in time.
+    """
+    system, model = machine.system, MeshHarmonicModel(machine)
+    carrier = machine.speeds["carrier"]
+    size = system.size
+    turn, standing = np.zeros((size, size)), np.zeros(size, dtype=bool)
+    start = 0
+    for part in system.components:
+        own = slice(start, start + part.size)
+        start = own.stop
+        if part.name in ("ring", "housing"):
+            orders, quarter = orders_and_quarter_turn(part)
+            if part.name == "housing":
+                quarter, orders = np.array([[0.0, -1.0], [1.0, 0.0]]), np.ones(2, dtype=int)
+                housing = own
+            turn[own, own] = orders[:, None] * quarter
+            standing[own] = orders > 0
+    stiffness = system.own_stiffness.copy()
+    damping = system.own_damping + system.gyroscopic
+    for connector in system.linear:
+        if not connector.turning:
+            stiffness += connector.directions @ connector.stiffness @ connector.directions.T
+            damping += connector.directions @ connector.damping @ connector.directions.T
+    # What stands still is seen from the carrier: Coriolis and centripetal terms, and dashpots that resist its turning.
+    stiffness = stiffness + carrier * damping @ turn + carrier**2 * turn @ turn
+    damping = damping + 2.0 * carrier * turn
+    for connector in system.linear:
+        if connector.turning:
+            stiffness += connector.directions @ connector.stiffness @ connector.directions.T
+            damping += connector.directions @ connector.damping @ connector.directions.T
+    load = np.zeros(size, dtype=np.complex128)
+    for number, contact in enumerate(system.contacts):
+        k, c = model.contact.stiffness[number], model.contact.damping[number]
+        stiffness += k * np.outer(contact.direction, contact.direction)
+        damping += c * np.outer(contact.direction, contact.direction)
+        load += k * model._errors[number][harmonic - 1] * contact.direction
+    w = harmonic * RING * carrier
+    y = np.linalg.solve(stiffness + 1j * w * damping - w**2 * np.eye(size), load)[housing]
+    quarter = np.array([[0.0, -1.0], [1.0, 0.0]])
+    # e^{Jft} y is a circular part at w + f and one at w - f.
+    return {sense: 0.5 * (y - 1j * sense * quarter @ y) for sense in (1, -1)}
+
+
+@pytest.mark.parametrize("angles", [None, UNEQUAL])
+def test_isotropic_seat_gives_the_lines_of_time_invariant_equations(angles: tuple[float, ...] | None) -> None:
+    machine = turning_machine(ISOTROPIC, angles_deg=angles)
+    rows = np.array([machine.sensor_rows[name] for name in "xy"])
+    found = lines(ISOTROPIC, angles)
+    assert {abs(carrier_turns(line)) for line in found} == {1}
+    scale = {h: max(float(np.abs(rows @ one.motion).max()) for one in found if one.causes[0][1] == h) for h in (1, 2)}
+    shape = 0.2
+    for line in found:
+        harmonic = line.causes[0][1]
+        expected = shape * _as_by_time_invariant_equations(machine, harmonic)[carrier_turns(line)]
+        assert np.abs(rows @ line.motion - expected).max() < 1e-9 * scale[harmonic]
+
+
+def test_carrier_that_hardly_turns_gives_the_lines_of_one_that_stands() -> None:
+    machine = turning_machine(ANISOTROPIC)
+    model = MeshHarmonicModel(machine)
+
+    def slowed(parts: tuple[TurningPart, ...]) -> tuple[TurningPart, ...]:
+        return tuple(replace(part, rate=1e-9 * part.rate) for part in parts)
+
+    system = replace(
+        machine.system,
+        linear=tuple(replace(one, turning=slowed(one.turning)) for one in machine.system.linear),
+        contacts=tuple(replace(one, turning=slowed(one.turning)) for one in machine.system.contacts),
+    )
+    slow = MeshHarmonicModel(replace(machine, system=system)).parts(LIMIT)
+    frozen = model.frozen_responses(LIMIT)
+    assert [line.frequency for line in slow] == pytest.approx([line.frequency for line in frozen], rel=1e-9)
+    rows = np.array(list(machine.sensor_rows.values()))
+    for line, still in zip(slow, frozen, strict=True):
+        assert np.abs(rows @ (line.motion - still.motion)).max() < 1e-9 * np.abs(rows @ still.motion).max()
+
+
+def test_parts_and_bands_of_sidebands_are_those_of_lines_and_of_a_machine_with_other_damping() -> None:
+    machine = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL)
+    mechanisms = LineMechanisms(machine)
+    found = [line for line in lines(ANISOTROPIC, UNEQUAL) if abs(carrier_turns(line)) <= 3]
+    bands = DampingBand(mechanisms).at([line.frequency for line in found])
+    others = {scale: turning_machine(ANISOTROPIC, angles_deg=UNEQUAL, damping=scale) for scale in (0.5, 2.0)}
+    changed = {scale: MeshHarmonicModel(other).parts(LIMIT) for scale, other in others.items()}
+    for place, line in enumerate(found):
+        parts = mechanisms.parts(line.frequency)
+        for sensor, row in machine.sensor_rows.items():
+            amplitude = line.frequency**2 * abs(row @ line.motion)
+            assert parts[sensor].together == pytest.approx(amplitude, rel=1e-6)
+            assert set(parts[sensor].amplitudes) == {"transmission_error"}
+            levels = [0.0]
+            for scaled in changed.values():
+                (same,) = (one for one in scaled if one.frequency == pytest.approx(line.frequency, rel=1e-9))
+                levels.append(20.0 * np.log10(same.frequency**2 * abs(row @ same.motion) / amplitude))
+            # A dashpot of standing parts is a stiffness too, seen from the carrier: the band leaves that as it is.
+            assert bands[sensor][place] == pytest.approx([min(levels), max(levels)], abs=0.03)
+    assert len(found) == 6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angles", [None, UNEQUAL])
+def test_lines_are_those_of_an_integration_in_time(angles: tuple[float, ...] | None) -> None:
+    machine = turning_machine(ANISOTROPIC, angles_deg=angles)
+    period, count = 2.0 * np.pi / machine.speeds["carrier"], 8192
+    settings = TransientSettings(
+        duration=4.0 * period, record_from=3.0 * period, sample_interval=period / count, largest_step=period / 16384
+    )
+    motion = histories(machine, simulate(machine.system, settings, transient_outputs(machine))).sensor_acceleration
+    found = lines(ANISOTROPIC, angles)
+    checked = 0
+    for sensor, row in machine.sensor_rows.items():
+        spectrum = 2.0 * np.fft.rfft(motion[sensor]) / count
+        by_line = {round(line.frequency * period / (2.0 * np.pi)): line for line in found}
+        expected = {at: -(line.frequency**2) * complex(row @ line.motion) for at, line in by_line.items()}
+        highest = max(map(abs, expected.values()))
+        for at, amplitude in expected.items():
+            if abs(amplitude) > 1e-2 * highest:
+                assert abs(spectrum[at] - amplitude) < 0.01 * abs(amplitude)
+                checked += 1
+            elif by_line[at].is_suppressed:
+                assert abs(spectrum[at]) < 1e-6 * highest
+        # Nothing else is as high: no line is missed.
+        others = [at for at in range(RING // 2, int(2.5 * RING)) if at not in expected]
+        assert np.abs(spectrum[others]).max() < 1e-3 * highest
+    assert checked >= 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rotor", ["planet 1", "carrier"])
+def test_sidebands_of_an_unbalance_are_those_of_an_integration_in_time(rotor: str) -> None:
+    machine = turning_machine(ANISOTROPIC, unbalanced=rotor)
+    carrier = machine.speeds["carrier"]
+    found = unbalance_responses(machine, [machine.speed], rotor=rotor)
+    period = 2.0 * np.pi / carrier
+    settings = TransientSettings(
+        duration=9.0 * period, record_from=3.0 * period, sample_interval=period / 1024, largest_step=period / 8192
+    )
+    result = simulate(machine.system, settings, transient_outputs(machine))
+    motion = histories(machine, result).sensor_acceleration
+    # Frequencies that are not commensurate with the record: they are fitted, with what the planets' forces make.
+    lines = {one.excitation: one.at_positive_frequencies() for one in found}
+    passes = [n * carrier for n in range(1, 7)]
+    rates = sorted({round(at, 9) for at in (*(float(one.frequencies[0]) for one in lines.values()), *passes)})
+    waves = np.exp(1j * np.outer(result.times, rates))
+    columns = np.concatenate([waves.real, -waves.imag, np.ones((len(waves), 1))], axis=1)
+    for sensor, acceleration in motion.items():
+        fitted = np.linalg.lstsq(columns, acceleration, rcond=None)[0]
+        amplitudes = dict(zip(rates, fitted[: len(rates)] + 1j * fitted[len(rates) : 2 * len(rates)], strict=True))
+        expected = dict.fromkeys(amplitudes, 0.0j)
+        for one in lines.values():
+            expected[round(float(one.frequencies[0]), 9)] += complex(one.sensor_acceleration[sensor][0])
+        highest = max(map(abs, expected.values()))
+        strong = [at for at, amplitude in expected.items() if abs(amplitude) > 0.02 * highest]
+        for at in strong:
+            assert abs(amplitudes[at] - expected[at]) < 0.01 * highest
+    assert {one.frequencies[0] for one in found if one.excitation == f"unbalance of {rotor}"} == {machine.speeds[rotor]}
+    assert len(found) == (2 if rotor == "planet 1" else 1)
+
+
+def test_sweep_has_each_sideband_and_its_level_where_it_meets_a_mode() -> None:
+    machine = turning_machine(ANISOTROPIC)
+    resonances = find_resonances(machine, LIMIT / (2.0 * np.pi))
+    assert resonances is not None
+    orders = machine.speeds["carrier"] / machine.speed * np.array([RING + 1.0, 2.0 * RING - 1.0])
+    kept = [int(np.argmin(np.abs(resonances.line_orders - order))) for order in orders]
+    assert resonances.line_orders[kept] == pytest.approx(orders, rel=1e-9)
+    assert resonances.lines[kept[0]] == "1× planets' meshes of carrier + 1× carrier"
+    (mode,) = np.flatnonzero(np.abs(resonances.frequencies - 995.0) < 2.0)
+    # The machine itself, at the speed at which the sideband has the frequency of the mode.
+    speed = 2.0 * np.pi * float(resonances.frequencies[mode]) / orders[0]
+    there = turning_machine(ANISOTROPIC, speed=speed)
+    model = MeshHarmonicModel(there)
+    (line,) = (one for one in model.parts(LIMIT) if one.frequency == pytest.approx(orders[0] * speed, rel=1e-9))
+    for place, (sensor, row) in enumerate(there.sensor_rows.items()):
+        expected = decibels(line.frequency**2 * abs(row @ line.motion))
+        found = resonances.levels_near[place, kept[0], mode, len(PLACES_ABOUT_MODE) // 2]
+        assert resonances.outputs[place] == sensor
+        assert found == pytest.approx(expected, abs=0.2)
+        assert found > resonances.line_levels[place, kept[0]] + 1.0
