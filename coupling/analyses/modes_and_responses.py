@@ -55,7 +55,8 @@ class SolvedSystem:
     responses : tuple of FrequencyResponse
         Responses to a unit transmission error of each mesh.
     superposition_error : float or None
-        Largest difference of these from direct solutions, at some frequencies, as a part of the largest amplitude.
+        Largest difference of these from direct solutions, at some frequencies, as a part of the largest amplitude;
+        None where they are direct solutions themselves.
     campbell : SystemCampbell or None
         Campbell diagram, where it is asked for.
     unbalance : tuple of FrequencyResponse
@@ -146,20 +147,28 @@ def _mesh_responses(
     modes: CoupledModes,
     contact: ContactState,
 ) -> tuple[tuple[FrequencyResponse, ...], float | None]:
-    """Return responses to the error of each mesh by superposition, and their largest error against direct solutions."""
+    """Return responses to the error of each mesh by superposition, and their largest error against direct solutions.
+
+    Of a machine whose directions turn, where modes are no basis of responses, they are direct solutions themselves.
+    """
     touching = touching_meshes(machine, contact)
     if not touching:
         return (), None
     limit = _frequency_limit(machine)
     frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
+
+    def solved_directly() -> tuple[FrequencyResponse, ...]:
+        return tuple(mesh_error_response(machine, frequencies, mesh=number, contact=contact) for number in touching)
+
+    if machine.system.turns:
+        return solved_directly(), None
     try:
         responses = [
             mesh_error_response(machine, frequencies, mesh=number, contact=contact, modes=modes) for number in touching
         ]
     except ModesError:
         # Nearly parallel modes cannot be superposed; the system itself can always be solved.
-        solved = [mesh_error_response(machine, frequencies, mesh=number, contact=contact) for number in touching]
-        return tuple(solved), None
+        return solved_directly(), None
     chosen = np.unique(np.linspace(0, frequencies.size - 1, _DIRECT).astype(int))
     largest = 0.0
     for number, by_modes in zip(touching, responses, strict=True):

@@ -7,11 +7,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gearwhine.coupling import CoupledMachine, Machine
+from gearwhine.coupling import CoupledMachine, CouplingError, Machine
+from gearwhine.coupling.analyses import modes_and_responses
 from gearwhine.coupling.assembly import assemble_machine
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.frequency_response import response
 from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.machine.base_motion import BaseHistory, BaseMotion
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from tests.machines.plane_planetary_set import (
     TEETH,
@@ -93,3 +95,27 @@ def test_response_does_not_depend_on_the_frames_of_the_coordinates(standing: Col
         torsion = slice(start + 2 * m, start + size)
         assert np.abs(found[(0,)][torsion] - expected[torsion]).max() < 1e-9 * scale
         start += size
+
+
+def test_responses_with_directions_that_turn_are_no_superposition_of_modes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modes_and_responses, "resonance_grid", lambda *_: np.array([2e3, 5e3]))
+    turning, constant = (_assembled(_described(2, standing, 1e-5), 300.0) for standing in (("sun",), ()))
+    assert modes_and_responses.solve_system(turning).superposition_error is None
+    found = modes_and_responses.solve_system(constant).superposition_error
+    assert found is not None
+    assert 0.0 < found < 1e-6
+
+
+def test_a_base_that_moves_over_time_under_a_turning_carrier_is_refused() -> None:
+    """Its inertia loads would turn in the carrier's frame; harmonics are turned, as their frequencies are shifted."""
+    parts = plane_set(equal_angles(3), pressure_angle=PRESSURE_ANGLE, with_ring=True)
+    shaken = np.zeros((2, 6))
+    shaken[:, 1] = 3.0
+    over_time = BaseMotion((BaseHistory(np.array([0.0, 1.0]), shaken),))
+    machine = Machine(**parts, speed=300.0, torque=200.0)
+    with pytest.raises(CouplingError, match=r"over time moves 'sun', .* expected a base motion given by harmonics"):
+        _ = replace(machine, base=over_time).assembled
+    # Accelerations along the axis are the same in any frame, and so are all of a machine at rest.
+    axial = BaseMotion((BaseHistory(np.array([0.0, 1.0]), shaken[:, [0, 2, 1, 3, 4, 5]]),))
+    assert len(replace(machine, base=axial).assembled.system.timed_loads) == 1
+    assert len(replace(machine, base=over_time, speed=0.0, torque=0.0).assembled.system.timed_loads) == 1
