@@ -148,7 +148,10 @@ def _mesh_responses(
     modes: CoupledModes,
     contact: ContactState,
 ) -> tuple[tuple[FrequencyResponse, ...], float | None]:
-    """Return responses to the error of each mesh by superposition, and their largest error against direct solutions."""
+    """Return responses to the error of each mesh by superposition, and their largest error against direct solutions.
+
+    Of a machine whose directions turn, where modes are no basis of responses, they are direct solutions themselves.
+    """
     touching = touching_meshes(machine, contact)
     if not touching:
         return (), None

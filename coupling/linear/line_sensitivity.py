@@ -36,6 +36,7 @@ of the teeth, and all that is not linear about the mean mesh: contact loss and t
 times the motion.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -50,10 +51,11 @@ from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import LineOutput, SensorAmplitude
 from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response
+from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.machine.connectors import LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint
-from gearwhine.coupling.statics.sensitivity import deflection_slope, rigid_slope
+from gearwhine.coupling.statics.sensitivity import deflection_slope, rigid_slope, section_slope
 from gearwhine.rotors.rolling_bearings import rolling_state
 
 FloatArray = npt.NDArray[np.float64]
@@ -63,7 +65,6 @@ _GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of tra
 _STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch
 _STIFFNESS_POINTS = 2000  # number of phases of a mesh period in the differences of k
 _BEARING_STEP = 1e-4  # step over a bearing's deflection, in the differences of its tangent
-_SHAFT_STEP = 1e-5  # step over the shaft's length, in the differences of its motions
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ class LineModel(MeshHarmonicModel):
         Raises
         ------
         CouplingError
-            For less than one line.
+            For less than one line, and as :meth:`line`.
         """
         if count < 1:
             raise CouplingError(f"{count} lines of each sensor; expected 1 or more")
@@ -153,7 +154,19 @@ class LineModel(MeshHarmonicModel):
         return tuple(sorted(lines, key=lambda one: -one.value))
 
     def line(self, output: LineOutput, response: Response) -> Line:
-        """Take an output of a motion, and solve its adjoint state."""
+        """Take an output of a motion, and solve its adjoint state.
+
+        Raises
+        ------
+        CouplingError
+            For a machine with connectors that turn with a carrier: its lines have sidebands, and no gradient by
+            constant matrices.
+        """
+        if self.machine.system.turns:
+            raise CouplingError(
+                "a gradient of the lines of a machine whose planets turn with their carrier; expected carriers that "
+                "stand still"
+            )
         w, motion = response.frequency, response.motion
         adjoint = linalg.solve(self._dynamic(w).T, output.adjoint_load(w, motion))
         return Line(w, response.causes, motion, output, output.value(w, motion), adjoint)
@@ -387,23 +400,27 @@ class LineModel(MeshHarmonicModel):
     def _bearing_slope(self, load: BearingLoad) -> FloatArray:
         """Slope along z of a bearing's deflection as it moves along its shaft, by the coordinates, shape (5, n)."""
         mounted = load.mounted
-        rotor = next(rotor for rotor in self.machine.rotors if rotor.name == mounted.rotor)
-        length = self.point.shaft(mounted.rotor).part.shaft.length
-        at, step = mounted.bearing.at, _SHAFT_STEP * length
-        at_middle = rotor.motions(at)
-        # Strains jump at a bearing: the mean of both sides counts. Beyond the shaft's end there is no strain.
-        sides = [
-            (rotor.motions(at + way * step) - at_middle) / (way * step)
-            if 0.0 <= at + way * step <= length
-            else rigid_slope(at_middle)
-            for way in (1.0, -1.0)
-        ]
-        slope = self.machine.rows(rotor.name, 0.5 * (sides[0] + sides[1]))
-        if mounted.seat is not None:
-            assert self.machine.housing is not None
-            seat = self.machine.housing.seat_motions(mounted.seat, rotor.start + at)
+        shaft = self.point.shaft(mounted.rotor).part
+        z = shaft.start + mounted.bearing.at
+        slope = self._section_slope(mounted.rotor, z)[:5]
+        holder = self.point.shaft_around(load)
+        if holder is not None:
+            arm = np.subtract(shaft.axis, self.point.shaft(holder).part.axis)
+            slope = slope - seat_in_section(self._section_slope(holder, z), arm, 0.0)
+        elif mounted.seat is not None and self.machine.housing is not None:
+            seat = self.machine.housing.seat_motions(mounted.seat, z)
             slope = slope - self.machine.rows(self.machine.housing.name, rigid_slope(seat))
         return np.asarray(slope)
+
+    def _section_slope(self, name: str, z: float) -> FloatArray:
+        """Slope along z of the motions of a shaft's sections at a place along z, by the coordinates, shape (6, n)."""
+        rotor = next(rotor for rotor in self.machine.rotors if rotor.name == name)
+
+        def motions(places: Sequence[float]) -> FloatArray:
+            return np.array([np.vstack([rotor.motions(place), rotor.rotation(place)]) for place in places])
+
+        length = self.point.shaft(name).part.shaft.length
+        return self.machine.rows(name, section_slope(motions, z - rotor.start, length))
 
 
 def _tangent_rate(load: BearingLoad) -> FloatArray:

@@ -15,14 +15,17 @@ from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 
 
 def bearing_ports(housing: Housing, machine: Machine) -> dict[str, sparse.csr_array]:
-    """Motions of the places where a machine bears on the housing from the nodes', shape (5, 3 n_nodes) each."""
+    """Motions of the places where a machine bears on the housing from the nodes', shape (5, 3 n_nodes) each.
+
+    Bearings on the ground or in another shaft, such as those of planets on their carrier, have none.
+    """
     ports, centers = housing.seat_ports(), {seat.name: seat.center[2] for seat in housing.seats}
     return {
         one.bearing.name: bearing_port(
             ports[one.seat], machine.shaft(one.rotor).start + one.bearing.at - centers[one.seat]
         )
         for one in machine.bearings
-        if one.seat is not None
+        if one.seat in ports
     }
 
 

@@ -147,7 +147,7 @@ class LoadSensitivity:
     density : ndarray, shape (n_pairs, n_nodes), or None
         Derivative of the misalignment by material added on the housing's surface, by thickness and area [rad/m³].
     note : str or None
-        Why flat faces stand in place of walls.
+        Parts that are left out or stand in place of others, and why.
     lines : SolvedLines or None
         Lines of the sensors and of the sound; None where no mesh drives any.
     line : int

@@ -144,6 +144,12 @@ class SolvedLines:
         )
 
 
+def turning_carriers(machine: Machine) -> tuple[str, ...]:
+    """Return the carriers that turn, whose planets meet the housing in turning directions."""
+    carriers = dict.fromkeys(shaft.carrier for shaft in machine.shafts if shaft.carrier is not None)
+    return tuple(name for name in carriers if machine.speeds[name] != 0.0)
+
+
 def solve_lines(
     machine: Machine,
     point: OperatingPoint,
@@ -154,7 +160,10 @@ def solve_lines(
     *,
     count: int = LINES,
 ) -> SolvedLines | None:
-    """Solve the highest lines of each sensor and the loudest of the sound; None where no mesh drives any.
+    """Solve the highest lines of each sensor and the loudest of the sound.
+
+    None where no mesh drives any, and where a carrier turns: a line's gradient is that of a machine whose directions
+    stand still.
 
     Parameters
     ----------
@@ -178,7 +187,7 @@ def solve_lines(
     gearwhine.housing.HousingError
         Where a line fails its proofs, see :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
-    if housing is None or not machine.gear_pairs or machine.speed == 0.0:
+    if housing is None or not machine.gear_pairs or machine.speed == 0.0 or turning_carriers(machine):
         return None
     loaded = bearing_ports(housing.housing, machine)
     if not loaded or not (housing.sensors or acoustics):

@@ -20,7 +20,7 @@ from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.load_analysis.box_walls import wall_changes
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity, sound_weights
-from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
+from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines, turning_carriers
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
@@ -323,6 +323,8 @@ def solve_load_sensitivity(
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
+    if housing is not None:
+        note = "; ".join(filter(None, (note, _note_of_carriers(machine)))) or None
     return LoadSensitivity(
         tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
     )
@@ -356,6 +358,17 @@ def rank_parts(
     return solve_load_sensitivity(
         machine, point, housing, changes, acoustics=acoustics, run=run, line=line, note=note, progress=progress
     )
+
+
+def _note_of_carriers(machine: Machine) -> str | None:
+    """Say that lines are not ranked, and why, where a carrier turns."""
+    carriers = turning_carriers(machine)
+    if not carriers:
+        return None
+    names = " and ".join(map(repr, carriers))
+    verb = "s" if len(carriers) == 1 else ""
+    plural = "" if len(carriers) == 1 else "s"
+    return f"lines of sensors and sound are not ranked, as the carrier{plural} {names} turn{verb}"
 
 
 def _walls(housing: Housing, machine: Machine) -> tuple[tuple[HousingChange, ...], str | None]:

@@ -24,6 +24,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import Component, FrameTerms, PedestalComponent, RotorComponent
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads
@@ -167,9 +168,24 @@ class Frames:
         return tuple(parts)
 
     def loads(self, acting: CoordinateLoads) -> CoordinateLoads:
-        """Return loads that stand still as loads on the coordinates of the frames."""
+        """Return loads that stand still as loads on the coordinates of the frames.
+
+        Raises
+        ------
+        CouplingError
+            Where a load over time, as of a base motion, acts on coordinates that turn.
+        """
         if not self.turn:
             return acting
+        turned = self._orders * self._own_speeds != 0.0
+        for timed in acting.timed:
+            if np.any(timed.direction[turned]):
+                names = np.repeat([part.name for part in self.components], [part.size for part in self.components])
+                first = str(names[turned & (timed.direction != 0.0)][0])
+                raise CouplingError(
+                    f"a base motion over time moves {first!r}, whose coordinates turn with the carrier of a "
+                    "planetary set; expected a base motion given by harmonics"
+                )
         still = HarmonicLoad(0.0, acting.constant.astype(np.complex128), "turning")
         moved = CoordinateLoads(
             np.zeros_like(acting.constant), timed=list(acting.timed), dashpots=list(acting.dashpots)

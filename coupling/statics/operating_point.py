@@ -356,6 +356,11 @@ class OperatingPoint:
         """Return the deflection of the shaft of this name."""
         return next(shaft for shaft in self.shafts if shaft.name == name)
 
+    def shaft_around(self, load: BearingLoad) -> str | None:
+        """Name of the shaft that holds a bearing: a planet's carrier, or one that is its seat; None for other seats."""
+        name = self.shaft(load.mounted.rotor).part.carrier or load.mounted.seat
+        return name if any(shaft.name == name for shaft in self.shafts) else None
+
     def gear_forces(self, number: int) -> tuple[FloatArray, FloatArray]:
         """Return the forces of a pair's flanks on the shafts of driver and driven gear, (6,) each.
 

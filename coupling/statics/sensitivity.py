@@ -8,15 +8,17 @@ Let R(x, p) = 0 be the equilibrium of the static machine (:mod:`gearwhine.coupli
 for every parameter p (Haug, Choi and Komkov, Design Sensitivity Analysis of Structural Systems, 1986, section 1.2).
 
 - Bearing with the deflection δ = Eᵀ x and the force f, its law multiplied by 1 + p: dy/dp = -(Eᵀ λ) · f.
-- Bearing moved along its shaft by p, its seat staying: with w' the slope of the shaft's motions along z less that of
-  the seat's rigid motion, and t = ∂f/∂δ, dy/dp = -w'(λ) · f - (Eᵀ λ) · t w'(x). Strains of the shaft jump at a bearing;
-  the mean of both sides is exact, as the jumps of the two fields are alike.
+- Bearing moved along its shaft by p, its seat staying: with w' the slope along z of the shaft's motions less that of
+  the seat's, and t = ∂f/∂δ, dy/dp = -w'(λ) · f - (Eᵀ λ) · t w'(x). A seat of the housing moves rigidly, one in another
+  shaft, such as a planet's on its carrier, with that shaft's sections. Strains of a shaft jump at a bearing; the mean
+  of both sides is exact, as the jumps of the two fields are alike.
 - Housing: :mod:`gearwhine.housing.updating.static_sensitivity`, by the fields of λ and x in it and the forces of the
   bearings.
 
 Outcomes of the flanks follow by the chain rule from the approach over the face, on which they depend alone.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +26,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.coupling.gears.loaded.face_load import face_load_factor
+from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 
 FloatArray = npt.NDArray[np.float64]
@@ -69,12 +72,13 @@ class Adjoint:
     def by_bearing_position(self, bearing: str) -> float:
         """Differentiate the outcome by a bearing's position on its shaft, towards +z [outcome/m]."""
         load = self.point.bearing(bearing)
-        shaft = self.point.shaft(load.mounted.rotor)
-        adjoint = ShaftDeflection(
-            replace(shaft.part, acceleration=None), self.values[self.point.tangent.shafts[shaft.name]]
-        )
-        moved = _slope(adjoint, load) - _seat_slope(self.point, load, self.housing)
+        moved = _deflection_slope(self.point, load, self._shaft, self.housing)
         return -float(moved @ load.force + self.force(bearing) @ deflection_slope(self.point, load))
+
+    def _shaft(self, name: str) -> ShaftDeflection:
+        """Adjoint state of a shaft, whose mass nothing accelerates."""
+        part = replace(self.point.shaft(name).part, acceleration=None)
+        return ShaftDeflection(part, self.values[self.point.tangent.shafts[name]])
 
 
 def adjoint(point: OperatingPoint, gradient: FloatArray) -> Adjoint:
@@ -108,7 +112,7 @@ def tilt_adjoint(point: OperatingPoint, bearing: str) -> Adjoint:
 
 def deflection_slope(point: OperatingPoint, load: BearingLoad) -> FloatArray:
     """Differentiate a bearing's deflection by its position on its shaft at the equilibrium's motions, shape (5,)."""
-    return _slope(point.shaft(load.mounted.rotor), load) - _seat_slope(point, load, point.housing)
+    return _deflection_slope(point, load, point.shaft, point.housing)
 
 
 def _face_gradients(pair: PairLoad) -> FloatArray:
@@ -135,31 +139,75 @@ def _face_gradients(pair: PairLoad) -> FloatArray:
     ).T
 
 
-def _slope(shaft: ShaftDeflection, load: BearingLoad) -> FloatArray:
-    """Differentiate a shaft's motions at a bearing along z, as the mean of its two sides, shape (5,)."""
-    at, step = load.mounted.bearing.at, _SHAFT_STEP * shaft.part.shaft.length
-    ways = [way for way in (1.0, -1.0) if 0.0 <= at + 2.0 * way * step <= shaft.part.shaft.length]
+def _deflection_slope(
+    point: OperatingPoint,
+    load: BearingLoad,
+    shaft_of: Callable[[str], ShaftDeflection],
+    housing: FloatArray | None,
+) -> FloatArray:
+    """Differentiate a bearing's deflection by its position on its shaft in a field of the static machine, shape (5,).
+
+    Parameters
+    ----------
+    point : OperatingPoint
+    load : BearingLoad
+    shaft_of : callable
+        Motion of the shaft of a name in the field.
+    housing : ndarray, shape (h,), or None
+        The field by the housing's coordinates.
+    """
+    shaft, at = shaft_of(load.mounted.rotor), load.mounted.bearing.at
+    own = _section_slope(shaft, at)[:5]
+    holder = point.shaft_around(load)
+    if holder is not None:
+        along = _section_slope(shaft_of(holder), shaft.part.start + at - point.shaft(holder).part.start)
+        arm = np.subtract(shaft.part.axis, point.shaft(holder).part.axis)
+        return own - seat_in_section(along, arm, 0.0)
+    if housing is None:
+        return own
+    rows = point.tangent.bearings[load.name][point.tangent.housing]
+    return own - rigid_slope(-rows.T @ housing)
+
+
+def _section_slope(shaft: ShaftDeflection, at: float) -> FloatArray:
+    """Differentiate the motions of a shaft's sections along z at a distance from its left end [m], shape (6,)."""
+
+    def motions(places: Sequence[float]) -> FloatArray:
+        return shaft.motions(places).T
+
+    return section_slope(motions, at, shaft.part.shaft.length)
+
+
+def section_slope(motions: Callable[[Sequence[float]], FloatArray], at: float, length: float) -> FloatArray:
+    """Differentiate the motions of a shaft's sections along z, as the mean of both sides; shape (6, ...).
+
+    Beyond an end of the shaft there is no strain: what is held there moves as one body with the end.
+
+    Parameters
+    ----------
+    motions : callable
+        Motions along and about x, y, z of sections at positions from the left end [m], shape (m, 6, ...) for m of them.
+    at : float
+        Position from the left end [m], on the shaft or beyond its ends.
+    length : float
+        Length of the shaft [m].
+    """
+    step, end = _SHAFT_STEP * length, min(max(at, 0.0), length)
+    # Rounding may put a place at an end beside it.
+    is_on_shaft = abs(at - end) <= step
+    ways = [way for way in (1.0, -1.0) if is_on_shaft and 0.0 <= end + 2.0 * way * step <= length]
     # All places at once: to find the motions of one takes nearly as long.
-    places = [at, *(at + way * step * part for way in ways for part in (1.0, 2.0))]
-    middle, *beside = shaft.motions(places)[:5].T
+    middle, *beside = motions([end, *(end + way * step * part for way in ways for part in (1.0, 2.0))])
     sides = [
         (4.0 * near - far - 3.0 * middle) / (2.0 * way * step)
         for way, near, far in zip(ways, beside[::2], beside[1::2], strict=True)
     ]
-    # Beyond the shaft's end there is no strain.
     sides += [rigid_slope(middle)] * (2 - len(ways))
     return np.asarray(0.5 * (sides[0] + sides[1]))
 
 
-def _seat_slope(point: OperatingPoint, load: BearingLoad, coordinates: FloatArray | None) -> FloatArray:
-    """Differentiate a seat's rigid motion along z, by the housing's coordinates, shape (5,)."""
-    if coordinates is None:
-        return np.zeros(5)
-    rows = point.tangent.bearings[load.name][point.tangent.housing]
-    return rigid_slope(-rows.T @ coordinates)
-
-
 def rigid_slope(motions: FloatArray) -> FloatArray:
-    """Differentiate the motions of a rigid body along z by its rotations about x and y, shape (5, ...)."""
-    still = np.zeros_like(motions[0])
-    return np.array([motions[4], -motions[3], still, still, still])
+    """Differentiate the motions of a rigid body along z by its rotations about x and y, shape as the motions'."""
+    slope = np.zeros_like(motions)
+    slope[0], slope[1] = motions[4], -motions[3]
+    return slope

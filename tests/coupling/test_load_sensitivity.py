@@ -1,20 +1,26 @@
 """Gradients of the operating point by adjoints, against central differences of equilibria that are solved anew."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
-from own_statics import one_stage
+from own_statics import FULL, STEEL, TEETH, linear_bearing, one_stage, toothed
+from planetary_machines import set_parts
 
-from gearwhine.coupling import Machine, MountedBearing, machine_description
+from gearwhine.coupling import CouplingError, Machine, MountedBearing, Shaft, ShaftGear, machine_description
+from gearwhine.coupling.gears import ConstantStiffness
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.linear.mesh_harmonics import Response
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
 from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
-from gearwhine.rotors import Pedestal
+from gearwhine.rotors import Pedestal, Rotor, Segment
 from gearwhine.rotors.rolling_bearings import BallRow, paired
 
 FloatArray = npt.NDArray[np.float64]
@@ -46,32 +52,75 @@ MACHINES = {
 }
 
 
-def in_housing() -> Machine:
-    """The bearings in seats of an elastic body, whose seats turn in its modes, each bearing beside its seat."""
-    machine = one_stage()
-    motions = np.random.default_rng(3).normal(size=(len(machine.bearings), 8, 6)) * np.repeat([0.05, 0.6], 3)
-    names = [one.bearing.name for one in machine.bearings]
-    starts = [machine.shaft(one.rotor).start for one in machine.bearings]
-    seat_z = [start + one.bearing.at + 4e-3 for start, one in zip(starts, machine.bearings, strict=True)]
+def in_housing(machine: Machine, sensors: Sequence[str] = ()) -> Machine:
+    """The bearings on the ground in seats of an elastic body, whose seats turn in its modes, each beside its seat."""
+    held = [one for one in machine.bearings if machine.shaft_around(one) is None]
+    rng = np.random.default_rng(3)
+    motions = rng.normal(size=(len(held), 8, 6)) * np.repeat([0.05, 0.6], 3)
+    names = [one.bearing.name for one in held]
+    seat_z = [machine.shaft(one.rotor).start + one.bearing.at + 4e-3 for one in held]
     stiffness = np.diag((2.0 * np.pi * np.linspace(300.0, 1500.0, 8)) ** 2)
     box = HousingComponent(
         "box",
         ("housing",) * 8,
         stiffness,
-        np.zeros((8, 8)),
+        0.02 * np.sqrt(stiffness),
         np.zeros((8, 8)),
         seats=dict(zip(names, motions, strict=True)),
         seat_z=dict(zip(names, seat_z, strict=True)),
-        sensors={},
+        sensors={name: rng.normal(size=8) for name in sensors},
         participation=np.zeros((8, 6)),
     )
-    return one_stage(
-        bearings=[replace(one, seat=name) for one, name in zip(machine.bearings, names, strict=True)], housing=box
-    )
+    seated = [replace(one, seat=one.bearing.name) if one in held else one for one in machine.bearings]
+    return replace(machine, bearings=seated, housing=box)
+
+
+def on_an_inner_shaft(hand: float = 1.0, **changes: Any) -> Machine:
+    """The wheel's shaft is a sleeve, whose bearings sit on a shaft inside it, which a second pair drives."""
+    machine = one_stage(hand)
+    axis = machine.shaft("out").axis
+    shafts = [
+        machine.shaft("in"),
+        Shaft(Rotor("out", [Segment(0.03, 0.04, 0.026, STEEL), Segment(0.05, 0.045, 0.026, STEEL)]), axis, -0.05),
+        Shaft(Rotor("inner", [Segment(0.08, 0.02, 0.0, STEEL), Segment(0.17, 0.024, 0.0, STEEL)]), axis, -0.13),
+    ]
+    ends = [("out", 0.01, "inner"), ("out", 0.07, "inner"), ("inner", 0.01, None), ("inner", 0.24, None)]
+    parts = {
+        "shafts": shafts,
+        "bearings": [
+            *(one for one in machine.bearings if one.rotor == "in"),
+            *(MountedBearing(linear_bearing(f"{shaft} {at}", at, FULL), shaft, seat) for shaft, at, seat in ends),
+        ],
+        "gears": [
+            machine.gears[0],
+            ShaftGear(toothed("wheel", TEETH[1], -hand, bore=0.045), "out", 0.04),
+            ShaftGear(toothed("second pinion", TEETH[0], -hand), "in", 0.14),
+            ShaftGear(toothed("second wheel", TEETH[1], hand), "inner", 0.19),
+        ],
+        "gear_pairs": [*machine.gear_pairs, GearPair("second pinion", "second wheel", ConstantStiffness(4e8))],
+    }
+    return one_stage(hand, **parts | changes)
+
+
+def on_a_carrier() -> Machine:
+    """A set whose planets reach over their carrier, with bearings within its length and beyond its end.
+
+    No two of them share a section, where the derivative by the place of one would have a jump.
+    """
+    parts = set_parts(count=2)
+    planets = ("p 1", "p 2")
+    shafts = []
+    for one in parts["shafts"]:
+        reaching = replace(one.rotor, segments=[replace(one.rotor.segments[0], length=0.16)])
+        at_carrier = replace(one, start=0.06) if one.name == "c" else one
+        shafts.append(replace(one, rotor=reaching) if one.name in planets else at_carrier)
+    places = {one.name: (0.01, 0.05) for one in shafts} | {"p 1": (0.08, 0.1, 0.15), "p 2": (0.085, 0.105, 0.15)}
+    held = [MountedBearing(linear_bearing(f"{on} {at}", at, FULL), on, None) for on in places for at in places[on]]
+    return Machine(**parts | {"shafts": shafts, "bearings": held})
 
 
 def outcomes(point: OperatingPoint, bearing: str) -> FloatArray:
-    (pair,) = point.pairs
+    pair = point.pairs[0]
     return np.array([pair.misalignment, pair.k_h_beta, np.ptp(pair.transmission_error), point.bearing(bearing).tilt])
 
 
@@ -104,11 +153,16 @@ def scaled(machine: Machine, number: int, size: float) -> OperatingPoint:
         return replace(machine, gravity=GRAVITY).operating_point()
 
 
-def moved(machine: Machine, number: int, size: float) -> OperatingPoint:
+def with_moved(machine: Machine, number: int, size: float) -> Machine:
+    """The machine with a bearing that sits elsewhere on its shaft."""
     held = list(machine.bearings)
     own = held[number]
     held[number] = replace(own, bearing=replace(own.bearing, at=own.bearing.at + size))
-    return replace(machine, bearings=held, gravity=GRAVITY).operating_point()
+    return replace(machine, bearings=held)
+
+
+def moved(machine: Machine, number: int, size: float) -> OperatingPoint:
+    return replace(with_moved(machine, number, size), gravity=GRAVITY).operating_point()
 
 
 def difference(machine: Machine, number: int, change: Callable[..., OperatingPoint], step: float) -> FloatArray:
@@ -121,7 +175,7 @@ def difference(machine: Machine, number: int, change: Callable[..., OperatingPoi
 
 def test_position_of_a_bearing_in_a_housing_whose_seats_tilt() -> None:
     """The bearing goes along its seat, which is out of line with its shaft by more than the shaft's own slope."""
-    machine = in_housing()
+    machine = in_housing(one_stage())
     point = replace(machine, gravity=GRAVITY).operating_point()
     (pair,) = pair_adjoints(point)
     for number in (0, len(machine.bearings) - 1):
@@ -129,6 +183,59 @@ def test_position_of_a_bearing_in_a_housing_whose_seats_tilt() -> None:
         either = [outcomes(moved(machine, number, size), name)[:2] for size in (5e-5, -5e-5)]
         own = [pair[outcome].by_bearing_position(name) for outcome in OUTCOMES[:2]]
         np.testing.assert_allclose(own, (either[0] - either[1]) / 1e-4, rtol=2e-4)
+
+
+HELD_BY_SHAFTS = [
+    (on_an_inner_shaft, "out 0.01"),
+    (on_a_carrier, "p 1 0.08"),
+    (on_a_carrier, "p 2 0.105"),
+    (on_a_carrier, "p 1 0.15"),
+]
+
+
+@pytest.mark.parametrize(("made", "name"), HELD_BY_SHAFTS)
+def test_position_of_a_bearing_that_another_shaft_holds(made: Callable[[], Machine], name: str) -> None:
+    """The seat moves with the section of an inner shaft or a carrier that bends and twists, or of the carrier's end."""
+    machine = made()
+    pair = pair_adjoints(replace(machine, gravity=GRAVITY).operating_point())[0]
+    number = [one.bearing.name for one in machine.bearings].index(name)
+    expected = difference(machine, number, moved, 2.5e-5)[:2]
+    own = [pair[outcome].by_bearing_position(name) for outcome in OUTCOMES[:2]]
+    np.testing.assert_allclose(own, expected, rtol=1e-6)
+
+
+def test_lines_by_the_position_of_a_bearing_that_another_shaft_holds() -> None:
+    """A motion under a load on the pinion's shaft, against the machine assembled anew on the same modes."""
+    described = in_housing(on_an_inner_shaft(0.0), ["roof"])
+    point = described.operating_point()
+    about = described.at_operating_point(point)
+    pairs, components = about.loaded_pairs(), about.rotor_components()
+    number = [one.bearing.name for one in about.bearings].index("out 0.01")
+
+    def model(size: float = 0.0) -> LineModel:
+        return LineModel(with_moved(about, number, size).assemble(pairs, components), point, pairs, (True, True))
+
+    standing, step = model(), 1e-7
+    load = standing.machine.rows("in", components[0].rotation(0.07))
+    output = SensorAmplitude("roof", standing.machine.sensor_rows["roof"], standing.housing)
+
+    def response(of: LineModel, w: float) -> Response:
+        return Response(w, (), np.asarray(np.linalg.solve(of.dynamic_stiffness(w), load)))
+
+    for w in 2.0 * np.pi * np.array([700.0, 1900.0, 3300.0]):
+        own = standing.by_bearing_position(standing.line(output, response(standing, w)), "out 0.01")
+        after, before = (output.value(w, response(model(size), w).motion) for size in (step, -step))
+        assert own == pytest.approx((after - before) / (2.0 * step), rel=1e-5)
+
+
+def test_lines_of_a_machine_whose_planets_turn_have_no_gradient() -> None:
+    machine = in_housing(on_a_carrier(), ["roof"])
+    point = machine.operating_point()
+    model = LineModel(machine.assembled, point, (), (False,) * 4)
+    output = SensorAmplitude("roof", model.machine.sensor_rows["roof"], model.housing)
+    still = Response(100.0, (), np.zeros(model.machine.system.size, dtype=np.complex128))
+    with pytest.raises(CouplingError, match="lines of a machine whose planets turn with their carrier"):
+        model.line(output, still)
 
 
 @pytest.mark.slow

@@ -11,20 +11,24 @@ from scipy.linalg import expm
 from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
+    CouplingError,
     Machine,
     TransientOutputs,
     TransientSettings,
     simulate,
 )
+from gearwhine.coupling.analyses import modes_and_responses
 from gearwhine.coupling.assembly import assemble_machine
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.frequency_response import response
 from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.machine.base_motion import BaseHistory, BaseMotion
 from gearwhine.coupling.machine.components import RotorComponent, rotor_component
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
 from gearwhine.coupling.machine.coordinates import CoordinateLoads
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.frames import Frames, in_frame, orders_and_quarter_turn, stiffness_in_frame
+from gearwhine.coupling.machine.loads import TorqueOverTime
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.statics.mean_mesh import mean_contact
@@ -172,3 +176,27 @@ def test_a_run_up_does_not_depend_on_the_frame_of_the_coordinates(frame: float) 
     assert np.abs(found - still.displacement).max() < 2e-4 * size.max()
     assert moving.energy.error < 1e-4
     assert still.energy.error < 1e-4
+
+
+def test_responses_with_directions_that_turn_are_no_superposition_of_modes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modes_and_responses, "resonance_grid", lambda *_: np.array([2e3, 5e3]))
+    turning, constant = (_assembled(_described(2, standing, 1e-5), 300.0) for standing in (("sun",), ()))
+    assert modes_and_responses.solve_system(turning).superposition_error is None
+    found = modes_and_responses.solve_system(constant).superposition_error
+    assert found is not None
+    assert 0.0 < found < 1e-6
+
+
+def test_a_base_that_moves_over_time_under_a_turning_carrier_is_refused() -> None:
+    """Its inertia loads would turn in the carrier's frame; harmonics are turned, as their frequencies are shifted."""
+    parts = plane_set(equal_angles(3), pressure_angle=PRESSURE_ANGLE, with_ring=True)
+    shaken = np.zeros((2, 6))
+    shaken[:, 1] = 3.0
+    over_time = BaseMotion((BaseHistory(np.array([0.0, 1.0]), shaken),))
+    machine = Machine(**parts, speed=300.0, torque=200.0)
+    with pytest.raises(CouplingError, match=r"over time moves 'sun', .* expected a base motion given by harmonics"):
+        _ = replace(machine, base=over_time).assembled
+    # Torques are the same in any frame, and the frames of a machine at rest are the ground's.
+    twisted = TorqueOverTime(np.array([0.0, 1.0]), np.array([0.0, 5.0]))
+    assert replace(machine, torque_over_time=twisted).assembled.system.timed_loads
+    assert replace(machine, base=over_time, speed=0.0, torque=0.0).assembled.system.timed_loads

@@ -4,12 +4,18 @@ import json
 from dataclasses import replace
 
 import pytest
+from planetary_machines import AXIS as SET_AXIS
+from planetary_machines import set_parts
 
 import gearwhine as gw
 from gearwhine.case.box import FACES
 from gearwhine.coupling import CouplingError
+from gearwhine.coupling.load_analysis.line_model import turning_carriers
+from gearwhine.coupling.load_analysis.ranking import rank_parts
 from gearwhine.from_case.parametric_housing import geometry_of
+from gearwhine.meshes import Bore, BoxGeometry, WallThickness
 
+AXIS = (SET_AXIS[0], 0.075)
 RANKED = ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "lines_without")
 
 
@@ -25,6 +31,28 @@ def test_bearings_of_a_machine_are_ranked_as_in_the_case() -> None:
     ]
     with pytest.raises(CouplingError, match="line 'roof': expected one of the highest lines: none"):
         gw.Study(study.machine).operating_point(line="roof")
+
+
+def test_walls_around_planets_are_ranked_without_lines_and_the_ranking_says_why() -> None:
+    box = BoxGeometry((0.2, 0.15, 0.1), WallThickness.uniform(0.02), (Bore("bore", (*AXIS, 0.05), 0.05),))
+    floor = gw.Support("floor", surface="bottom", fixed=(True, True, True))
+    iron, roof = gw.Material(130e9, 0.26, 7200.0), gw.Sensor("roof", (0.0, 0.15, 0.0))
+    housing = gw.Housing.from_box(box, 0.06, iron, fixtures=[floor], sensors=[roof]).modes(count=3)
+
+    def machine(held: str) -> gw.Machine:
+        parts = set_parts(count=2, held=held)
+        above = [replace(one, axis=(one.axis[0], one.axis[1] + AXIS[1] - SET_AXIS[1])) for one in parts["shafts"]]
+        seats = {"s 0.05": "bore", "p 0.01 1": "c"}
+        seated = [replace(one, seat=seats.get(one.bearing.name)) for one in parts["bearings"]]
+        return gw.Machine(**parts | {"shafts": above, "bearings": seated, "housing": housing})
+
+    turning = machine("r")
+    found = rank_parts(turning, turning.operating_point())
+    assert found.note == "lines of sensors and sound are not ranked, as the carrier 'c' turns"
+    assert found.lines is None
+    assert {one.kind for one in found.influences} == {"housing", "bearing stiffness", "bearing position"}
+    assert turning_carriers(turning) == ("c",)
+    assert turning_carriers(machine("c")) == ()
 
 
 @pytest.mark.slow
