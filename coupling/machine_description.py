@@ -340,6 +340,11 @@ class Machine:
         around = self.shaft_around(mounted)
         return self.speeds[mounted.rotor] - (0.0 if around is None else self.speeds[around])
 
+    def ratio_on_seats(self, name: str) -> float:
+        """Speed of a shaft over that of the first driver, of a planet its speed relative to the carrier."""
+        ratios, carrier = self.train.ratios, self.shaft(name).carrier
+        return float(ratios.get(name, Fraction(0)) - (0 if carrier is None else ratios[carrier]))
+
     @property
     def _torque_springs(self) -> list[TorqueSupport]:
         """Torque supports with a stiffness; behind a rigid one the shaft swings at twice the limit of its modes."""

@@ -169,12 +169,11 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     warnings += fit_warnings(parts, case.housing, None if mesh is None else mesh.mesh)
     if machine is not None:
         warnings += operation_warnings(machine)
-    warnings += centrifugal_warnings(
-        (bearing.name, bearing.rolling, parts.speeds[location.shaft])
-        for location in parts.axial_locations
-        for bearing in location.bearings
-        if bearing.rolling is not None and location.shaft in parts.speeds
-    )
+        warnings += centrifugal_warnings(
+            (mounted.bearing.name, mounted.rolling, machine.bearing_speed(mounted))
+            for mounted in machine.bearings
+            if mounted.rolling is not None
+        )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     sets = tuple(checked_sets(parts))
