@@ -31,13 +31,14 @@ from gearwhine.coupling.description.gear_train import (
     GearedShafts,
     GearTrain,
     GivenSpeed,
+    MeshStart,
     Output,
     carrying_flanks,
     drive_ratio,
     gear_train,
     geometry_on_axes,
     imbalances_of_shafts,
-    mesh_phases,
+    mesh_starts,
     require_balanced_outputs,
 )
 from gearwhine.coupling.description.parts import (
@@ -61,6 +62,7 @@ from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
 from gearwhine.coupling.gears.contact.face_slices import face_stations
 from gearwhine.coupling.gears.geometry.pair import turning_sense
+from gearwhine.coupling.gears.geometry.pitch_deviations import has_different_teeth
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
 from gearwhine.coupling.gears.stiffness.beam import PlaneState
 from gearwhine.coupling.gears.stiffness.models import rim_compliances
@@ -338,6 +340,11 @@ class Machine:
         around = self.shaft_around(mounted)
         return self.speeds[mounted.rotor] - (0.0 if around is None else self.speeds[around])
 
+    def ratio_on_seats(self, name: str) -> float:
+        """Speed of a shaft over that of the first driver, of a planet its speed relative to the carrier."""
+        ratios, carrier = self.train.ratios, self.shaft(name).carrier
+        return float(ratios.get(name, Fraction(0)) - (0 if carrier is None else ratios[carrier]))
+
     @property
     def _torque_springs(self) -> list[TorqueSupport]:
         """Torque supports with a stiffness; behind a rigid one the shaft swings at twice the limit of its modes."""
@@ -361,7 +368,20 @@ class Machine:
 
     @cached_property
     def pair_geometries(self) -> tuple[GearPairGeometry, ...]:
-        """Both gears of every pair in mesh, at the distance of their shafts."""
+        """Both gears of every pair in mesh, at the distance of their shafts, with the numbers of teeth that differ."""
+        geometries = self._geometries
+        if not any(has_different_teeth(mounted.gear) for mounted in self.gears):
+            return geometries
+        return tuple(
+            replace(geometry, numbering=start.numbering)
+            if has_different_teeth(geometry.driver) or has_different_teeth(geometry.driven)
+            else geometry
+            for geometry, start in zip(geometries, self._mesh_starts, strict=True)
+        )
+
+    @cached_property
+    def _geometries(self) -> tuple[GearPairGeometry, ...]:
+        """Geometry of every pair, without the numbers of teeth."""
         geometries = []
         for pair in self.gear_pairs:
             driver, driven = self._gears_of(pair)
@@ -380,14 +400,19 @@ class Machine:
         CouplingError
             Where gears in a loop cannot be assembled.
         """
+        return tuple(start.phase for start in self._mesh_starts)
+
+    @cached_property
+    def _mesh_starts(self) -> tuple[MeshStart, ...]:
+        """Phase of each pair at t = 0, and numbers of its teeth."""
         lines = []
-        for (driver, driven), geometry in zip(map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True):
+        for (driver, driven), geometry in zip(map(self._gears_of, self.gear_pairs), self._geometries, strict=True):
             x, y = np.subtract(self.shaft(driven.shaft).axis, self.shaft(driver.shaft).axis)
             side = -1.0 if geometry.is_internal else 1.0
             lines.append(math.atan2(side * y, side * x))
         names = [(pair.driver, pair.driven) for pair in self.gear_pairs]
         drivers, drivens = [first for first, _ in names], [second for _, second in names]
-        return tuple(mesh_phases(drivers, drivens, self.pair_geometries, lines, self.turning_senses))
+        return tuple(mesh_starts(drivers, drivens, self._geometries, lines, self.turning_senses))
 
     @cached_property
     def constant_torques(self) -> tuple[Torque, ...]:

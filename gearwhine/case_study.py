@@ -463,7 +463,8 @@ class CaseStudy(Study):
         def ross_files(place: Path, *, pictures: bool) -> dict[str, Any]:
             return {"warnings": [warning("ross", remark) for remark in write_ross_files(place, solved)]}
 
-        result = rotors_result(solved, self.origin, assemblies)
+        carriers = {rotor.name: rotor.carrier for rotor in self.case.rotor if rotor.carrier is not None}
+        result = rotors_result(solved, self.origin, assemblies, carriers)
         return replace(result, _files=ross_files) if write_ross else result
 
     def gears(self, aims: "Sequence[ReliefAim]" = ()) -> "Result[tuple[PairAnalysis, ...]]":

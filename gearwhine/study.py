@@ -82,7 +82,8 @@ class Study(StudiedMachine):
 
             return [shaft_assembly(self.machine, one.rotor.name, one.bearings) for one in solved]
 
-        return rotors_result(solved, self.origin, assemblies)
+        carriers = {shaft.name: shaft.carrier for shaft in self.machine.shafts if shaft.carrier is not None}
+        return rotors_result(solved, self.origin, assemblies, carriers)
 
     def gears(self, aims: "Sequence[ReliefAim]" = ()) -> "Result[tuple[PairAnalysis, ...]]":
         """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief.

@@ -1,12 +1,13 @@
 """Shafts of a machine, each alone in its bearings on rigid seats."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.numerics.speed_ranges import campbell_speeds, response_speeds
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.analyses.solved_rotor import RotorSettings, SolvedRotor, solve_rotor, table_range
@@ -20,6 +21,8 @@ def solve_shafts(
     machine: Machine, speeds: Sequence[float] = (), progress: Progress = silent, **settings: Any
 ) -> tuple[SolvedRotor, ...]:
     """Solve every shaft of a machine alone, with its gears as discs, in its bearings on rigid seats.
+
+    A planet turns on pins that stand still, at its speed relative to the carrier.
 
     Parameters
     ----------
@@ -56,8 +59,8 @@ def shaft_settings(
     machine: Machine, name: str, bearings: Sequence[Bearing], speeds: Sequence[float] = ()
 ) -> RotorSettings:
     """Return the loads of a shaft of a machine, and the speeds of its analyses; see :func:`solve_shafts`."""
-    shaft, operation = machine.shaft(name), machine.speeds[name]
-    ratio = float(machine.train.ratios.get(name, 0.0))
+    shaft, ratio = machine.shaft(name), machine.ratio_on_seats(name)
+    operation = ratio * machine.speed
     whirl = tuple(ratio * speed for speed in speeds)
     diagram = whirl or campbell_speeds(operation, table_range(bearings))
     settings = RotorSettings(
@@ -70,6 +73,21 @@ def shaft_settings(
         bow=shaft.bow,
     )
     return settings if machine.gravity is None else replace(settings, gravity=machine.gravity)
+
+
+def planet_warnings(carriers: Mapping[str, str]) -> list[ResultWarning]:
+    """Warn of what a planet alone leaves out; ``carriers`` has the carrier of each."""
+    warnings = []
+    for carrier in dict.fromkeys(carriers.values()):
+        planets = [name for name, of in carriers.items() if of == carrier]
+        message = (
+            f"{', '.join(planets)}: {'each' if len(planets) > 1 else 'it is'} alone on a pin that stands still, as if "
+            f'carrier "{carrier}" did: speeds and critical speeds are those on the pin; the carrier\'s compliance, the '
+            "force of circling with it and Coriolis terms are left out, and of the carrier alone the planets; modes "
+            "of the machine have all of them (system)"
+        )
+        warnings.append(warning("planets alone", message, planets=planets, carrier=carrier))
+    return warnings
 
 
 def held_speeds(machine: Machine) -> tuple[float, float]:

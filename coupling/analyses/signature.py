@@ -10,6 +10,7 @@ from gearwhine.coupling import signals as signature
 from gearwhine.coupling.analyses.recording import Signals
 from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.linear.excitation_orders import in_carrier
 from gearwhine.coupling.signals.peaks import SpectralPeaks
 from gearwhine.coupling.signals.spectrum import Spectrum, Window, at_time_zero
 
@@ -125,7 +126,10 @@ class LineTable:
 
 @dataclass(frozen=True)
 class ShaftSidebands:
-    """Sidebands of a gear mesh by the rotation of a shaft, or of two of equal speed."""
+    """Sidebands of a gear mesh by the rotation of a shaft, or of two of equal speed.
+
+    Of a mesh on a turning carrier these are the gears' rotations relative to it, and its own.
+    """
 
     mesh: str
     shafts: tuple[str, ...]
@@ -401,10 +405,15 @@ def _sidebands(
             if n * contact.mesh_frequency <= solved.trusted_limit * (1 + 1e-9)
         ]
         together: dict[float, list[str]] = {}
-        for rotor in (mesh.driver.rotor, mesh.driven.rotor):
-            together.setdefault(round(abs(machine.speeds[rotor]) / _TWO_PI, 9), []).append(rotor)
+        frame = 0.0 if mesh.carrier is None else machine.speeds[mesh.carrier]
+        turns = {in_carrier(one.rotor, mesh, frame): machine.speeds[one.rotor] for one in (mesh.driver, mesh.driven)}
+        rates = {name: abs(speed - frame) / _TWO_PI for name, speed in turns.items()}
+        if frame != 0.0 and mesh.carrier is not None:
+            rates[mesh.carrier] = abs(frame) / _TWO_PI
+        for name, rate in rates.items():
+            together.setdefault(round(rate, 9), []).append(name)
         for shafts in together.values():
-            turning = abs(machine.speeds[shafts[0]]) / _TWO_PI
+            turning = rates[shafts[0]]
             if turning * length >= (1.0 if window == "uniform" else 2.0):
                 pairs = signature.sidebands(signal, interval, carriers, turning, window=window)
                 of_shafts.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))

@@ -17,14 +17,20 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import hypot
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from gearwhine.coupling.description.train_matrix import GearedShafts as GearedShafts
 from gearwhine.coupling.description.train_matrix import SpeedRows, connected_shafts, dependent_rows, least_flows
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
-from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, signed_distance, turning_sense
+from gearwhine.coupling.gears.geometry.pair import (
+    ToothNumbering,
+    mesh_frequency,
+    pair_label,
+    signed_distance,
+    turning_sense,
+)
 from gearwhine.coupling.gears.geometry.profile import meshing_rotations
 from gearwhine.coupling.machine.coordinates import trains
 from gearwhine.coupling.machine.loads import (
@@ -938,14 +944,30 @@ LARGEST_MISFIT = 1e-3
 """Largest misfit of teeth in a loop of gears that may come from rounding of the axes, over the pitch."""
 
 
-def mesh_phases(
+@dataclass(frozen=True)
+class MeshStart:
+    """A mesh at t = 0.
+
+    Attributes
+    ----------
+    phase : float
+        Phase [mesh periods].
+    numbering : tuple of ToothNumbering
+        Numbers of the driver's and of the driven teeth in the mesh.
+    """
+
+    phase: float
+    numbering: tuple[ToothNumbering, ToothNumbering]
+
+
+def mesh_starts(
     drivers: Sequence[str],
     drivens: Sequence[str],
     geometries: Sequence[GearPairGeometry],
     centre_lines: Sequence[float],
     senses: Sequence[int],
-) -> list[float]:
-    """Phase of each pair at t = 0 [mesh periods].
+) -> list[MeshStart]:
+    """Phase of each pair at t = 0, and the numbers of its teeth by those of the first pair of each gear.
 
     Parameters
     ----------
@@ -962,9 +984,9 @@ def mesh_phases(
     CouplingError
         Where a loop of gears cannot be assembled.
     """
-    angles: dict[str, float] = {}
+    placed: dict[str, _PlacedTeeth] = {}
     rows = list(zip(drivers, drivens, geometries, centre_lines, senses, strict=True))
-    phases = [0.0] * len(rows)
+    starts: dict[int, MeshStart] = {}
     for number in connected_order([row[:2] for row in rows]):
         driver, driven, pair, line, sense = rows[number]
         met = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
@@ -975,21 +997,47 @@ def mesh_phases(
         ]
         along = pair.flank_sense(sense)
         pitches = along * 2.0 * math.pi / pair.driver.teeth, -along * 2.0 * math.pi / pair.driven.teeth
-        if driver in angles:
-            phase = (angles[driver] - at_zero[0]) / pitches[0]
-        elif driven in angles:
-            phase = (angles[driven] - at_zero[1]) / pitches[1]
+        if driver in placed:
+            phase = (placed[driver].angle - at_zero[0]) / pitches[0]
+        elif driven in placed:
+            phase = (placed[driven].angle - at_zero[1]) / pitches[1]
         else:
             phase = 0.0
-        for gear, zero, pitch in zip((driver, driven), at_zero, pitches, strict=True):
+        numbering = []
+        members = zip((driver, driven), at_zero, pitches, (1, -1), strict=True)
+        for gear, zero, pitch, role in members:
+            # A driver touches with the flank ahead, a driven gear with the one behind.
+            side = role if pitch > 0.0 else -role
             stands = zero + phase * pitch
+            own = placed.setdefault(gear, _PlacedTeeth(stands, pitch, side))
             # A whole number of pitches is the same place.
-            misfit = (angles.setdefault(gear, stands) - stands) / pitch
+            misfit = (own.angle - stands) / own.pitch
             if abs(misfit - round(misfit)) > LARGEST_MISFIT:
                 raise CouplingError(
                     f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "
                     f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "
                     "axis, or change a number of teeth"
                 )
-        phases[number] = phase
-    return phases
+            step: Literal[1, -1] = 1 if pitch * own.pitch > 0.0 else -1
+            numbering.append(ToothNumbering(round(misfit), step, side == own.side))
+        starts[number] = MeshStart(phase, (numbering[0], numbering[1]))
+    return [starts[number] for number in range(len(rows))]
+
+
+class _PlacedTeeth(NamedTuple):
+    """Angle of a gear's tooth 0 at t = 0 [rad], the turn by which the next one takes its place, its first flank."""
+
+    angle: float
+    pitch: float
+    side: int
+
+
+def mesh_phases(
+    drivers: Sequence[str],
+    drivens: Sequence[str],
+    geometries: Sequence[GearPairGeometry],
+    centre_lines: Sequence[float],
+    senses: Sequence[int],
+) -> list[float]:
+    """Phase of each pair at t = 0 [mesh periods]; see :func:`mesh_starts`."""
+    return [start.phase for start in mesh_starts(drivers, drivens, geometries, centre_lines, senses)]

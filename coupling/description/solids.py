@@ -286,9 +286,21 @@ def _ring_fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]
 def bearing_findings(
     name: str, rotor: Rotor, at: float, rolling: RollingBearing | None, seat_diameter: float | None
 ) -> Iterator[Finding]:
-    """Yield a shaft that does not go through its bearing or the bore that this sits in."""
+    """Yield a shaft that does not go through its bearing or the bore that this sits in, or is not around it."""
     part = ("bearing", name)
-    if rolling is not None:
+    if rolling is not None and rolling.rows[0].outer_turns:
+        left, right, _, outer = rolling.envelope
+        widest = max(
+            (2.0 * inner for a, b, inner, _ in _shaft_lengths(rotor) if a < at + right and b > at + left), default=0.0
+        )
+        if widest <= 2.0 * outer + _SLACK:
+            expected = (
+                f"rolling elements within the bore of the shaft, {in_mm(widest)} wide there, as its outer ring turns; "
+                f"they reach to {in_mm(2.0 * outer)}"
+            )
+            within = widest <= max(row.pitch_diameter for row in rolling.rows) + _SLACK
+            yield Finding(part, "rolling", None, expected, "error" if within else "warning")
+    elif rolling is not None:
         left, right, inner, _ = rolling.envelope
         thinnest = min(
             (2.0 * outer for a, b, _, outer in _shaft_lengths(rotor) if a < at + right and b > at + left), default=0.0

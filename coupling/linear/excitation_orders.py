@@ -1,4 +1,10 @@
-"""Excitation orders of a machine: shafts, mesh harmonics, sidebands, passing of rolling elements, harmonic loads."""
+"""Excitation orders of a machine: shafts, mesh harmonics, sidebands, passing of rolling elements, harmonic loads.
+
+What a gear in a planetary set does not have alike on all teeth returns with its turn relative to the carrier, at
+f_s - f_c of the sun: a tooth fault meets the N planets N times in it, and the unequal harmonics cancel in a sum over
+equal planets only. A sensor, which the meshes pass by, has these modulated by the carrier, at
+m f_mesh ± k (f_s - f_c) ± n f_c (Feng & Zuo, J. Sound Vib. 331 (2012) 4919, for faults of sun, planet and ring).
+"""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,6 +16,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.base_motion import BaseHarmonic
 from gearwhine.coupling.machine.driving_frequencies import element_passes as passing_frequencies
 from gearwhine.coupling.machine.loads import TorqueRipple
+from gearwhine.coupling.machine.mounted_parts import GearMesh
 
 _TWO_PI = 2.0 * math.pi
 _STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line
@@ -28,11 +35,14 @@ class ExcitationLine:
         ``shaft``, ``mesh``, ``sideband``, ``bearing`` or ``load``.
     order : float
         Frequency over the speed of the leading rotor, positive.
+    steps : int
+        Number of a sideband, of one by two causes the sum of both numbers; 0 of other lines.
     """
 
     name: str
     kind: Literal["shaft", "mesh", "sideband", "bearing", "load"]
     order: float
+    steps: int = 0
 
 
 @dataclass(frozen=True)
@@ -71,19 +81,20 @@ def excitation_lines(
     ----------
     machine : CoupledMachine
     shaft_orders : sequence of float
-        Multiples of each shaft's speed: 1 is its unbalance.
+        Multiples of each shaft's speed: 1 is its unbalance. Where ``excited`` names them, also multiples of its speed
+        relative to a carrier.
     mesh_harmonics : sequence of int
         Multiples of each mesh frequency.
     sidebands : int
         Number of sidebands on either side of each mesh harmonic, spaced by the speed of either gear's shaft, or by the
         frequency of a load where loads count. One below zero is folded to its size, one at zero left out.
     element_passes : sequence of int
-        Multiples of the passing of rolling elements over the outer raceway, of bearings whose law follows them.
+        Multiples of the passing of rolling elements over the ring at rest, of bearings whose law follows them.
     load_multiples : sequence of int
         Multiples of harmonic torques and of harmonic motions of the base, whose frequency may be constant.
     excited : mapping of str to ExcitedOrders, optional
-        Rotors that something excites, see :func:`excited_shaft_orders`: only their orders and sidebands are listed. By
-        default those of all rotors are.
+        Rotations that something excites, see :func:`excited_shaft_orders`: only their orders and sidebands are listed,
+        those by a gear and by its carrier together among them. By default those of each rotor alone are.
 
     Raises
     ------
@@ -94,7 +105,8 @@ def excitation_lines(
     leading = abs(speeds[machine.leading_rotor])
     if leading == 0.0:
         raise CouplingError(f"rotor {machine.leading_rotor!r} stands still; expected a machine that turns")
-    ratios = {name: abs(speed) / leading for name, speed in speeds.items() if speed != 0.0}
+    turning = speeds if excited is None else rotations(machine)
+    ratios = {name: abs(speed) / leading for name, speed in turning.items() if speed != 0.0}
     together: dict[float, list[str]] = {}
     for name, ratio in ratios.items():
         together.setdefault(round(ratio, 12), []).append(name)
@@ -117,24 +129,26 @@ def excitation_lines(
         name = mesh.name
         # A modulation of the mesh mixes with itself: every number of sidebands comes from the first order alone.
         shafts = {
-            round(ratio, 12): (rotor if frame == 0.0 else f"{rotor} in {mesh.carrier}", ratio)
+            round(ratio, 12): (in_carrier(rotor, mesh, frame), ratio)
             for rotor, ratio in turns.items()
-            if ratio > 0.0 and (excited is None or rotor in excited)
+            if ratio > 0.0 and (excited is None or rotor in excited or in_carrier(rotor, mesh, frame) in excited)
         }
         modulations = [*shafts.values(), *loads]
+        steps = [[(source, ratio, number)] for source, ratio in modulations for number in _signed(sidebands)]
         if frame != 0.0 and mesh.carrier is not None:
             # A mesh that circles modulates what stands still, whatever the quality of its teeth.
-            modulations.insert(0, (mesh.carrier, abs(frame) / leading))
+            passing = [(mesh.carrier, abs(frame) / leading, number) for number in _signed(sidebands)]
+            both = [] if excited is None else [[*of_gear, by] for of_gear in steps for by in passing]
+            steps = [*([by] for by in passing), *steps, *(of for of in both if _count(of) <= sidebands)]
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
-            for source, ratio in modulations:
-                for number in range(1, sidebands + 1):
-                    for sign, word in ((-1, "-"), (1, "+")):
-                        # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
-                        order = abs(harmonic * teeth + sign * number * ratio)
-                        text = f"{harmonic}× {name} {word} {number}× {source}"
-                        if order > _STANDSTILL * teeth:
-                            lines.append(ExcitationLine(text, "sideband", order))
+            for parts in steps:
+                # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
+                order = abs(harmonic * teeth + sum(number * ratio for _, ratio, number in parts))
+                if order > _STANDSTILL * teeth:
+                    words = [f"{'-' if number < 0 else '+'} {abs(number)}× {source}" for source, _, number in parts]
+                    text = " ".join([f"{harmonic}× {name}", *words])
+                    lines.append(ExcitationLine(text, "sideband", order, _count(parts)))
     lines += [
         ExcitationLine(f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading)
         for name, frequencies in passing_frequencies(machine.system).items()
@@ -144,11 +158,39 @@ def excitation_lines(
     return tuple(lines)
 
 
+_Steps = Sequence[tuple[str, float, int]]
+"""Causes of a sideband: name, order of its frequency, signed number of the sideband."""
+
+
+def _signed(sidebands: int) -> list[int]:
+    return [sign * number for number in range(1, sidebands + 1) for sign in (-1, 1)]
+
+
+def _count(steps: _Steps) -> int:
+    return sum(abs(number) for _, _, number in steps)
+
+
+def in_carrier(rotor: str, mesh: GearMesh, frame: float) -> str:
+    """Name of a rotor's rotation as a mesh sees it, whose frame turns with the mesh's carrier or not at all."""
+    return rotor if frame == 0.0 else f"{rotor} in {mesh.carrier}"
+
+
+def rotations(machine: CoupledMachine) -> dict[str, float]:
+    """Signed speed of every rotor, and of those in mesh on a turning carrier relative to it [rad/s]."""
+    found = dict(machine.speeds)
+    for mesh in machine.meshes:
+        frame = 0.0 if mesh.carrier is None else machine.speeds[mesh.carrier]
+        for mounted in (mesh.driver, mesh.driven):
+            found.setdefault(in_carrier(mounted.rotor, mesh, frame), machine.speeds[mounted.rotor] - frame)
+    return found
+
+
 def excited_shaft_orders(machine: CoupledMachine) -> dict[str, ExcitedOrders]:
-    """Orders of the rotors that their own imperfections and loads excite; rotors without any are left out.
+    """Orders of the rotations that imperfections and loads of rotors excite; rotations without any are left out.
 
     Unbalance, a bow and the runout of a gear repeat once a turn, and a torque ripple by its order. Teeth that differ,
-    by pitch deviations or faults, have every order, and so has any of these where a bearing is nonlinear.
+    by pitch deviations or faults, have every order, and so has any of these where a bearing is nonlinear. What a gear
+    has repeats with its turn relative to the carrier of its mesh, see :func:`rotations`.
     """
     loads = machine.loads
     found: dict[str, set[float]] = {}
@@ -163,12 +205,14 @@ def excited_shaft_orders(machine: CoupledMachine) -> dict[str, ExcitedOrders]:
             found.setdefault(torque.rotor, set()).add(torque.order)
     every = set()
     for mesh in machine.meshes:
+        frame = 0.0 if mesh.carrier is None else machine.speeds[mesh.carrier]
         for mounted, gear in ((mesh.driver, mesh.geometry.driver), (mesh.driven, mesh.geometry.driven)):
+            rotation = in_carrier(mounted.rotor, mesh, frame)
             if gear.eccentricity != 0.0:
-                found.setdefault(mounted.rotor, set()).add(1.0)
+                found.setdefault(rotation, set()).add(1.0)
             if any(gear.pitch_deviations) or gear.faults:
-                found.setdefault(mounted.rotor, set()).add(1.0)
-                every.add(mounted.rotor)
+                found.setdefault(rotation, set()).add(1.0)
+                every.add(rotation)
     if machine.system.nonlinear:
         every.update(found)
     return {rotor: ExcitedOrders(frozenset(orders), rotor in every) for rotor, orders in found.items()}

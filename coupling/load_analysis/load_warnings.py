@@ -158,7 +158,7 @@ def _speed_warnings(solved: SolvedLoad) -> list[ResultWarning]:
         (bearing.load.mounted, bearing.load.rolling) for bearing in solved.bearings if bearing.load.rolling is not None
     ]
     return centrifugal_warnings(
-        [(mounted.bearing.name, state.bearing, solved.machine.speeds[mounted.rotor]) for mounted, state in rolling],
+        [(mounted.bearing.name, state.bearing, solved.machine.bearing_speed(mounted)) for mounted, state in rolling],
         {mounted.bearing.name: max(float(row.outer_load.max()) for row in state.rows) for mounted, state in rolling},
     )
 
@@ -172,7 +172,7 @@ def _stiffness_warnings(solved: SolvedLoad, warned: set[str]) -> Iterator[Result
         mounted, name = bearing.load.mounted, bearing.load.name
         if mounted.design_load is None or name in warned or mounted.needs_load:
             continue
-        assumed = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
+        assumed = np.diag(mounted.bearing.at_speed(solved.machine.bearing_speed(mounted)).spatial_stiffness)[:3]
         tangent = np.diag(bearing.load.stiffness)[:3]
         apart = np.abs(assumed - tangent) > _UNWARNED_DIFFERENCE * np.maximum(assumed, tangent)
         # A direction in which the bearing is soft beside the others holds nothing there.

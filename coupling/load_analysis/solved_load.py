@@ -231,7 +231,7 @@ def solve_load(
     bearings = tuple(
         LoadedBearing(
             bearing,
-            None if bearing.rolling is None else BearingLife(bearing.rolling, machine.speeds[bearing.mounted.rotor]),
+            None if bearing.rolling is None else BearingLife(bearing.rolling, machine.bearing_speed(bearing.mounted)),
             preloads.get(bearing.name),
         )
         for bearing in point.bearings
@@ -259,7 +259,7 @@ def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> Loade
     # Inertias are for the damping alone.
     pair = replace(machine.gear_pairs[number], misalignment=0.0, face_gap=load.face_gap, damping=0.0)
     torque = math.copysign(load.force * abs(geometry.driver.base_radius), machine.pair_torques[number])
-    speed = machine.speeds[load.pair.driver.shaft]
+    speed = machine.mesh_speeds[number]
     return load_gear_pair(pair, geometry, torque=torque, inertias=(1.0, 1.0), speed=speed).hunting
 
 

@@ -17,7 +17,6 @@ import numpy.typing as npt
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-from gearwhine.rotors.rolling_bearings import characteristic_frequencies
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -47,7 +46,7 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
 
 
 def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
-    """Return the frequencies at which elements pass the outer raceway [Hz], of bearings whose law follows the elements.
+    """Return the frequencies at which elements pass the ring at rest [Hz], of bearings whose law follows the elements.
 
     Each frequency of a bearing once, ascending: its rows are mostly alike.
     """
@@ -55,7 +54,7 @@ def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
     for connector in system.nonlinear:
         if isinstance(connector.law, RollingLaw) and connector.speed != 0.0:
             rows = connector.law.state.bearing.rows
-            frequencies = [characteristic_frequencies(row, connector.speed).outer_pass / _TWO_PI for row in rows]
+            frequencies = [row.count * abs(row.cage_speed(connector.speed)) / _TWO_PI for row in rows]
             passes[connector.name] = tuple(
                 sorted({round(frequency, _ALIKE_FREQUENCY_DIGITS) for frequency in frequencies})
             )

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.linear.excitation_orders import ExcitedOrders, excitation_lines, excited_shaft_orders
+from gearwhine.coupling.linear.excitation_orders import ExcitedOrders, excitation_lines, excited_shaft_orders, rotations
 
 LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 
@@ -110,17 +110,18 @@ def line_names(
             # Excited or not, an order of a shaft that is further off than the mode is not the line's cause.
             of_shafts = min(within, abs(float(modes.eigenvalues[mode].imag) / (2.0 * np.pi) - frequency))
         reach = {"mesh": within, "shaft": of_shafts, "load": within, "bearing": within, "sideband": of_shafts}
-        names = {
+        causes = {
             kind: [
-                line.name
+                line
                 for line in lines
                 if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= distance
             ]
             for kind, distance in reach.items()
         }
-        kind = next((kind for kind in names if names[kind]), None)
+        kind = next((kind for kind in causes if causes[kind]), None)
         if kind is not None:
-            text = ", ".join(names[kind] if kind != "sideband" else _nearest(names[kind]))
+            fewest = min(line.steps for line in causes[kind])
+            text = ", ".join(line.name for line in causes[kind] if line.steps == fewest)
             named.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
         elif whole := _whole_order(machine, excited, frequency, of_shafts):
             named.append(LineName("shaft", whole, order, mode))
@@ -149,18 +150,12 @@ def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int
     return int(np.argmin(np.where(proper, distance, np.inf))) if proper.any() else None
 
 
-def _nearest(names: list[str]) -> list[str]:
-    """Sidebands with the fewest steps from their carrier."""
-    steps = [int(name.rsplit("×", 1)[0].rsplit(" ", 1)[1]) for name in names]
-    return [name for name, step in zip(names, steps, strict=True) if step == min(steps)]
-
-
 def _whole_order(
     machine: CoupledMachine, excited: Mapping[str, ExcitedOrders], frequency: float, tolerance: float
 ) -> str | None:
-    """Return an excited multiple of a shaft's speed, the slowest multiple first."""
+    """Return an excited multiple of a shaft's speed, or of that relative to a carrier, the slowest multiple first."""
     orders = []
-    for name, speed in machine.speeds.items():
+    for name, speed in rotations(machine).items():
         rotation_frequency = abs(speed) / (2.0 * np.pi)
         # Every line is near some multiple of a very slow shaft.
         if name not in excited or rotation_frequency <= 2.5 * tolerance:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +29,7 @@ from gearwhine.coupling.analyses.operation_warnings import (
     unbalanced_torque_warnings,
 )
 from gearwhine.coupling.analyses.run_up import run_signature_warnings
+from gearwhine.coupling.analyses.shafts_alone import planet_warnings
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.coupling.analyses.transient import mean_bearing_forces
 from gearwhine.coupling.errors import AcousticsError
@@ -116,10 +117,14 @@ class MachineUnderLoad:
 
 
 def rotors_result(
-    solved: tuple[SolvedRotor, ...], origin: Origin, assemblies: Callable[[], Sequence[RotorAssembly]]
+    solved: tuple[SolvedRotor, ...],
+    origin: Origin,
+    assemblies: Callable[[], Sequence[RotorAssembly]],
+    carriers: Mapping[str, str],
 ) -> Result[tuple[SolvedRotor, ...]]:
-    """Return the result of solved rotors; ``assemblies`` says how they are drawn."""
+    """Return the result of solved rotors; ``assemblies`` says how they are drawn, ``carriers`` has that of planets."""
     document = rotors_document(solved)
+    add_warnings(document, planet_warnings(carriers))
     for rotor in solved:
         fast = [(name, state.bearing, rotor.operation or 0.0) for name, state in rotor.rolling.items()]
         loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in rotor.rolling.items()}

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem
 from gearwhine.case.model import Case
@@ -55,8 +56,13 @@ class RotorSpeeds:
 
 
 def rotor_speeds(case: Case, rotor: str) -> RotorSpeeds:
-    """Return the speeds of a rotor's analyses, each once; a rotor outside the train stands still."""
-    ratio = float(case.parts.train.ratios.get(rotor, 0.0))
+    """Return the speeds of a rotor's analyses, each once; a rotor outside the train stands still.
+
+    Those of a planet are relative to its carrier.
+    """
+    ratios, carriers = case.parts.train.ratios, {one.name: one.carrier for one in case.rotor}
+    carrier = carriers.get(rotor)
+    ratio = float(ratios.get(rotor, Fraction(0)) - (0 if carrier is None else ratios.get(carrier, 0)))
 
     def of_rotor(speeds: Iterable[float]) -> tuple[float, ...]:
         return tuple(ratio * speed for speed in with_sense_of(case.operation, speeds))

@@ -187,6 +187,9 @@ class _Mounted(Table):
     carries: Literal["+z", "-z"] = "+z"
     """Direction of the axial force of the shaft that loads the elements; of elements that carry it both ways, of
     `axial_offset` and a spring."""
+    turning_ring: Literal["inner", "outer"] | None = None
+    """Ring that turns with the rotor; the other stands in the seat. Default: "outer" of a planet with a bore, which
+    turns around a pin, else "inner"."""
     arrangement: Arrangement = "single"
     """One such row, or two."""
     spacing: PositiveLength | None = None
@@ -260,8 +263,14 @@ class _Mounted(Table):
         """One row of rolling elements."""
         raise NotImplementedError
 
-    def build(self, name: str) -> RollingBearing:
+    def build(self, name: str, *, on_pin: bool = False) -> RollingBearing:
         """Build the rolling bearing, of one or two rows.
+
+        Parameters
+        ----------
+        name : str
+        on_pin : bool
+            Whether its outer ring turns where ``turning_ring`` does not say.
 
         Raises
         ------
@@ -271,6 +280,7 @@ class _Mounted(Table):
         from gearwhine.rotors.rolling_bearings import RollerRow, RollingBearing, preload_offset
 
         row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
+        outer_turns = on_pin if self.turning_ring is None else self.turning_ring == "outer"
         changes: dict[str, Any] = {}
         if self.mounting is not None:
             bore, outer_diameter = self._rings(self.mounting)
@@ -278,7 +288,7 @@ class _Mounted(Table):
         if isinstance(row, RollerRow) and self.flange_stiffness is not None:
             changes["flanges"], changes["flange_stiffness"] = self.flanges, self.flange_stiffness
             changes["axial_clearance"] = self.axial_clearance
-        row = replace(row, **changes)
+        row = replace(row, **changes, outer_turns=outer_turns)
         rows, spring, pressed = self._rows(row), sense * self.preload, 0.0
         if len({one.direction for one in rows}) == 2:
             # Opposed rows hold their preload between them, by equal offsets.

@@ -81,6 +81,12 @@ class Relief(Table):
         return RootRelief(**self.model_dump())
 
 
+MOST_PLANETS = 24
+"""Most planets of a `[[planetary]]`."""
+
+PlanetNumber = Annotated[int, Whole(1, MOST_PLANETS)]
+
+
 class ProfileErrors(Table):
     """Deviations along the profile [m], positive where there is too much material, as an inspection reports them."""
 
@@ -154,6 +160,9 @@ class GearErrors(Table):
     """Deviations along the profile of all flanks."""
     helix: HelixErrors | None = None
     """Deviations across the face of all flanks: errors, and helix modifications such as crowning and end relief."""
+    planet: PlanetNumber | None = None
+    """Number from 1 of the one planet that has these errors, of a gear that a `[[planetary]]` mounts `count` times.
+    Default: all of them."""
 
     @model_validator(mode="after")
     def _said_once(self) -> GearErrors:
@@ -184,15 +193,15 @@ class GearErrors(Table):
 
 _KEYS_OF_FAULTS = {
     "wear": (("depth",), ("tooth", "shape")),
-    "spall": (("tooth", "depth", "start_roll_angle", "end_roll_angle"), ("width",)),
-    "crack": (("tooth", "depth"), ("angle",)),
+    "spall": (("tooth", "depth", "start_roll_angle", "end_roll_angle"), ("width", "flank")),
+    "crack": (("tooth", "depth"), ("angle", "flank")),
     "missing-tooth": (("tooth",), ()),
 }
 """Keys that a kind of fault needs, and further ones that it takes."""
 
 
 class Fault(Table):
-    """A damaged tooth, numbered from 0 as the teeth come into mesh."""
+    """A damaged tooth, numbered from 0 as the teeth come into mesh, of a gear with several mates in its first pair."""
 
     kind: Literal["wear", "spall", "crack", "missing-tooth"]
     """Kind of damage. `wear` needs `depth`; `spall` needs `tooth`, `depth`, `start_roll_angle`, `end_roll_angle`;
@@ -211,6 +220,12 @@ class Fault(Table):
     """Width of a spall across the common face of its pair. Default: all of the face."""
     angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=math.pi / 2.0)] = math.radians(70.0)
     """Angle of a crack to the tooth's axis, like its depth in the normal section."""
+    flank: Literal["working", "back"] = "working"
+    """Flank with a spall, or from which a crack runs: the one that works in the first pair of the gear, or the one
+    behind it, which of an idler works in the next. A planet behind the sun works with the ring on its `back`."""
+    planet: PlanetNumber | None = None
+    """Number from 1 of the one planet with the fault, of a gear that a `[[planetary]]` mounts `count` times. Default:
+    all of them."""
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Fault:
@@ -219,7 +234,7 @@ class Fault(Table):
             if getattr(self, key) is None:
                 raise wrong(f"'{key}' of a fault of kind {self.kind!r}", key)
         for key, field in type(self).model_fields.items():
-            if key not in ("kind", *needed, *optional) and getattr(self, key) != field.default:
+            if key not in ("kind", "planet", *needed, *optional) and getattr(self, key) != field.default:
                 raise wrong(f"no '{key}' of a fault of kind {self.kind!r}", key)
         start, end = self.start_roll_angle, self.end_roll_angle
         if start is not None and end is not None and end <= start:
@@ -308,6 +323,9 @@ class RingSupport(Table):
         from gearwhine.coupling.gears.geometry.ring_support import RingSupport as BuiltRingSupport
 
         return BuiltRingSupport(**self.model_dump())
+
+
+_ONE_OF_PLANETS = "a planet of the `count` that a [[planetary]] mounts of this gear; none of a gear that stands once"
 
 
 class Gear(Table):
@@ -431,7 +449,11 @@ class Gear(Table):
         for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
             if deviations and len(deviations) != abs(self.teeth):
                 raise wrong(f"one deviation for each of {abs(self.teeth)} teeth, or none", "errors", key)
+        if self.errors.planet is not None:
+            raise wrong(_ONE_OF_PLANETS, "errors", "planet")
         for number, fault in enumerate(self.fault):
+            if fault.planet is not None:
+                raise wrong(_ONE_OF_PLANETS, "fault", number, "planet")
             if fault.tooth is not None and fault.tooth >= abs(self.teeth):
                 raise wrong(f"a tooth from 0 to {abs(self.teeth) - 1}", "fault", number, "tooth")
         is_given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]

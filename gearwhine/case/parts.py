@@ -42,7 +42,7 @@ from gearwhine.coupling.machine.bearing_laws import BearingLaw
 from gearwhine.coupling.machine.loads import Torque
 from gearwhine.numerics.findings import Finding as PartFinding
 from gearwhine.rotors import Bearing as RotorBearing
-from gearwhine.rotors import EquilibriumError
+from gearwhine.rotors import EquilibriumError, Segment
 from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.rotors import rolling_bearings as rolling
 from gearwhine.rotors.analyses.solved_rotor import table_range
@@ -215,7 +215,7 @@ class Parts:
     def _unloaded(self, entry: Bearing) -> MountedBearing:
         stiffness, law, elements = np.zeros((5, 5)), None, None
         if isinstance(entry.stiffness, RollingStiffness):
-            elements = entry.stiffness.rolling.build(entry.name)
+            elements = entry.stiffness.rolling.build(entry.name, on_pin=self._is_around_pin(entry.rotor))
         elif isinstance(entry.stiffness, StopStiffness):
             law = entry.stiffness.stop.build()
             stiffness = law.tangent(_given_load(entry)[:2])
@@ -230,6 +230,13 @@ class Parts:
             elements,
             damping_time=entry.damping_time,
             design_load=_given_load(entry) if depends else None,
+        )
+
+    def _is_around_pin(self, rotor: str) -> bool:
+        """Whether a rotor is a planet with a bore."""
+        shaft = next(shaft for shaft in self.shafts if shaft.name == rotor)
+        return shaft.carrier is not None and any(
+            segment.inner_diameter for segment in shaft.rotor.segments if isinstance(segment, Segment)
         )
 
     @cached_property

@@ -21,7 +21,7 @@ from pydantic_core import PydanticCustomError
 from gearwhine.case import units
 from gearwhine.case.errors import UNSAID, Finding, Location, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Angle, Length, LengthFromZero, Name, Quantity, Table, Whole, wrong
-from gearwhine.case.gears import Gear, TrainMembers
+from gearwhine.case.gears import MOST_PLANETS, Gear, TrainMembers
 from gearwhine.case.operation import Operation
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.rotors import Rotor
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 _LENGTH, _ANGLE = Quantity(units.LENGTH), Quantity(units.ANGLE)
 _TORSION = Quantity(units.TILT_STIFFNESS, above=0.0)
 TorsionalStiffness = Annotated[float, _TORSION]
-MOST_PLANETS = 24
 
 
 def _error_form(value: object) -> str:
@@ -369,9 +368,8 @@ class _Expansion:
             if central not in names or len(others) != 1 or self._rotor_of(str(others[0])) != rotor:
                 continue
             try:
-                gears = [
-                    Gear.model_validate(self.named("gear", name), context=dict(self.context)).build() for name in names
-                ]
+                entries = [_of_planet(self.named("gear", name) or {}, 0, MOST_PLANETS) for name in names]
+                gears = [Gear.model_validate(entry, context=dict(self.context)).build() for entry in entries]
                 return abs(GearPairGeometry(gears[0], gears[1]).working_centre_distance)
             except (ValidationError, GearError, ValueError):
                 return 0.0
@@ -406,7 +404,13 @@ class _Expansion:
         count = len(turns)
         bearings = {entry.get("name") for _, entry in self.entries("bearing") if entry.get("rotor") in rotors}
         self._replicate("rotor", lambda entry: entry.get("name") in rotors, turned, count)
-        self._replicate("gear", lambda entry: entry.get("name") in own, renamed("name", "rotor"), count)
+        on_copy = renamed("name", "rotor")
+        self._replicate(
+            "gear",
+            lambda entry: entry.get("name") in own,
+            lambda entry, number: _of_planet(on_copy(entry, number), number, count),
+            count,
+        )
         self._replicate(
             "bearing",
             lambda entry: entry.get("rotor") in rotors and isinstance(entry.get("name"), str),
@@ -455,6 +459,27 @@ class _Expansion:
             self.document["provenance"] = {new: value for path, value in table.items() for new in paths(path)}
         if isinstance(listed, list | tuple):
             self.document["unusual"] = [new for path in listed for new in paths(path)]
+
+
+def _of_planet(entry: dict[str, Any], number: int, count: int) -> dict[str, Any]:
+    """Return a gear's table with those of its faults and errors that its planet has, by its number from 0.
+
+    A `planet` that is not the number of one is left, to be refused.
+    """
+
+    def belongs(table: object) -> bool:
+        planet = table.get("planet") if isinstance(table, Mapping) else None
+        return type(planet) is not int or not 1 <= planet <= count or planet == number + 1
+
+    def taken(table: Any) -> Any:
+        planet = table.get("planet") if isinstance(table, Mapping) else None
+        return {key: value for key, value in table.items() if key != "planet"} if planet == number + 1 else table
+
+    faults, errors = entry.get("fault", []), entry.get("errors", {})
+    listed = faults if isinstance(faults, list | tuple) else [faults]
+    own = [taken(fault) for fault in listed if belongs(fault)]
+    changed = {**entry, "fault": own, "errors": taken(errors) if belongs(errors) else {}}
+    return {key: value for key, value in changed.items() if key in entry}
 
 
 def _numbered(name: str, number: int) -> str:

@@ -84,7 +84,8 @@ def solve_gears(parts: Parts, progress: Progress = silent) -> tuple[LoadedGearPa
         Where one cannot be solved as it stands.
     """
     solved = []
-    of_pairs = parts.gear_pair, parts.gear_pairs, parts.pair_geometries, parts.pair_torques, parts.mesh_speeds
+    geometries = parts.pair_geometries if parts.machine is None else parts.machine.pair_geometries
+    of_pairs = parts.gear_pair, parts.gear_pairs, geometries, parts.pair_torques, parts.mesh_speeds
     for entry, pair, geometry, torque, speed in zip(*of_pairs, strict=True):
         progress(f"gear pair {entry.driver} -> {entry.driven}")
         loaded = load_gear_pair(

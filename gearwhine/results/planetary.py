@@ -4,15 +4,20 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from gearwhine.output.quantity import RPM, Quantity, Rows
+from gearwhine.output.quantity import HERTZ, RPM, Quantity, Rows
 from gearwhine.output.sections import Document, counted
 
 _HARMONICS = 6
 """Mesh harmonics of which the document has the sums over the planets."""
 
 
-def _phases(checked: Any) -> list[float | None]:
-    return [None] * len(checked.placed.meshes) if checked.phases is None else list(checked.phases)
+def _of_meshes(checked: Any, attribute: str) -> list[float | None]:
+    values = getattr(checked, attribute)
+    return [None] * len(checked.placed.meshes) if values is None else list(values)
+
+
+def _same_teeth(checked: Any) -> list[float | None]:
+    return [None if rate is None else rate / HERTZ for rate in _of_meshes(checked, "same_teeth")]
 
 
 PLANETARY = (
@@ -42,13 +47,42 @@ PLANETARY = (
     ),
     Rows(
         "meshes",
-        lambda checked: list(zip(checked.placed.meshes, _phases(checked), strict=True)),
+        lambda checked: list(
+            zip(checked.placed.meshes, _of_meshes(checked, "phases"), _same_teeth(checked), strict=True)
+        ),
         (
             Quantity("driver", lambda row: row[0].driver),
             Quantity("driven", lambda row: row[0].driven),
             Quantity("kind", lambda row: row[0].kind),
             Quantity("common_factor", lambda row: row[0].common_factor),
             Quantity("phase", lambda row: row[1]),
+            Quantity("same_teeth_hz", lambda row: row[2]),
+        ),
+    ),
+    Quantity("planet_pass_hz", lambda checked: None if checked.planet_pass is None else checked.planet_pass / HERTZ),
+    Rows(
+        "tooth_faults",
+        "faults",
+        (
+            Quantity("gear"),
+            Quantity("role"),
+            Quantity("turn_hz", lambda rate: rate.turn / HERTZ),
+            Quantity("working_flank_mates", "working"),
+            Quantity("working_flank_hz", lambda rate: rate.working_rate / HERTZ),
+            Quantity("back_flank_mates", "back"),
+            Quantity("back_flank_hz", lambda rate: rate.back_rate / HERTZ),
+            Quantity("tooth_hz", lambda rate: rate.tooth_rate / HERTZ),
+        ),
+    ),
+    Rows(
+        "planet_bearings",
+        lambda checked: list(checked.planet_bearings.items()),
+        (
+            Quantity("name", lambda row: row[0]),
+            Quantity(
+                "characteristic_frequencies_hz",
+                lambda row: {name: rate / HERTZ for name, rate in row[1].named().items()},
+            ),
         ),
     ),
     Rows(
@@ -86,6 +120,7 @@ def set_lines(one: Document) -> Iterator[str]:
     yield _place_line(one)
     yield from _phase_lines(one)
     yield from _harmonic_lines(one["mesh_harmonics"])
+    yield from _rate_lines(one)
 
 
 def _member_line(member: Document) -> str:
@@ -129,3 +164,29 @@ def _harmonic_lines(harmonics: Sequence[Document]) -> Iterator[str]:
         excited.setdefault(" and ".join(kinds) or "planet", []).append(row["harmonic"])
     parts = [f"{', '.join(map(str, numbers))} excite {kinds} modes" for kinds, numbers in excited.items()]
     yield f"mesh harmonics {'; '.join(parts)}"
+
+
+def _rate_lines(one: Document) -> Iterator[str]:
+    """Yield the rates of faults of each member once, planets and bearings that are alike together."""
+    faults = dict.fromkeys(map(_fault_words, one["tooth_faults"]))
+    if not faults:
+        return
+    meet = dict.fromkeys(f"{mesh['same_teeth_hz']:.4g}" for mesh in one["meshes"])
+    yield f"planets pass a sensor at {one['planet_pass_hz']:.4g} Hz; the same teeth meet again at {', '.join(meet)} Hz"
+    yield f"a tooth fault strikes: {'; '.join(faults)}"
+    bearings = dict.fromkeys(map(_bearing_words, one["planet_bearings"]))
+    if bearings:
+        yield f"faults of the planets' bearings: {'; '.join(bearings)}"
+
+
+def _fault_words(fault: Document) -> str:
+    """Return the rates of a gear's tooth fault; planets differ in their number alone."""
+    words = f"{fault['role']} {fault['working_flank_hz']:.5g} Hz"
+    if fault["role"] != "planet" or not fault["back_flank_mates"]:
+        return words
+    sides = (f"{', '.join(fault[f'{flank}_flank_mates'])} ({flank})" for flank in ("working", "back"))
+    return f"{words} on the flank at {' or '.join(sides)}, {fault['tooth_hz']:.5g} Hz on both"
+
+
+def _bearing_words(bearing: Document) -> str:
+    return ", ".join(f"{name} {rate:.5g} Hz" for name, rate in bearing["characteristic_frequencies_hz"].items())

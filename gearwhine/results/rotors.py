@@ -185,12 +185,12 @@ class _Rolling(NamedTuple):
     @property
     def characteristic_frequencies_hz(self) -> dict[str, float] | None:
         """Characteristic frequencies of the first row at the speed of operation [Hz]."""
-        from gearwhine.rotors.rolling_bearings import characteristic_frequencies
+        from gearwhine.rotors.rolling_bearings import frequencies_in_seat
 
         operation = self.solved.operation
         if not operation:
             return None
-        frequencies = characteristic_frequencies(self.loaded.bearing.rows[0], operation)
+        frequencies = frequencies_in_seat(self.loaded.bearing.rows[0], operation)
         return {name: frequency / HERTZ for name, frequency in frequencies.named().items()}
 
 

@@ -1,7 +1,7 @@
 """Summary of a case before anything is solved: parts that cannot be built are refused, the rest is arithmetic."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from gearwhine.case import Case, GearPair, Housing, Rotor
@@ -10,6 +10,12 @@ from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
 from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
+from gearwhine.coupling.description.fault_rates import (
+    ToothFaultRate,
+    planet_pass_rate,
+    same_teeth_rates,
+    tooth_fault_rates,
+)
 from gearwhine.coupling.description.planetary import PlacedSet, SetMember, part_of_period
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
@@ -20,6 +26,7 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
+from gearwhine.rotors.rolling_bearings import CharacteristicFrequencies, frequencies_in_seat
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
@@ -85,11 +92,23 @@ class CheckedSet:
         Sun, ring, carrier and planets in operation; empty without one.
     phases : tuple of float or None
         Phase of each mesh of the set over that of its first [mesh periods]; None without an operation.
+    faults : tuple of ToothFaultRate
+        Rates of a tooth fault on each gear in operation.
+    planet_pass : float or None
+        Rate at which the planets pass a point of the housing [rad/s].
+    same_teeth : tuple of float or None
+        Rate at which the same teeth of each mesh meet again [rad/s].
+    planet_bearings : mapping of str to CharacteristicFrequencies
+        Characteristic frequencies of the planets' rolling bearings, of the first row, turning on the carrier.
     """
 
     placed: PlacedSet
-    members: tuple[SetMember, ...]
-    phases: tuple[float, ...] | None
+    members: tuple[SetMember, ...] = ()
+    phases: tuple[float, ...] | None = None
+    faults: tuple[ToothFaultRate, ...] = ()
+    planet_pass: float | None = None
+    same_teeth: tuple[float, ...] | None = None
+    planet_bearings: Mapping[str, CharacteristicFrequencies] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -150,12 +169,11 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     warnings += fit_warnings(parts, case.housing, None if mesh is None else mesh.mesh)
     if machine is not None:
         warnings += operation_warnings(machine)
-    warnings += centrifugal_warnings(
-        (bearing.name, bearing.rolling, parts.speeds[location.shaft])
-        for location in parts.axial_locations
-        for bearing in location.bearings
-        if bearing.rolling is not None and location.shaft in parts.speeds
-    )
+        warnings += centrifugal_warnings(
+            (mounted.bearing.name, mounted.rolling, machine.bearing_speed(mounted))
+            for mounted in machine.bearings
+            if mounted.rolling is not None
+        )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     sets = tuple(checked_sets(parts))
@@ -190,10 +208,22 @@ def checked_sets(parts: Parts) -> Iterator[CheckedSet]:
     machine = parts.machine
     for placed in parts.placed_sets:
         if machine is None:
-            yield CheckedSet(placed, (), None)
+            yield CheckedSet(placed)
             continue
-        phases = [machine.mesh_phases[mesh.number] for mesh in placed.meshes]
-        yield CheckedSet(placed, machine.members_of(placed), tuple(part_of_period(one - phases[0]) for one in phases))
+        phases, speeds = [machine.mesh_phases[mesh.number] for mesh in placed.meshes], machine.speeds
+        yield CheckedSet(
+            placed,
+            machine.members_of(placed),
+            tuple(part_of_period(one - phases[0]) for one in phases),
+            tooth_fault_rates(placed, speeds),
+            planet_pass_rate(placed, speeds),
+            same_teeth_rates(placed, speeds),
+            {
+                mounted.bearing.name: frequencies_in_seat(mounted.rolling.rows[0], machine.bearing_speed(mounted))
+                for mounted in machine.bearings
+                if mounted.rotor in placed.planet_shafts and mounted.rolling is not None
+            },
+        )
 
 
 def checked_pairs(parts: Parts) -> Iterator[CheckedPair]:

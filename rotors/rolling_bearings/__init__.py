@@ -25,7 +25,11 @@ from gearwhine.rotors.rolling_bearings.equilibrium import (
     rolling_equilibrium,
     rolling_state,
 )
-from gearwhine.rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
+from gearwhine.rotors.rolling_bearings.frequencies import (
+    CharacteristicFrequencies,
+    characteristic_frequencies,
+    frequencies_in_seat,
+)
 from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity, point_contact
 from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
 from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
@@ -54,6 +58,7 @@ __all__ = [
     "catalogue_row",
     "characteristic_frequencies",
     "dynamic_rating",
+    "frequencies_in_seat",
     "kramer_ball_stiffness",
     "kramer_roller_stiffness",
     "linearised_bearing",

@@ -82,3 +82,17 @@ def characteristic_frequencies(
         inner_pass=0.5 * row.count * (1.0 + gamma) * between,
         spin=0.5 * row.pitch_diameter / row.element_diameter * (1.0 - gamma**2) * between,
     )
+
+
+def frequencies_in_seat(row: Row, speed: float) -> CharacteristicFrequencies:
+    """Characteristic frequencies of a row with one ring at rest in its seat.
+
+    Parameters
+    ----------
+    row : Row
+        By its ``outer_turns`` the inner or the outer ring turns.
+    speed : float
+        Signed speed of that ring, relative to the seat, as of a planet to its carrier [rad/s].
+    """
+    inner, outer = (0.0, speed) if row.outer_turns else (speed, 0.0)
+    return characteristic_frequencies(row, inner, outer_speed=outer)

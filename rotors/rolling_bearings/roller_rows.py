@@ -77,6 +77,7 @@ class LineContactRow:
     axial_offset: float = 0.0
     direction: int = 1
     estimated: bool = False
+    outer_turns: bool = False
 
     def __post_init__(self) -> None:
         """Check that the rollers fit on the pitch circle, and length, slices, profile, places and direction."""
@@ -142,11 +143,14 @@ class LineContactRow:
         return self.roller_diameter * math.cos(self.contact_angle - self.roller_angle) / self.pitch_diameter
 
     def cage_speed(self, speed: float) -> float:
-        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω [rad/s]."""
-        return 0.5 * (1.0 - self.gamma) * speed
+        """Speed of the cage with a ring turning at ``speed``, the inner or where it ``outer_turns`` the outer [rad/s].
+
+        See :meth:`gearwhine.rotors.rolling_bearings.rows.BallRow.cage_speed`.
+        """
+        return 0.5 * (1.0 + self.gamma if self.outer_turns else 1.0 - self.gamma) * speed
 
     def centrifugal_force(self, speed: float) -> float:
-        """Centrifugal force on a roller, a cylinder of D and L, with the inner ring turning at ``speed`` rad/s [N]."""
+        """Centrifugal force on a roller, a cylinder of D and L, with a ring turning at ``speed`` rad/s [N]."""
         mass = self.elasticity.element_density * math.pi / 4.0 * self.roller_diameter**2 * self.length
         return mass * 0.5 * self.pitch_diameter * self.cage_speed(speed) ** 2
 

@@ -57,6 +57,8 @@ class BallRow:
         Elasticity of the contacts; steel unless given.
     estimated : bool
         Whether the geometry is an estimate (`gearwhine.rotors.rolling_bearings.catalogue`).
+    outer_turns : bool
+        Whether the outer ring turns, as in a planet on its pin, and the inner one is at rest.
 
     Raises
     ------
@@ -77,6 +79,7 @@ class BallRow:
     groove_limits: tuple[float, float] = (-RIGHT_ANGLE, RIGHT_ANGLE)
     elasticity: ContactElasticity = STEEL
     estimated: bool = False
+    outer_turns: bool = False
 
     def __post_init__(self) -> None:
         """Check that the balls fit on the pitch circle, and angles, grooves, clearance and direction."""
@@ -164,11 +167,12 @@ class BallRow:
         return -self.groove_distance * math.sin(self.contact_angle)
 
     def cage_speed(self, speed: float) -> float:
-        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω [rad/s].
+        """Speed of the cage with a ring turning at ``speed`` and the other at rest [rad/s].
 
-        γ = D cos α / D_pw, of pure rolling at the nominal contact angle (Harris and Kotzalas 2006).
+        ½ (1 − γ) Ω where the inner ring turns, ½ (1 + γ) Ω where the outer one does; γ = D cos α / D_pw, of pure
+        rolling at the nominal contact angle (Harris and Kotzalas 2006).
         """
-        return 0.5 * (1.0 - self.gamma) * speed
+        return 0.5 * (1.0 + self.gamma if self.outer_turns else 1.0 - self.gamma) * speed
 
     def facing(self, direction: int) -> Self:
         """Return the same row with another direction."""
@@ -190,7 +194,7 @@ class BallRow:
         return in_series(self.inner_contact, self.outer_contact)
 
     def centrifugal_force(self, speed: float) -> float:
-        """Centrifugal force on one ball with the inner ring turning at ``speed`` (in rad/s) and the outer at rest [N].
+        """Centrifugal force on one ball with a ring turning at ``speed`` (in rad/s) and the other at rest [N].
 
         m (D_pw / 2) ω² with the cage's speed ω (Harris and Kotzalas 2006).
         """

@@ -1,5 +1,6 @@
 """A case with one planetary stage, its planet written once."""
 
+import math
 from typing import Any
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
@@ -39,3 +40,41 @@ def stage(**of_set: Any) -> dict[str, Any]:
         "planetary": [{key: value for key, value in {**table, **of_set}.items() if value is not None}],
         "operation": {"speed": "3000 rpm", "torque": "50 N*m"},
     }
+
+
+def ravigneaux() -> dict[str, Any]:
+    """Small sun 24, short planets 18, long planets 21 with two gears, large sun 33, ring 75; the carrier held."""
+    apart = math.acos((42.0**2 + 54.0**2 - 39.0**2) / (2.0 * 42.0 * 54.0))
+    short, long = rotor("short") | {"axis": [0.047, 0.05]}, rotor("long")
+    long["axis"] = [0.005 + 0.054 * math.cos(apart), 0.05 + 0.054 * math.sin(apart)]
+    document = stage(fixed="carrier", sun="s", planets=["short", "front"])
+    document["rotor"] = [
+        *(one for one in document["rotor"] if one["name"] != "p"),
+        short,
+        long,
+        rotor("large", "40 mm"),
+    ]
+    document["bearing"] = [each for one in document["rotor"] for each in bearings(one["name"])]
+    for name, length, places in (("sun", 35, (5, 30)), ("short", 35, (5, 30)), ("large", 45, (25, 40))):
+        next(one for one in document["rotor"] if one["name"] == name)["segments"][0]["length"] = f"{length} mm"
+        for each, at in zip((one for one in document["bearing"] if one["rotor"] == name), places, strict=True):
+            each["at"] = f"{at} mm"
+    front, back = {"at": "15 mm", "face_width": "15 mm"}, {"at": "48 mm", "face_width": "15 mm"}
+    document["gear"] = [
+        gear("s", "sun", 24, **front),
+        gear("short", "short", 18, **front),
+        gear("front", "long", 21, **front),
+        gear("back", "long", 21, **back),
+        gear("l", "large", 33, **(back | {"at": "8 mm"})),
+        gear("r", "ring", -75, addendum=0.8, **front),
+    ]
+    second = {
+        "name": "second",
+        "sun": "l",
+        "ring": "r",
+        "planets": [f"back {n}" for n in (1, 2, 3)],
+        "carrier": "carrier",
+    }
+    document["planetary"].append(second | {"ring": None, "fixed": None})
+    document["planetary"][1] = {key: value for key, value in document["planetary"][1].items() if value is not None}
+    return document

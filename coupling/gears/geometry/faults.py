@@ -1,7 +1,9 @@
 """Tooth faults: wear, spalls, missing teeth; cracks are in :mod:`gearwhine.coupling.gears.stiffness.crack`.
 
 A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
-both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
+both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh. Of a gear with
+several mates that is the order of the first pair that it belongs to, and the flank that works there: an idler, as a
+planet, touches its next mate with the other flank of the same tooth.
 """
 
 import math
@@ -12,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
-from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.gear import Flank, Gear
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -47,6 +49,11 @@ class Wear:
         require_finite("wear depth", self.depth, minimum=0.0)
         if self.shape not in ("sliding", "uniform"):
             raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
+
+    @property
+    def flank(self) -> None:
+        """Both flanks: None."""
+        return None
 
     def require_fit(self, gear: Gear) -> None:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
@@ -91,6 +98,8 @@ class Spall:
         Depth of the spall [m].
     width : float or None
         Across the common face [m]; None for all of it.
+    flank : {"working", "back"}
+        Flank that works in the first pair of the gear, or the one behind it.
     """
 
     tooth: int
@@ -98,10 +107,12 @@ class Spall:
     end_roll_angle: float
     depth: float
     width: float | None = None
+    flank: Flank = "working"
 
     def __post_init__(self) -> None:
-        """Check the tooth number and the dimensions."""
+        """Check the tooth number, the flank and the dimensions."""
         check_tooth_number("spall", self.tooth)
+        check_flank("spall", self.flank)
         for quantity in ("start_roll_angle", "end_roll_angle", "depth"):
             require_finite(f"spall {quantity}", getattr(self, quantity), minimum=0.0)
         if not self.end_roll_angle > self.start_roll_angle:
@@ -170,6 +181,11 @@ class MissingTooth:
         """Check the tooth number."""
         check_tooth_number("missing tooth", self.tooth)
 
+    @property
+    def flank(self) -> None:
+        """Both flanks: None."""
+        return None
+
     def require_fit(self, gear: Gear) -> None:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
@@ -195,6 +211,12 @@ def check_tooth_number(name: str, tooth: int | None) -> None:
     """Raise `GearError` unless a fault's tooth is a whole number from 0, or none."""
     if tooth is not None and (type(tooth) is not int or tooth < 0):
         raise GearError(f"{name}: tooth must be a whole number from 0, got {tooth!r}")
+
+
+def check_flank(name: str, flank: str) -> None:
+    """Raise `GearError` unless a fault is on one of the two flanks of its tooth."""
+    if flank not in ("working", "back"):
+        raise GearError(f"{name}: flank must be 'working' or 'back', got {flank!r}")
 
 
 def require_tooth(gear: Gear, tooth: int | None) -> None:

@@ -37,7 +37,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -83,12 +83,21 @@ class BlankRing(NamedTuple):
     inner_radius: float
 
 
+Flank = Literal["working", "back"]
+"""Side of a tooth: the flank that works in the first pair that its gear belongs to, or the one behind it."""
+
+
 class Fault(Protocol):
     """Damage of one tooth, or of all teeth of a gear."""
 
     @property
     def tooth(self) -> int | None:
         """Number of the tooth; None for all of them."""
+        ...
+
+    @property
+    def flank(self) -> Flank | None:
+        """Flank of the tooth, the one that works in the gear's first pair or its back; None for both."""
         ...
 
     def require_fit(self, gear: Gear) -> None:
@@ -160,8 +169,8 @@ class Gear:
         working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
         phase 0; none for a perfect pitch.  Positive where the working flank stands ahead, so that it touches
         early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
-        tooth is displaced, so its back flank is behind by as much.  Each mesh of a gear counts from its own
-        tooth 0, and reads the signs for its own working flanks.
+        tooth is displaced, so its back flank is behind by as much.  Of a gear with several mates numbers, order and
+        signs are those of the first pair that it belongs to.
     profile_deviation : ProfileDeviation or None
         Deviation of the profile of all flanks from its design.
     helix_deviation : HelixDeviation or None

@@ -95,6 +95,30 @@ def pair_label(driver: str, driven: str) -> str:
 
 
 @dataclass(frozen=True)
+class ToothNumbering:
+    """Numbers of a gear's teeth in one of its meshes, by which it meets every mate with the same faulty tooth.
+
+    Attributes
+    ----------
+    first : int
+        The gear's own number of the tooth that the mesh counts as its tooth 0, which touches at phase 0.
+    step : int
+        1; -1 where the teeth enter the mesh in the order opposite to that in which they are numbered.
+    same_flank : bool
+        Whether the mesh works on the flanks of the gear's first pair: an idler, as a planet between sun and ring, has
+        one mesh on either side of its teeth.
+    """
+
+    first: int = 0
+    step: Literal[1, -1] = 1
+    same_flank: bool = True
+
+    def of(self, number: IntArray) -> IntArray:
+        """Return the gear's numbers of the teeth that the mesh counts so, whole turns not taken off."""
+        return np.asarray(self.first + self.step * number)
+
+
+@dataclass(frozen=True)
 class GearPairGeometry:
     """A driver and a driven gear on parallel shafts.
 
@@ -107,6 +131,8 @@ class GearPairGeometry:
         teeth that are not thinned, so that any `tooth_thinning` becomes backlash.
     axial_offset : float
         Place of the middle of the driven gear's face along z from that of the driver's [m].
+    numbering : tuple of ToothNumbering
+        Numbers of the driver's and of the driven teeth in this mesh.
 
     Raises
     ------
@@ -124,6 +150,7 @@ class GearPairGeometry:
     driven: Gear
     centre_distance: float | None = None
     axial_offset: float = 0.0
+    numbering: tuple[ToothNumbering, ToothNumbering] = (ToothNumbering(), ToothNumbering())
 
     def __post_init__(self) -> None:
         """Check that the gears match and meet, the centre distance and the contact ratio."""
@@ -330,7 +357,7 @@ class GearPairGeometry:
     def mating_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
         """Mating teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
         n = np.asarray(number, dtype=np.int64)
-        return n % self.driver.tooth_count, n % self.driven.tooth_count
+        return self._teeth(n, n)
 
     def mating_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
         """Mating teeth of the back flanks in the pairs that enter at whole phases `number` of the back flanks.
@@ -340,7 +367,12 @@ class GearPairGeometry:
         the driven tooth that follows, n + 1: n itself is on the other side.
         """
         n = -np.asarray(number, dtype=np.int64) - math.floor(self._back_flank_shift)
-        return n % self.driver.tooth_count, (n + 1) % self.driven.tooth_count
+        return self._teeth(n, n + 1)
+
+    def _teeth(self, driver: IntArray, driven: IntArray) -> tuple[IntArray, IntArray]:
+        """Return the gears' own numbers of the teeth that the mesh counts so."""
+        first, second = self.numbering
+        return first.of(driver) % self.driver.tooth_count, second.of(driven) % self.driven.tooth_count
 
     def line_of_action_angle(self, centre_line_angle: float, sense: int = 1) -> float:
         """Angle from x of the unit vector along which the driver pushes the driven gear [rad].

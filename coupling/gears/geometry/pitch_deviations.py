@@ -10,6 +10,10 @@ tooth m and the driven gear's tooth n the pair's gap is
 
 constant while the pair is in contact.  The back flanks of the same teeth are behind where the working ones are
 ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.mating_back_teeth`).
+
+A gear with several mates has its deviations and faults by the numbers and the flanks of its first pair. In a mesh that
+works on the other flanks, as that of a planet with the ring, its deviations count with the opposite sign
+(`gearwhine.coupling.gears.geometry.pair.ToothNumbering`).
 """
 
 from __future__ import annotations
@@ -20,8 +24,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.coupling.gears.geometry.gear import Fault, Gear
-from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, IntArray
+from gearwhine.coupling.gears.geometry.gear import Fault, Flank, Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, IntArray, ToothNumbering
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,22 +57,27 @@ def hunting_numbers(geometry: GearPairGeometry) -> IntArray:
 
     Only gears whose teeth differ count; empty where the teeth of both are alike.
     """
-    differing = [
-        gear.tooth_count
-        for gear in (geometry.driver, geometry.driven)
-        if any(gear.pitch_deviations) or any(fault.tooth is not None for fault in gear.faults)
-    ]
+    differing = [gear.tooth_count for gear in (geometry.driver, geometry.driven) if has_different_teeth(gear)]
     return np.arange(math.lcm(*differing) if differing else 0)
+
+
+def has_different_teeth(gear: Gear) -> bool:
+    """Whether teeth of a gear differ, by pitch deviations or faults of single teeth."""
+    return any(gear.pitch_deviations) or any(fault.tooth is not None for fault in gear.faults)
 
 
 def _lead(geometry: GearPairGeometry, driver_teeth: IntArray, driven_teeth: IntArray) -> FloatArray:
     """Lead of the working flanks of pairs of teeth along the line of action [m]."""
-    lead = _deviations(geometry.driver)[driver_teeth] + _deviations(geometry.driven)[driven_teeth]
+    gears = (geometry.driver, geometry.driven)
+    leads = [_deviations(gear, mesh) for gear, mesh in zip(gears, geometry.numbering, strict=True)]
+    lead = leads[0][driver_teeth] + leads[1][driven_teeth]
     return np.asarray(lead * math.cos(geometry.working_pressure_angle), dtype=np.float64)
 
 
-def _deviations(gear: Gear) -> FloatArray:
-    return np.array(gear.pitch_deviations or (0.0,) * gear.tooth_count, dtype=np.float64)
+def _deviations(gear: Gear, mesh: ToothNumbering) -> FloatArray:
+    """Distance of each tooth of a gear from its place [m], positive where the mesh's working flank stands ahead."""
+    ahead = 1.0 if mesh.same_flank else -1.0
+    return ahead * np.array(gear.pitch_deviations or (0.0,) * gear.tooth_count, dtype=np.float64)
 
 
 PairFaults = tuple[tuple[Fault, ...], tuple[Fault, ...]]
@@ -93,29 +102,27 @@ class PairVariants:
 
 
 def pair_variants(geometry: GearPairGeometry) -> PairVariants:
-    """Faults of every pair of teeth over the hunting period."""
-    everywhere: PairFaults = (_faults_of(geometry.driver, None), _faults_of(geometry.driven, None))
-    variants: dict[tuple[int, int], int] = {(-1, -1): 0}
-    faults = [everywhere]
-    damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
+    """Faults of every pair of teeth over the hunting period, of those on the flanks that touch."""
+    gears = (geometry.driver, geometry.driven)
+    sound: PairFaults = (_faults_of(gears[0], None, None), _faults_of(gears[1], None, None))
+    variants: dict[PairFaults, int] = {sound: 0}
 
-    def kinds_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
-        variant_of_pair = np.zeros(driver_teeth.size, dtype=np.int64)
-        for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
-            key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
-            pair = (key[0], key[1])
-            if pair not in variants:
-                variants[pair] = len(faults)
-                faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
-            variant_of_pair[n] = variants[pair]
-        return variant_of_pair
+    def variants_of(teeth: tuple[IntArray, IntArray], *, back: bool) -> IntArray:
+        rows = []
+        for gear, mesh, numbers in zip(gears, geometry.numbering, teeth, strict=True):
+            flank: Flank = "working" if mesh.same_flank is not back else "back"
+            damaged = {fault.tooth: _faults_of(gear, fault.tooth, flank) for fault in gear.faults}
+            rows.append([damaged.get(tooth, _faults_of(gear, None, None)) for tooth in numbers.tolist()])
+        return np.array([variants.setdefault(pair, len(variants)) for pair in zip(*rows, strict=True)], dtype=np.int64)
 
     numbers = hunting_numbers(geometry)
-    of_pair = kinds_of(*geometry.mating_teeth(numbers))
-    of_back_pair = kinds_of(*geometry.mating_back_teeth(numbers))
-    return PairVariants(tuple(faults), of_pair, of_back_pair)
+    of_pair = variants_of(geometry.mating_teeth(numbers), back=False)
+    of_back_pair = variants_of(geometry.mating_back_teeth(numbers), back=True)
+    return PairVariants(tuple(variants), of_pair, of_back_pair)
 
 
-def _faults_of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
-    """Faults of a tooth, including those of all teeth; None or -1 stands for a sound tooth."""
-    return tuple(fault for fault in gear.faults if fault.tooth is None or fault.tooth == tooth)
+def _faults_of(gear: Gear, tooth: int | None, flank: Flank | None) -> tuple[Fault, ...]:
+    """Faults on a flank of a tooth, those of all teeth included; None stands for a sound tooth."""
+    return tuple(
+        fault for fault in gear.faults if fault.tooth is None or (fault.tooth == tooth and fault.flank in (None, flank))
+    )

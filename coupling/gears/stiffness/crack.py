@@ -24,8 +24,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
-from gearwhine.coupling.gears.geometry.faults import check_tooth_number, require_tooth
-from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.faults import check_flank, check_tooth_number, require_tooth
+from gearwhine.coupling.gears.geometry.gear import Flank, Gear
 from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
 from gearwhine.coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
 from gearwhine.coupling.gears.stiffness.normal_section import transverse_compliance
@@ -50,15 +50,20 @@ class ToothCrack:
         Length of the crack in the normal section [m].
     angle : float
         Angle between the crack and the tooth's axis [rad].
+    flank : {"working", "back"}
+        Loaded side from which it runs: that of the first pair of the gear, or the one behind it. Under a load on the
+        other side the crack closes, and the tooth is as stiff as a sound one.
     """
 
     tooth: int
     depth: float
     angle: float = math.radians(70.0)
+    flank: Flank = "working"
 
     def __post_init__(self) -> None:
-        """Check the tooth number, the depth and the angle."""
+        """Check the tooth number, the flank, the depth and the angle."""
         check_tooth_number("crack", self.tooth)
+        check_flank("crack", self.flank)
         require_finite("crack depth", self.depth, minimum=0.0)
         if not 0.0 < self.angle <= math.pi / 2.0:
             raise GearError(f"crack angle must be above 0 and at most 90 degrees in rad, got {self.angle!r} rad")

@@ -387,4 +387,4 @@ def _draw_directions(axes: Axes, view: ShaftView, level: float, back: complex) -
 
 
 def _name(whirl: WhirlModes, number: int) -> str:
-    return f"mode {number + 1}\n{whirl.frequencies[number] / HERTZ:.4g} Hz"
+    return f"mode {number + 1}\n{_frequency(float(whirl.frequencies[number]) / HERTZ)}"

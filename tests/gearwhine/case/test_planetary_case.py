@@ -5,12 +5,13 @@ import math
 from typing import Any
 
 import pytest
-from planetary_case import bearings, gear, rotor, stage
+from planetary_case import bearings, gear, ravigneaux, rotor, stage
 
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.case.model import Case
 from gearwhine.results.check import check_document, sections
+from gearwhine.results.planetary import set_lines
 
 
 def read(document: dict[str, Any]) -> Case:
@@ -139,40 +140,7 @@ def test_a_set_behind_a_parallel_stage_and_key_paths_to_a_planet() -> None:
 
 def test_a_ravigneaux_set_of_two_sets_that_share_planets_and_ring() -> None:
     """Small sun 24, short 18, long 21, large sun 33, ring 75; ratios by the stationary ratios 75/24 and -75/33."""
-    apart = math.acos((42.0**2 + 54.0**2 - 39.0**2) / (2.0 * 42.0 * 54.0))
-    short, long = rotor("short") | {"axis": [0.047, 0.05]}, rotor("long")
-    long["axis"] = [0.005 + 0.054 * math.cos(apart), 0.05 + 0.054 * math.sin(apart)]
-    document = stage(fixed="carrier", sun="s", planets=["short", "front"])
-    document["rotor"] = [
-        *(one for one in document["rotor"] if one["name"] != "p"),
-        short,
-        long,
-        rotor("large", "40 mm"),
-    ]
-    document["bearing"] = [each for one in document["rotor"] for each in bearings(one["name"])]
-    for name, length, places in (("sun", 35, (5, 30)), ("short", 35, (5, 30)), ("large", 45, (25, 40))):
-        next(one for one in document["rotor"] if one["name"] == name)["segments"][0]["length"] = f"{length} mm"
-        for each, at in zip((one for one in document["bearing"] if one["rotor"] == name), places, strict=True):
-            each["at"] = f"{at} mm"
-    front, back = {"at": "15 mm", "face_width": "15 mm"}, {"at": "48 mm", "face_width": "15 mm"}
-    document["gear"] = [
-        gear("s", "sun", 24, **front),
-        gear("short", "short", 18, **front),
-        gear("front", "long", 21, **front),
-        gear("back", "long", 21, **back),
-        gear("l", "large", 33, **(back | {"at": "8 mm"})),
-        gear("r", "ring", -75, addendum=0.8, **front),
-    ]
-    second = {
-        "name": "second",
-        "sun": "l",
-        "ring": "r",
-        "planets": [f"back {n}" for n in (1, 2, 3)],
-        "carrier": "carrier",
-    }
-    document["planetary"].append(second | {"ring": None, "fixed": None})
-    document["planetary"][1] = {key: value for key, value in document["planetary"][1].items() if value is not None}
-    parts = read(document).parts
+    parts = read(ravigneaux()).parts
     assert parts.speeds["ring"] / parts.speeds["sun"] == pytest.approx(24 / 75, rel=1e-12)
     assert parts.speeds["large"] / parts.speeds["ring"] == pytest.approx(-75 / 33, rel=1e-12)
     assert [len(one.meshes) for one in parts.placed_sets] == [9, 3]
@@ -238,3 +206,83 @@ def test_the_study_of_a_case_has_the_sets(tmp_path: Any) -> None:
     machine = study.case.parts.machine
     assert machine is not None
     assert machine.members_of(machine.placed_sets[0])[0].role == "sun"
+
+
+def test_one_planet_alone_has_a_fault() -> None:
+    document = stage()
+    crack = {"kind": "crack", "tooth": 4, "depth": "1 mm", "planet": 2, "flank": "back"}
+    pitch = ["0 um"] * 29 + ["5 um"]
+    document["gear"][1] |= {
+        "fault": [crack, {"kind": "wear", "depth": "2 um"}],
+        "errors": {"pitch": pitch, "planet": 3},
+    }
+    case = read(document)
+    gears = [one for one in case.gear if one.name.startswith("p")]
+    assert [[fault.kind for fault in one.fault] for one in gears] == [["wear"], ["crack", "wear"], ["wear"]]
+    assert [bool(one.errors.pitch) for one in gears] == [False, False, True]
+    built = case.parts.gears["p 2"].faults[0]
+    assert (built.tooth, built.flank) == (4, "back")
+    assert dump_case(case).count('kind = "crack"') == 1
+
+
+@pytest.mark.parametrize(("name", "planet"), [("p", 4), ("s", 1)])
+def test_no_such_planet_has_a_fault(name: str, planet: int) -> None:
+    document = stage()
+    index = {"s": 0, "p": 1}[name]
+    document["gear"][index]["fault"] = {"kind": "missing-tooth", "tooth": 4, "planet": planet}
+    with pytest.raises(CaseError) as refused:
+        read(document)
+    assert [problem.key for problem in refused.value.problems] == [f"gear[{index}].fault[0].planet"]
+    assert "of the `count` that a [[planetary]] mounts" in str(refused.value)
+
+
+def test_check_tells_rates_of_faults() -> None:
+    """By hand: the carrier turns at 50 · 24/108 Hz, the sun 38.889 Hz faster, a planet on its pin 24/30 of that."""
+    document = stage()
+    document["rotor"][1]["segments"] = [
+        {"length": "30 mm", "diameter": "40 mm", "bore": "32 mm"},
+        {"length": "30 mm", "diameter": "10 mm", "bore": "5 mm"},
+    ]
+    balls = {"count": 10, "element_diameter": "6 mm", "pitch_diameter": "20 mm", "clearance": "-1 um"}
+    for place, ring in ((2, {}), (3, {"turning_ring": "inner"})):
+        document["bearing"][place]["stiffness"] = {"rolling": {**balls, **ring}}
+    (one,) = check_document(read(document))["planetary"]
+    carrier, sun = 50.0 * 24 / 108, 50.0 * 84 / 108
+    planet = sun * 24 / 30
+    assert one["planet_pass_hz"] == pytest.approx(3.0 * carrier)
+    rates = {fault["gear"]: fault for fault in one["tooth_faults"]}
+    assert rates["s"]["working_flank_hz"] == rates["s"]["tooth_hz"] == pytest.approx(3.0 * sun)
+    assert rates["r"]["working_flank_hz"] == pytest.approx(3.0 * carrier)
+    assert (rates["p 2"]["working_flank_mates"], rates["p 2"]["back_flank_mates"]) == (["s"], ["r"])
+    found = [rates["p 2"][key] for key in ("turn_hz", "working_flank_hz", "back_flank_hz", "tooth_hz")]
+    assert found == pytest.approx([planet, planet, planet, 2.0 * planet])
+    meet = {mesh["kind"]: mesh["same_teeth_hz"] for mesh in one["meshes"]}
+    # 24 and 30 teeth meet again after 120 mesh periods, 30 and 84 after 420.
+    assert meet == pytest.approx({"sun": 24 * sun / 120, "ring": 24 * sun / 420})
+    bearings = {row["name"]: row["characteristic_frequencies_hz"] for row in one["planet_bearings"]}
+    passes = {"outer raceway": 5.0 * 0.7 * planet, "inner raceway": 5.0 * 1.3 * planet}
+    strikes = {"rolling element": (10 / 3) * (1.0 - 0.09) * planet}
+    # The planet's bore turns around the pin and takes the cage along by more than half.
+    assert bearings["p left 1"] == pytest.approx({"cage": 0.65 * planet, **passes, **strikes})
+    assert bearings["p right 1"] == pytest.approx({"cage": 0.35 * planet, **passes, **strikes})
+    text = "\n".join(map(str, set_lines(one)))
+    assert "planets pass a sensor at 33.33 Hz; the same teeth meet again at 7.778, 2.222 Hz" in text
+    assert "sun 116.67 Hz; planet 31.111 Hz on the flank at s (working) or r (back), 62.222 Hz on both; ring" in text
+    assert text.count("inner raceway 202.22 Hz") == 2
+
+
+def test_planets_in_mesh_with_each_other_touch_one_mate_with_either_flank() -> None:
+    (one, second) = check_document(read(ravigneaux()))["planetary"]
+    mates = {fault["gear"]: (fault["working_flank_mates"], fault["back_flank_mates"]) for fault in one["tooth_faults"]}
+    assert mates["short 1"] == (["s"], ["front 1"])
+    assert mates["front 1"] == (["short 1"], ["r"])
+    assert {fault["gear"]: fault["back_flank_mates"] for fault in second["tooth_faults"]}["back 2"] == []
+
+
+def test_elements_are_within_a_planet_that_turns_around_them() -> None:
+    document = stage()
+    document["rotor"][1]["segments"] = [{"length": "60 mm", "diameter": "40 mm", "bore": "18 mm"}]
+    balls = {"count": 10, "element_diameter": "6 mm", "pitch_diameter": "20 mm", "clearance": "-1 um"}
+    document["bearing"][2]["stiffness"] = {"rolling": balls}
+    with pytest.raises(CaseError, match=r"within the bore of the shaft, 18 mm wide there.* they reach to 26 mm"):
+        read(document)

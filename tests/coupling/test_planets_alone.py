@@ -1,0 +1,47 @@
+"""Planets alone on their pins, and lives of their bearings: at the speed relative to the carrier, by hand."""
+
+import pytest
+from planetary_machines import set_parts
+
+from gearwhine.coupling import Machine, MountedBearing
+from gearwhine.coupling.analyses.shafts_alone import planet_warnings, shaft_settings
+from gearwhine.coupling.load_analysis.solved_load import solve_load
+from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing
+
+SPEED = 100.0
+ON_PIN = -SPEED * 24 / 30 * 84 / 108
+"""Speed of the planets of 30 teeth on the carrier, between a sun of 24 that drives and a ring of 84 that is held."""
+
+
+@pytest.fixture(scope="module")
+def machine() -> Machine:
+    """A planet of the set on balls."""
+    parts = set_parts()
+    row = BallRow(12, 6e-3, 34e-3, clearance=-2e-6)
+    parts["bearings"] = [
+        MountedBearing.from_elements(one.bearing.name, one.bearing.at, one.rotor, None, RollingBearing((row,)))
+        if one.rotor == "p 2"
+        else one
+        for one in parts["bearings"]
+    ]
+    return Machine(**parts)
+
+
+def test_a_planet_alone_turns_at_its_speed_on_the_pin(machine: Machine) -> None:
+    settings = shaft_settings(machine, "p 1", (), speeds=(50.0, 200.0))
+    assert settings.operation == pytest.approx(ON_PIN)
+    assert list(settings.whirl_speeds) == pytest.approx([0.5 * ON_PIN, 2.0 * ON_PIN])
+    assert shaft_settings(machine, "c", ()).operation == pytest.approx(SPEED * 24 / 108)
+
+
+def test_bearings_of_a_planet_live_by_its_speed_on_the_pin(machine: Machine) -> None:
+    solved = solve_load(machine)
+    lives = {bearing.load.name: bearing.rated for bearing in solved.bearings if bearing.rated is not None}
+    assert sorted(lives) == ["p 0.01 2", "p 0.05 2"]
+    assert [life.speed for life in lives.values()] == pytest.approx([ON_PIN] * 2)
+
+
+def test_what_a_planet_alone_leaves_out_is_told() -> None:
+    (one,) = planet_warnings({"p 1": "c", "p 2": "c"})
+    assert 'p 1, p 2: each alone on a pin that stands still, as if carrier "c" did' in one["message"]
+    assert planet_warnings({}) == []
