@@ -7,6 +7,7 @@ coefficients, and a table of modes or a diagram is that of a frozen picture. How
 (:mod:`gearwhine.coupling.linear.turning_response`) and need no warning.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,17 @@ from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FROZEN_MODES = "natural modes, damping ratios and stability"
 """Subject of the warning of natural modes."""
+
+
+def frozen(system: CoupledSystem) -> CoupledSystem:
+    """Return a system whose directions stand as they do at t = 0."""
+    if not system.turns:
+        return system
+    return replace(
+        system,
+        linear=tuple(replace(one, turning=()) for one in system.linear),
+        contacts=tuple(replace(one, turning=()) for one in system.contacts),
+    )
 
 
 def frozen_warnings(
