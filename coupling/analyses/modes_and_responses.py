@@ -12,6 +12,7 @@ from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
 from gearwhine.coupling.linear.complex_modes import CoupledModes, Stability, coupled_modes
 from gearwhine.coupling.linear.complex_modes import stability as coupled_stability
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
+from gearwhine.coupling.linear.floquet_exponents import floquet_exponents
 from gearwhine.coupling.linear.frequency_response import (
     FrequencyResponse,
     mesh_error_responses,
@@ -19,12 +20,15 @@ from gearwhine.coupling.linear.frequency_response import (
     touching_meshes,
     unbalance_responses,
 )
+from gearwhine.coupling.linear.frozen_directions import FROZEN_MODES, frozen_warnings
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
+from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
 
@@ -36,6 +40,7 @@ _HARMONICS = 4.0  # mesh harmonics that a response covers where no housing limit
 _MODES = 6  # least number of modes in a diagram
 _UNBALANCE_STEPS = 200  # speeds of the response to unbalance
 _DIRECT = 24  # frequencies at which superposition is compared with the solved system
+_EXPONENTS = 24  # lowest modes whose exponents with turning carriers are solved
 _NAMED_MODES = 5  # growing modes named one by one
 
 
@@ -67,6 +72,9 @@ class SolvedSystem:
     lines : tuple of ResponseParts
         Motions at the mesh harmonics of operation by transmission error and load shuttling, with a housing that has
         sensors, about the mean contact.
+    exponents : ndarray of complex, shape (m,), or None
+        Floquet exponent of each mode [1/s], of the lowest oscillating ones of a machine whose directions turn; NaN of
+        others.
     """
 
     machine: CoupledMachine
@@ -80,11 +88,39 @@ class SolvedSystem:
     unbalance: tuple[FrequencyResponse, ...] = ()
     unbalance_speeds: FloatArray | None = None
     lines: tuple[ResponseParts, ...] = ()
+    exponents: ComplexArray | None = None
 
     @property
     def speed(self) -> float:
         """Speed of the first driver's shaft [rad/s]."""
         return self.machine.speed
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Warnings of the modes and of the diagram."""
+        of_diagram = () if self.campbell is None else self.campbell.warnings
+        return (*unstable_modes_warnings(self.stability), *self._frozen_warnings(), *of_diagram)
+
+    def _frozen_warnings(self) -> tuple[ResultWarning, ...]:
+        """Warnings of modes with frozen carriers, with the error that their exponents show."""
+        if self.exponents is None:
+            return self.modes.warnings
+        solved = np.flatnonzero(~np.isnan(self.exponents))
+        if not solved.size:
+            return self.modes.warnings
+        frozen, exact = self.modes.eigenvalues[solved], self.exponents[solved]
+        errors = np.abs(frozen) / np.abs(exact) - 1.0
+        most = int(np.argmax(np.abs(errors)))
+        hertz, label = float(abs(exact[most])) / _TWO_PI, self.modes.labels[solved[most]]
+        effect = (
+            f"of {solved.size} modes whose exponents with turning carriers are solved too, the largest error of a "
+            f"frequency is {100.0 * errors[most]:+.2g} % ({label}, {hertz:.5g} Hz turning)"
+        )
+        growing = [self.modes.labels[number] for number in solved if self.exponents[number].real > 0.0]
+        if growing:
+            effect += f"; turning, these grow by themselves: {', '.join(growing)}"
+        system, largest = self.machine.system, float(errors[most])
+        return frozen_warnings(system, FROZEN_MODES, effect, largest_error=largest, frequency_hz=hertz, mode=label)
 
     @property
     def unloaded(self) -> ContactState:
@@ -131,6 +167,9 @@ def solve_system(
     responses, error = _mesh_responses(machine, modes, contact)
     lines = _sensor_lines(machine) if mesh_phase is None else ()
     solved = SolvedSystem(machine, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines)
+    if system.turns:
+        progress("exponents with turning carriers")
+        solved = replace(solved, exponents=_exponents(solved))
     return _over_speed(solved, over_speed, progress, sidebands, mesh_harmonics) if over_speed else solved
 
 
@@ -141,6 +180,19 @@ def _instant(machine: CoupledMachine, phase: float) -> ContactState:
     if not 0.0 <= phase <= 1.0:
         raise CouplingError(f"a mesh phase of {phase:g}; expected a part of the mesh period, 0 to 1")
     return contact_at(machine.system, time_of_phase(machine.system, phase))
+
+
+def _exponents(solved: SolvedSystem) -> ComplexArray:
+    """Solve the Floquet exponents of the lowest oscillating modes of a machine whose directions turn, shape (m,)."""
+    modes = solved.modes
+    limit = _TWO_PI * _frequency_limit(solved.machine)
+    proper = np.array([kind not in ("residual", "rigid") for kind in modes.kinds])
+    swinging = proper & (modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) <= limit)
+    chosen = np.flatnonzero(swinging)[:_EXPONENTS]
+    exponents = np.full(len(modes.kinds), np.nan, dtype=np.complex128)
+    model = TurningResponse(solved.machine.system, solved.contact)
+    exponents[chosen] = floquet_exponents(model, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen])
+    return exponents
 
 
 def _mesh_responses(
@@ -228,22 +280,6 @@ def _over_speed(
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)
 
 
-def turning_warnings(machine: CoupledMachine) -> list[ResultWarning]:
-    """Warn of natural modes of a machine whose directions turn: they are those of a frozen picture."""
-    if not machine.system.turns:
-        return []
-    named = [one.name for one in machine.system.linear if one.turning]
-    named += [one.name for one in machine.system.contacts if one.turning]
-    message = (
-        f"natural modes and damping ratios are those with the carriers frozen at their first angle, as {named[0]}"
-        + (f" and {len(named) - 1} more connectors turn" if len(named) > 1 else " turns")
-        + " against parts that are not alike all round; responses are those at the frequency of the excitation, its "
-        "sidebands by the turning of the carriers are solved with them and left out here, and motions over time have "
-        "them all"
-    )
-    return [warning("carrier frozen", message, turning=named)]
-
-
 def unstable_modes_warnings(stability: Stability) -> list[ResultWarning]:
     """One warning for each growing mode, the fastest first; beyond a few they are counted."""
     warnings = []
@@ -272,7 +308,7 @@ def unstable_modes_warnings(stability: Stability) -> list[ResultWarning]:
 
 
 def machine_warnings(machine: CoupledMachine) -> list[ResultWarning]:
-    """Warnings of the growing modes of a machine about its mean contact.
+    """Warnings of the modes of a machine about its mean contact: those that grow, and frozen carriers.
 
     Raises
     ------
@@ -280,4 +316,5 @@ def machine_warnings(machine: CoupledMachine) -> list[ResultWarning]:
         Where modes fail their proof.
     """
     system = machine.system
-    return unstable_modes_warnings(coupled_stability(coupled_modes(system, mean_contact(system))))
+    modes = coupled_modes(system, mean_contact(system))
+    return [*unstable_modes_warnings(coupled_stability(modes)), *modes.warnings]

@@ -98,6 +98,7 @@ def corrected_eigenvectors(
 
 
 _RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_NO_WORK = 1e-9  # part of the damping forces in a free motion that may be along it where they do no work
 _BALANCE = 1e-6  # largest part of the load on a rigid-body motion
 _DEFECT = 1e-7  # largest residual of eigenvalues and vectors, relative
 
@@ -280,6 +281,13 @@ def linear_part(
         )
     within, resisting = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     if len(within) and np.linalg.cond(within) > 1.0 / _RIGID:
+        free = np.linalg.svd(within)[2][-1]
+        if abs(free @ resisting @ free) <= _NO_WORK * np.linalg.norm(resisting @ free):
+            raise PeriodicError(
+                "the train's own turning meets Coriolis forces of planets that circle, so that it has no mean that the "
+                "periodic response could start from; integrate in time by Newmark's method until the motion is steady "
+                "(`run`), or take the linear lines (`system`)"
+            )
         raise PeriodicError(
             "a motion has no stiffness but meets damping, or a contact that is apart in the mean: nothing says where "
             "its mean is; hold it with a soft spring"

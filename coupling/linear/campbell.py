@@ -26,6 +26,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.eigenpairs import refine_pair
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
+from gearwhine.coupling.linear.frozen_directions import frozen_warnings
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.numerics.branch_following import (
     BranchPoint,
@@ -35,6 +36,7 @@ from gearwhine.numerics.branch_following import (
     paired_modes,
     refined_crossing,
 )
+from gearwhine.numerics.result_warnings import ResultWarning
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -228,6 +230,8 @@ class SystemCampbell:
         Crossings between two speeds that no refinement could prove, in words.
     limit : float
         Highest frequency that was followed [rad/s].
+    warnings : tuple of dict
+        Warnings: that its branches are those of frozen carriers.
     """
 
     speeds: FloatArray
@@ -240,6 +244,7 @@ class SystemCampbell:
     crossings: tuple[SystemCrossing, ...]
     unsettled: tuple[str, ...]
     limit: float
+    warnings: tuple[ResultWarning, ...] = ()
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -351,6 +356,7 @@ def system_campbell(
         crossings=tuple(sorted(crossings, key=lambda one: (abs(one.speed), one.line.order))),
         unsettled=tuple(unsettled),
         limit=frequency_limit,
+        warnings=frozen_warnings(machine.system, "the natural frequencies of the Campbell diagram, and its crossings,"),
     )
 
 

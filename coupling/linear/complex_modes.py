@@ -26,10 +26,12 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.linear.frozen_directions import FROZEN_MODES, frozen_warnings
 from gearwhine.coupling.linear.planetary_modes import planetary_kinds
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.numerics.result_warnings import ResultWarning
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -232,6 +234,8 @@ class CoupledModes:
     planetary : tuple of str
         Kind of each mode in a planetary set, such as ``rotational: carrier``, see
         :mod:`gearwhine.coupling.linear.planetary_modes`; empty for modes of other parts.
+    warnings : tuple of dict
+        Warnings: that they are those of frozen carriers, see :mod:`gearwhine.coupling.linear.frozen_directions`.
     """
 
     eigenvalues: ComplexArray
@@ -245,6 +249,7 @@ class CoupledModes:
     certificate: ModesCertificate
     pairs: Eigenpairs
     planetary: tuple[str, ...] = ()
+    warnings: tuple[ResultWarning, ...] = ()
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -312,6 +317,7 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
         ),
         pairs=pairs,
         planetary=planetary_kinds(system, shares.moving),
+        warnings=frozen_warnings(system, FROZEN_MODES),
     )
 
 

@@ -37,6 +37,7 @@ from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.linear.frozen_directions import frozen
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.machine.connectors import TurningPart
@@ -539,6 +540,8 @@ _LARGEST_LINE_ERROR = 10.0  # errors beyond ten times the line carry no informat
 class BasisError:
     """Modal truncation error of a machine, by the same machine on another basis.
 
+    Directions that turn are frozen in both: what a basis lacks does not depend on the angle of the carriers.
+
     Attributes
     ----------
     machine : CoupledMachine
@@ -595,7 +598,7 @@ class BasisError:
 def _superposable(system: CoupledSystem) -> Eigenpairs | None:
     """Eigenpairs about the mean contact; None where they fail their proof, since the system can always be solved."""
     try:
-        pairs = quadratic_eigenpairs(*linear_matrices(system, mean_contact(system)))
+        pairs = quadratic_eigenpairs(*linear_matrices(frozen(system), mean_contact(system)))
     except ModesError:
         return None
     return pairs if pairs.sum_rule <= SUM_RULE else None
@@ -607,7 +610,7 @@ def _sensor_responses(
     """Motion along each sensor by each excitation, shape (f, e): by superposition where there are eigenpairs."""
     loads_of_lines = excitations(machine)
     loads = np.broadcast_to(loads_of_lines, (len(frequencies), *loads_of_lines.shape))
-    moved = response(machine.system, loads, frequencies, pairs=pairs)
+    moved = response(frozen(machine.system), loads, frequencies, pairs=pairs)
     return {name: moved @ row for name, row in machine.sensor_rows.items()}
 
 

@@ -28,7 +28,9 @@ from scipy import linalg
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import LoadedMesh, ToothContact
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
+from gearwhine.coupling.linear.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.numerics.result_warnings import ResultWarning
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -71,6 +73,11 @@ class SensorLevel:
             raise CouplingError(
                 f"gear mesh number {self.mesh} carries no mean force or does not turn; expected one that drives sensors"
             )
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Warnings: that the level is that of frozen carriers."""
+        return frozen_warnings(self.model.machine.system, "levels at sensors, at which reliefs of tips aim,")
 
     def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
         """Level with the flanks of ``contact``, those that carry, all teeth alike [m/s²]."""

@@ -249,7 +249,7 @@ class TurningResponse:
             return None
         return pairs if pairs.sum_rule <= SUM_RULE else None
 
-    def _dynamic(self, w: float) -> ComplexArray:
+    def _dynamic(self, w: complex) -> ComplexArray:
         """Z at a frequency without the connectors that turn, (n, n)."""
         stiffness, damping = self._constant
         dynamic = np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
@@ -263,7 +263,7 @@ class TurningResponse:
         count, labels = sparse.csgraph.connected_components(coupled, directed=False)
         return [np.flatnonzero(labels == number) for number in range(count)]
 
-    def _moved(self, w: float, loads: ComplexArray) -> ComplexArray:
+    def _moved(self, w: complex, loads: ComplexArray) -> ComplexArray:
         """Coordinates (n, i) under loads (n, i) at a frequency, without the connectors that turn."""
         if self._pairs is not None and w != 0.0:
             return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
@@ -286,7 +286,7 @@ class TurningResponse:
 
     def respond(
         self,
-        frequency: float,
+        frequency: complex,
         excitations: Sequence[Excitation],
         orders: Sequence[Order] | None = None,
     ) -> dict[Order, ComplexArray]:
@@ -294,8 +294,8 @@ class TurningResponse:
 
         Parameters
         ----------
-        frequency : float
-            ω [rad/s].
+        frequency : complex
+            ω [rad/s]; complex for the motion e^{iωt} of growing or decaying excitations.
         excitations : sequence of (mapping of order to ndarray of complex, shape (n,), mapping of int to complex)
             Of each excitation, loads on the coordinates by the order m of their frequency ω + m·f, and transmission
             errors at ω of contacts that turn, by the number of the contact [m].
@@ -414,7 +414,7 @@ class TurningResponse:
         near = [order for order in self.orders if abs(self.shift(order) - shift) <= _SAME_SHIFT * scale]
         return min(near, key=lambda order: sum(map(abs, order)), default=None)
 
-    def _law(self, frequency: float) -> ComplexArray:
+    def _law(self, frequency: complex) -> ComplexArray:
         """Laws k + i ω_m c of the connectors that turn by order, (m, d, d)."""
         law = np.zeros((len(self.orders), self._width, self._width), dtype=np.complex128)
         for number, order in enumerate(self.orders):

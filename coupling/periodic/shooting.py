@@ -170,7 +170,8 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     if system.turning_names:
         raise PeriodicError(
             f"the periodic response does not know directions that turn, those of {', '.join(system.turning_names)}; "
-            "integrate in time by Newmark's method until the motion is steady"
+            "integrate in time by Newmark's method until the motion is steady (`run`), or take the linear lines with "
+            "their sidebands (`system`)"
         )
     if not system.is_smooth:
         nonlinearity = "nonlinear bearings" if system.nonlinear else "friction between its teeth"

@@ -18,7 +18,6 @@ from gearwhine.coupling.analyses.modes_and_responses import (
     SolvedSystem,
     machine_warnings,
     solve_system,
-    turning_warnings,
     unstable_modes_warnings,
 )
 from gearwhine.coupling.analyses.motion import MachineMotion
@@ -35,6 +34,7 @@ from gearwhine.coupling.analyses.transient import mean_bearing_forces
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.load_analysis.load_warnings import load_warnings, sensitivity_warnings
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.housing import HousingModes
@@ -163,6 +163,9 @@ def gears_result(
             "so is the best tip relief; run, load or modes before gears give it those of the housing"
         )
         add_warnings(document, [warning("rigid seats", message)])
+    # All pairs aim at the sensors of one machine.
+    aims = [pair.aim for pair in pairs if isinstance(pair.aim, SensorLevel)]
+    add_warnings(document, aims[0].warnings if aims else ())
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures import draw_gear_pairs
@@ -196,8 +199,7 @@ def load_result(solved: SolvedLoad, origin: Origin, progress: Progress = silent)
 def system_result(machine: MachineUnderLoad, solved: SolvedSystem, progress: Progress = silent) -> Result[SolvedSystem]:
     """Return the result of the modes and responses of a coupled machine, with its operating point."""
     document = system_document(solved, machine.origin.housing)
-    add_warnings(document, unstable_modes_warnings(solved.stability))
-    add_warnings(document, turning_warnings(solved.machine))
+    add_warnings(document, solved.warnings)
     machine.add_to(document, progress)
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
@@ -255,7 +257,7 @@ def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tupl
     basis, mechanisms = machine.loaded.basis_error, machine.loaded.mechanisms
     solved = solve_system(machine.coupled, progress)
     document: dict[str, Any] = {"system": system_document(solved, machine.origin.housing)}
-    add_warnings(document, unstable_modes_warnings(solved.stability))
+    add_warnings(document, solved.warnings)
     add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
     add_mechanisms(document["system"], mechanisms)
     machine.add_parts_to(document)
@@ -265,7 +267,7 @@ def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tupl
 def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: CoupledModes) -> Result[RunSolution]:
     """Return the result of a motion over time; ``modes`` are those of the machine, whose instability is told."""
     document = joined({"title": machine.origin.title}, motion_document(machine, motion))
-    add_warnings(document, unstable_modes_warnings(coupled_stability(modes)))
+    add_warnings(document, [*unstable_modes_warnings(coupled_stability(modes)), *modes.warnings])
     machine.add_parts_to(document)
     document = joined(document, origin_document(machine.origin.housing))
     solved = RunSolution(housing=machine.origin.housing, load=machine.load).with_motion(motion)

@@ -1,6 +1,6 @@
 """Coupled system: quantities of its modes, stability, responses and Campbell diagram, and how they are shown."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -46,6 +46,12 @@ class _Mode(NamedTuple):
     def damping_ratio(self) -> float:
         """Coupled damping ratio."""
         return float(self.system.modes.damping_ratios[self.mode])
+
+    @property
+    def exponent(self) -> complex | None:
+        """Floquet exponent of the mode in the machine whose directions turn [1/s]."""
+        exponents = self.system.exponents
+        return None if exponents is None or np.isnan(exponents[self.mode]) else complex(exponents[self.mode])
 
     @property
     def damped_frequency(self) -> float:
@@ -113,11 +119,24 @@ def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
     return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name=long_name)
 
 
+def _turning(of: Callable[[complex], float]) -> Getter:
+    """Return the getter of a figure of a mode's exponent: absent where no directions turn, null where not solved."""
+
+    def figure(row: _Mode) -> Any:
+        if row.system.exponents is None:
+            return ABSENT
+        return None if row.exponent is None else of(row.exponent)
+
+    return figure
+
+
 MODE = (
     Quantity("", "number", "system_mode", unit="1"),
     Quantity("frequency_hz", "frequency_hz", "system_frequency", heading="frequency [Hz]", shown="z.2f"),
     Quantity("damping_ratio", "damping_ratio", "system_damping_ratio", unit="1", heading="damping ratio", shown="z.4f"),
     Quantity("damped_frequency_hz"),
+    Quantity("turning_frequency_hz", _turning(lambda exponent: abs(exponent) / HERTZ)),
+    Quantity("turning_damping_ratio", _turning(lambda exponent: -exponent.real / abs(exponent))),
     Quantity("kind", "kind", "system_kind", heading="kind", shown=lambda row: _named(row)),
     Quantity("where", "where", "system_where"),
     Quantity("planetary", lambda row: row.planetary or ABSENT),
@@ -601,6 +620,8 @@ def _content(document: Document) -> Iterator[str | Table]:
             "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: "
             "`load --sensitivity` has the lines by both and what changes them, `steady` the motion."
         )
+    if document.get("transmissibility") and any("turning_frequency_hz" in mode for mode in modes):
+        yield "They are the motions at the frequency of the error; the lines below have the sidebands beside it."
     yield from _lines(document.get("mesh_lines", []))
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
@@ -623,14 +644,27 @@ def _mesh_sentence(mesh: Document) -> str:
     return f"Mesh stiffness of {mesh['name']}{between}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}{twist}."
 
 
+def _number_or_blank(key: str, shown: str) -> Callable[[Document], str]:
+    return lambda mode: "" if mode.get(key) is None else format(mode[key], shown)
+
+
+_TURNING_MODE_COLUMNS = (
+    Column("turning [Hz]", "turning_frequency_hz", shown=_number_or_blank("turning_frequency_hz", ".2f")),
+    Column("damping ratio, turning", "turning_damping_ratio", shown=_number_or_blank("turning_damping_ratio", ".4f")),
+)
+"""Columns of modes where directions turn: their exponents beside the values of frozen carriers."""
+
+
 def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
     """Columns of coupled modes: frequency, damping, kind, the shares of what moves, and what is strained most."""
     # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
     some = {kind for mode in modes for kind, share in mode["energy"].items() if share > 0.0}
     rare = [kind for kind in ("axial", "body", "pedestal") if kind in some]
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
+    turning = any("turning_frequency_hz" in mode for mode in modes)
     return (
         *columns_of(MODE),
+        *(_TURNING_MODE_COLUMNS if turning else ()),
         *(Column("teeth" if kind == "mesh" else kind, f"energy.{kind}", shown=partial(_share, kind)) for kind in kinds),
         Column("strained most", _strained, numbers=("strained_most.share",)),
     )
