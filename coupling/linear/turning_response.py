@@ -108,8 +108,8 @@ class TurningResponse:
     @cached_property
     def orders(self) -> tuple[Order, ...]:
         """Orders m of the motions beside an excitation: m = 0 is the excitation's own frequency."""
-        # A bore's high orders reach far in few steps. Half again as far, a sensor's lines in the bundled planetary stage
-        # are within 3e-4 of those with twice as far.
+        # A bore's high orders reach far in few steps. Half again as far, sensors of the bundled planetary stage move as
+        # with twice as far, but for 3e-4.
         farthest = np.abs(self._offsets).max(axis=0, initial=0)
         bounds = np.maximum(self.sidebands, (3 * farthest + 1) // 2)
         reached = {self.still}

@@ -179,7 +179,7 @@ def test_a_run_up_does_not_depend_on_the_frame_of_the_coordinates(frame: float) 
 
 
 def test_responses_with_directions_that_turn_are_no_superposition_of_modes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(modes_and_responses, "resonance_grid", lambda *_: np.array([2e3, 5e3]))
+    monkeypatch.setattr(modes_and_responses, "resonance_grid", lambda *_, **__: np.array([2e3, 5e3]))
     turning, constant = (_assembled(_described(2, standing, 1e-5), 300.0) for standing in (("sun",), ()))
     assert modes_and_responses.solve_system(turning).superposition_error is None
     found = modes_and_responses.solve_system(constant).superposition_error
