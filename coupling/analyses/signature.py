@@ -253,7 +253,7 @@ def solve_signature(
             name: _sidebands(solved, histories.mesh_force[name], interval, window, only=pair)
             for pair, name in enumerate(pressed)
         },
-        bearing_spectra=last.bearings,
+        bearing_spectra={name: last.bearings[name] for name in histories.bearing_reaction},
         modes=modes,
         housing=last.housing,
         record_start=solved.record_start,
@@ -270,7 +270,7 @@ class _StretchSpectra:
     housing : Spectrum or None
         Accelerations of the housing's modes, shape (n_modes, m).
     bearings : dict of str to Spectrum
-        Forces in all directions that a bearing holds, shape (d, m).
+        Forces in all directions of a bearing or another connector on the housing, shape (d, m).
     """
 
     sensors: dict[str, Spectrum]
@@ -286,7 +286,7 @@ def _stretch_spectra(solved: SolvedTransient, signals: Signals) -> _StretchSpect
     return _StretchSpectra(
         {name: of(signal) for name, signal in histories.sensor_acceleration.items()},
         of(np.ascontiguousarray(modal.T)) if modal.shape[1] else None,
-        {name: of(np.ascontiguousarray(force.T)) for name, force in histories.bearing_reaction.items()},
+        {name: of(np.ascontiguousarray(force.T)) for name, force in histories.forces_on_housing.items()},
     )
 
 

@@ -1,6 +1,7 @@
 """Transfer path analysis: contributions of bearings and housing modes to a sensor's spectral lines.
 
-The rotors act on the housing by the bearing forces alone. With the force f of a connector on its other side, by the
+The rotors act on the housing by the forces of its connectors alone: bearings, supports of torque, and meshes of a ring
+whose rim moves with its bore (`housing_connections`). With the force f of a connector on its other side, by the
 convention of :mod:`gearwhine.coupling.machine.connectors`, a line of frequency w has
 
     a(w) = - w² (K - w² + iwC)⁻¹ Σ_b (-D_b f_b(w)),
@@ -66,7 +67,7 @@ class HousingPaths:
     frequencies : ndarray, shape (l,)
         w [rad/s].
     bearings : tuple of str
-        Bearings on the housing, b of them.
+        Bearings and other connectors on the housing, b of them.
     modes : int
         Number m of the n coordinates that are modes; the others are residual compliance.
     acceleration : ndarray of complex, shape (l, b, n)
@@ -115,8 +116,58 @@ def mode_parts(housing: HousingComponent, sensor: str, modal: ComplexArray, line
     return np.concatenate([parts, (lines - parts.sum(axis=1))[:, None]], axis=1)
 
 
+@dataclass(frozen=True, eq=False)
+class HousingConnection:
+    """A connector on the housing.
+
+    Attributes
+    ----------
+    name : str
+    directions : ndarray, shape (n, d)
+        Constant motions of the housing's coordinates along which forces act: those of a bearing or a support, and of a
+        mesh that circles in its ring D(0) - Σ A, then A and B of each part that turns.
+    rates : tuple of float
+        Rates of turning w of these parts at the nominal speed [rad/s].
+    contact : int or None
+        Number of the tooth contact; None for a linear connector.
+    """
+
+    name: str
+    directions: FloatArray
+    rates: tuple[float, ...] = ()
+    contact: int | None = None
+
+    def of_mesh(self, force: FloatArray, nominal_time: FloatArray) -> FloatArray:
+        """Split the force of a mesh over time, shape (s,), into those along the constant directions, (s, d)."""
+        parts = [np.ones_like(force)]
+        for rate in self.rates:
+            parts += [np.cos(rate * nominal_time), np.sin(rate * nominal_time)]
+        return np.asarray(force[:, None] * np.stack(parts, axis=1))
+
+
+def housing_connections(machine: CoupledMachine) -> tuple[HousingConnection, ...]:
+    """Bearings, supports of torque and meshes by which the machine acts on its housing; none without one."""
+    if machine.housing is None:
+        return ()
+    names = [component.name for component in machine.system.components]
+    start = sum(part.size for part in machine.system.components[: names.index(machine.housing.name)])
+    own = slice(start, start + machine.housing.size)
+    found = [
+        HousingConnection(one.name, one.directions[own]) for one in machine.system.linear if np.any(one.directions[own])
+    ]
+    for number, contact in enumerate(machine.system.contacts):
+        turning = [part for part in contact.turning if np.any(part.cosine[own]) or np.any(part.sine[own])]
+        columns = [contact.direction[:, None], *(half for part in turning for half in (part.cosine, part.sine))]
+        columns[0] = columns[0] - sum((part.cosine for part in turning), np.zeros_like(columns[0]))
+        directions = np.hstack(columns)[own]
+        if np.any(directions):
+            rates = tuple(part.rate for part in turning)
+            found.append(HousingConnection(contact.name, directions, rates, number))
+    return tuple(found)
+
+
 def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapping[str, ComplexArray]) -> HousingPaths:
-    """Response of the housing to the bearing forces, path by path.
+    """Response of the housing to the forces of its connectors, path by path.
 
     Parameters
     ----------
@@ -125,8 +176,8 @@ def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapp
     frequencies : ndarray, shape (l,)
         w [rad/s], above 0.
     forces : mapping of str to ndarray of complex, shape (l, d)
-        Complex amplitudes of each connector's force in its d directions [N, N m]: that of the shaft on its bearing.
-        Connectors without the housing are ignored.
+        Complex amplitudes of the force of each of the :func:`housing_connections` in its d directions [N, N m]: that of
+        the shaft on its bearing. Others are ignored.
 
     Raises
     ------
@@ -139,14 +190,9 @@ def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapp
     if np.any(frequencies <= 0.0):
         raise CouplingError("a frequency of 0 or below; the mean has no vibration to be traced")
     housing = machine.housing
-    names = [component.name for component in machine.system.components]
-    start = sum(part.size for part in machine.system.components[: names.index(housing.name)])
-    coordinates = slice(start, start + housing.size)
     loads, bearings = [], []
-    for connector in machine.system.linear:
-        directions = connector.directions[coordinates]
-        if not np.any(directions):
-            continue
+    for connector in housing_connections(machine):
+        directions = connector.directions
         shape = (len(frequencies), directions.shape[1])
         if connector.name not in forces or forces[connector.name].shape != shape:
             given_shape = forces[connector.name].shape if connector.name in forces else "none"

@@ -122,7 +122,7 @@ def lines_of_steady(solved: SolvedSteady, limit: float) -> MotionLines:
     for motion in solved.motions[: 1 if solved.superposed is None else None]:
         spectra = {
             name: amplitude_spectrum(np.ascontiguousarray(force.T), motion.response.period / len(force))
-            for name, force in motion.histories.bearing_reaction.items()
+            for name, force in motion.histories.forces_on_housing.items()
         }
         lines.append(_lines_of(spectra, _EXACT / motion.response.period))
     return superposed_lines(lines).between(np.finfo(float).tiny, limit)
@@ -159,7 +159,7 @@ def lines_of_run(solved: SolvedTransient, limit: float) -> MotionLines:
     histories = solved.histories
     spectra = {
         name: solved.record.spectrum(np.ascontiguousarray(force.T), max(limit, solved.trusted_limit))
-        for name, force in histories.bearing_reaction.items()
+        for name, force in histories.forces_on_housing.items()
     }
     if not spectra:
         return MotionLines(np.zeros(0), {}, _EXACT)
@@ -179,7 +179,8 @@ def tones_of(spectra: Mapping[str, Spectrum], axes: Mapping[str, tuple[int, ...]
     spectra : mapping of str to Spectrum
         Spectra of each bearing's forces and moments, shape (d, m).
     axes : mapping of str to tuple of int
-        Axis of each of them: 0 to 2 for forces, 3 and 4 for moments.
+        Axis of each of them: 0 to 2 for forces, 3 and 4 for moments. Other connectors on the housing have none; they
+        have the tones of the bearings.
     """
     first = next(iter(spectra.values()))
     together = Spectrum(
@@ -188,7 +189,9 @@ def tones_of(spectra: Mapping[str, Spectrum], axes: Mapping[str, tuple[int, ...]
         np.concatenate([spectrum.phase for spectrum in spectra.values()]),
         first.window,
     )
-    weights = [float(axis < _FORCES) for name in spectra for axis in axes[name]]
+    weights: list[float] = []
+    for name, spectrum in spectra.items():
+        weights += [float(axis < _FORCES) for axis in axes[name]] if name in axes else [0.0] * len(spectrum.amplitude)
     tones = hann_tones(together, weights)
     ends = np.cumsum([len(spectrum.amplitude) for spectrum in spectra.values()])[:-1]
     parts = np.split(tones.amplitudes, ends)

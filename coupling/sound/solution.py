@@ -473,6 +473,6 @@ def with_histories(solved: SolvedSound, transient: SolvedTransient, transfer: Mo
     histories = transient.histories
     repeats = transient.speed_profile is None and transient.record.sampling.window == "uniform"
     heard = microphone_histories(
-        transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
+        transient.machine, transfer, histories.times, histories.forces_on_housing, repeats=repeats
     )
     return replace(solved, histories=heard)

@@ -28,6 +28,7 @@ from gearwhine.coupling.machine.connectors import LinearConnector, NonlinearConn
 from gearwhine.coupling.machine.mounted_parts import MountedGear
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import friction_of
+from gearwhine.coupling.signals.transfer_paths import housing_connections
 from gearwhine.coupling.time.settings import MotionRecord, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,6 +57,10 @@ class Histories:
         rotation [W]; see :func:`gearwhine.coupling.machine.tooth_friction.friction_of`.
     bearing_axes : dict of str to tuple of int
         Axes of the columns of each ``bearing_reaction``: x, y, z and the rotations about x and y, 0 to 4.
+    housing_reaction : dict of str to ndarray, shape (s, d)
+        Forces on the housing beside those of bearings, along the directions of its
+        :func:`gearwhine.coupling.signals.transfer_paths.housing_connections`: of supports of torque [N m], and of
+        meshes on a ring whose rim moves with its bore [N].
     """
 
     times: FloatArray
@@ -66,6 +71,12 @@ class Histories:
     mesh_compression: dict[str, FloatArray]
     mesh_friction: dict[str, FloatArray]
     bearing_axes: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    housing_reaction: dict[str, FloatArray] = field(default_factory=dict)
+
+    @property
+    def forces_on_housing(self) -> dict[str, FloatArray]:
+        """Forces of the bearings and of all other connectors on the housing, shape (s, d) each [N, N m]."""
+        return self.bearing_reaction | self.housing_reaction
 
     @property
     def bearing_force(self) -> dict[str, FloatArray]:
@@ -225,7 +236,7 @@ def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
         rows = rotor.rim_section(gear.name, gear.at)[[0, 1, 5]]
         moved.append(machine.rows(rotor.name, rows))
-    deflections = np.vstack([moved[0], *(_deflection_rows(connector) for connector in _bearings(machine))])
+    deflections = np.vstack([moved[0], *(_deflection_rows(connector) for connector in _recorded(machine))])
     return TransientOutputs(
         displacement=np.vstack([*moved, deflections]),
         velocity=deflections,
@@ -251,7 +262,7 @@ def histories(machine: CoupledMachine, result: MotionRecord) -> Histories:
     nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
-    for connector in _bearings(machine):
+    for connector in _recorded(machine):
         columns = slice(column, column + len(_deflection_rows(connector)))
         column = columns.stop
         moved, moving = deflections[:, columns], result.velocity[:, columns]
@@ -260,13 +271,18 @@ def histories(machine: CoupledMachine, result: MotionRecord) -> Histories:
         forces[connector.name] = _force(connector, moved, moving, rates)
         if connector.name in nonlinear:
             forces[connector.name] += _beside_linear(connector, nonlinear[connector.name], moved, nominal_time)
+    bearings = [connector.name for connector in _bearings(machine)]
+    on_housing = {name: force for name, force in forces.items() if name not in bearings}
+    for one in housing_connections(machine):
+        if one.contact is not None:
+            on_housing[one.name] = one.of_mesh(result.force[:, one.contact], nominal_time)
     sensors = _in_space(machine, result)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
         times=result.times,
         sensor_acceleration=sensors,
         gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
-        bearing_reaction=forces,
+        bearing_reaction={name: forces[name] for name in bearings},
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
         mesh_friction={
@@ -275,6 +291,7 @@ def histories(machine: CoupledMachine, result: MotionRecord) -> Histories:
             if contact.sliding is not None
         },
         bearing_axes={connector.name: connector.axes for connector in _bearings(machine)},
+        housing_reaction=on_housing,
     )
 
 
@@ -329,6 +346,13 @@ def _gears(machine: CoupledMachine) -> list[MountedGear]:
 
 def _bearings(machine: CoupledMachine) -> tuple[LinearConnector, ...]:
     return machine.system.linear[: len(machine.bearings)]
+
+
+def _recorded(machine: CoupledMachine) -> tuple[LinearConnector, ...]:
+    """Linear connectors whose forces are recorded: the bearings, then others on the housing."""
+    on_housing = {one.name for one in housing_connections(machine)}
+    others = machine.system.linear[len(machine.bearings) :]
+    return (*_bearings(machine), *(connector for connector in others if connector.name in on_housing))
 
 
 def _beside_linear(

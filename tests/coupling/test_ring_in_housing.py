@@ -6,12 +6,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from gearwhine.coupling import CoupledMachine, Machine
+from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.signals.transfer_paths import housing_connections, housing_paths
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.coupling.time.settings import TransientOutputs, TransientSettings
 from gearwhine.coupling.time.transient import simulate
 from gearwhine.housing.model.patches import patch_center, rigid_motions, ring_matrix
 from gearwhine.meshes import ElementBlock, Mesh
@@ -124,6 +125,32 @@ def test_motion_by_harmonic_balance_satisfies_the_equations_in_time() -> None:
             left = left + now @ force
             largest = max(largest, float(np.abs(now @ force).max()))
         assert np.abs(left).max() < 1e-6 * largest
+
+
+def test_forces_on_the_housing_are_all_that_move_it() -> None:
+    """Meshes that circle in the ring, its support and the bearings: their paths add up to the housing's motion."""
+    machine, housing = _machine(), _ring_housing()
+    rows = transient_outputs(machine)
+    n = machine.system.size
+    start = sum(part.size for part in machine.system.components) - housing.size
+    own = np.eye(n)[start:]
+    assert machine.system.components[-1].name == "housing"
+    outputs = TransientOutputs(
+        *(np.vstack([part, own]) for part in (rows.displacement, rows.velocity, rows.acceleration))
+    )
+    result = simulate(machine.system, TransientSettings(2e-3, 0.0, 1e-5, 1e-5), outputs)
+    q, v, a = (part[:, -housing.size :] for part in (result.displacement, result.velocity, result.acceleration))
+    left = a + v @ housing.damping + q @ housing.stiffness
+    found = histories(machine, result).forces_on_housing
+    connections = {one.name: one for one in housing_connections(machine)}
+    assert [name for name in connections if "ring gear" in name] == [f"planet gear {k} -> ring gear" for k in (1, 2, 3)]
+    pushing = -sum(found[name] @ one.directions.T for name, one in connections.items())
+    assert np.abs(left - pushing).max() < 1e-9 * np.abs(pushing).max()
+    # The stiffness and the meshes' forces are no equal numbers that only agree at the start.
+    assert np.ptp(pushing, axis=0).min() > 0.1 * np.abs(pushing).max()
+    w = np.array([3000.0])
+    with pytest.raises(CouplingError, match="planet gear 1 -> ring gear: forces of shape none"):
+        housing_paths(machine, w, {name: part[:1] for name, part in found.items() if "ring gear" not in name})
 
 
 @pytest.mark.slow
