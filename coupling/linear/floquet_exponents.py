@@ -19,7 +19,7 @@ from gearwhine.coupling.linear.turning_response import TurningResponse
 ComplexArray = npt.NDArray[np.complex128]
 
 _FIRST_STEP = 1e-5  # first step of the secant method, relative
-_CONVERGED = 1e-9  # relative step at which it has converged
+_CONVERGED = 1e-6  # relative step from which the next one is rounding: the order of the secant method is 1.6
 _ITERATIONS = 20
 _FARTHEST = 3.0  # largest distance of an exponent from the frozen eigenvalue, over the largest rate of turning
 _SAME = 1e-7  # relative distance within which two exponents are one

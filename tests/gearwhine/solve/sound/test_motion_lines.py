@@ -30,7 +30,7 @@ def motion(period: float, harmonics: dict[int, complex]) -> Any:
     """One period of a bearing's force along x, of harmonics of the period."""
     at = np.arange(256) / 256
     force = np.sum([(a * np.exp(2j * np.pi * n * at)).real for n, a in harmonics.items()], axis=0)
-    histories = SimpleNamespace(bearing_reaction={"front": force[:, None]})
+    histories = SimpleNamespace(forces_on_housing={"front": force[:, None]})
     return SimpleNamespace(response=SimpleNamespace(period=period), histories=histories)
 
 
