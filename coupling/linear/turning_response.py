@@ -14,7 +14,7 @@ sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the 
 line.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -205,19 +205,41 @@ class TurningResponse:
         return found
 
     @cached_property
-    def _columns(self) -> ComplexArray:
-        """Directions D_l of all connectors that turn, side by side for each order l of them, (n, l d)."""
-        parts = [
-            one.directions.get(order, np.zeros((self.system.size, len(one.stiffness)), dtype=np.complex128))
-            for order in self._offsets
-            for one in self._turning
-        ]
-        return np.concatenate([np.zeros((self.system.size, 0)), *parts], axis=1)
+    def _columns(self) -> tuple[ComplexArray, list[Order], IntArray]:
+        """Directions D_l that are not zero, (n, c), the order l of each, and its number among the d directions."""
+        columns, orders, numbers = [np.zeros((self.system.size, 0), dtype=np.complex128)], [], []
+        first = 0
+        for one in self._turning:
+            for order, directions in one.directions.items():
+                moving = np.flatnonzero(np.any(directions != 0.0, axis=0))
+                columns.append(directions[:, moving])
+                orders += [order] * len(moving)
+                numbers += (first + moving).tolist()
+            first += len(one.stiffness)
+        return np.concatenate(columns, axis=1), orders, np.array(numbers, dtype=np.int64)
+
+    @cached_property
+    def _reached(self) -> dict[Order, tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray]]]:
+        """Columns by which a motion of each order deflects connectors, and by which their forces act on it.
+
+        With each column stands the place of the connector's direction and order among the unknowns, of the order m + l
+        that a motion of m deflects, and of m - l whose force acts on it.
+        """
+        _, orders, numbers = self._columns
+        places = {order: number for number, order in enumerate(self.orders)}
+
+        def reached(order: Order, step: Callable[[Order, Order], Order]) -> tuple[IntArray, IntArray]:
+            found = [(n, places.get(step(order, gap), -1)) for n, gap in enumerate(orders)]
+            columns = np.array([n for n, place in found if place >= 0], dtype=np.int64)
+            at = np.array([place for _, place in found if place >= 0], dtype=np.int64)
+            return columns, at * self._width + numbers[columns]
+
+        return {order: (reached(order, _plus), reached(order, _minus)) for order in self.orders}
 
     @cached_property
     def _basis(self) -> tuple[ComplexArray, ComplexArray]:
-        """Basis B (n, r) of the columns and their parts M (r, l d): many columns are sums of others."""
-        columns = self._columns
+        """Basis B (n, r) of the columns and their parts M (r, c): many columns are sums of others."""
+        columns = self._columns[0]
         sizes = np.linalg.norm(columns, axis=0)
         sizes[sizes == 0.0] = 1.0
         bases, parts = [], []
@@ -315,11 +337,10 @@ class TurningResponse:
         unknown = {order for loads, _ in excitations for order in loads} - set(self.orders)
         if unknown:
             raise CouplingError(f"loads of orders {sorted(unknown)}; expected orders among those that are followed")
-        places = {order: number for number, order in enumerate(self.orders)}
         count, width = len(self.orders), self._width
         law = self._law(frequency)
-        free = np.zeros((count, width, len(excitations)), dtype=np.complex128)
-        between = np.zeros((count, width, count, width), dtype=np.complex128)
+        free = np.zeros((count * width, len(excitations)), dtype=np.complex128)
+        between = np.zeros((count * width, count * width), dtype=np.complex128)
         loads = {
             order: np.array([one.get(order, np.zeros(self.system.size)) for one, _ in excitations]).T.astype(complex)
             for order in self.orders
@@ -337,35 +358,28 @@ class TurningResponse:
                 moved[order] = alone
             # Deflections of all directions; the columns are complex, and not conjugated.
             seen_by = mix.T @ (basis.T @ alone)
-            compliance = (seen_by[:, :rank] @ mix).reshape(len(self._offsets), width, -1, width)
-            by_load = seen_by[:, rank:].reshape(len(self._offsets), width, -1)
             # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
-            gaps = list(enumerate(self._offsets))
-            acting = [(n, places[other]) for n, gap in gaps if (other := _minus(order, gap)) in places]
-            seen = [(n, places[other]) for n, gap in gaps if (other := _plus(order, gap)) in places]
-            rows, deflected = np.array(seen).T[:, :, None]
-            columns, acted = np.array(acting).T[:, None, :]
-            between[deflected, :, acted, :] += compliance[rows, :, columns, :]
+            (seen, deflected), (acting, acted) = self._reached[order]
+            between[np.ix_(deflected, acted)] += seen_by[seen, :rank] @ mix[:, acting]
             if order in loads:
-                free[deflected[:, 0]] += by_load[rows[:, 0]]
-        free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
-        matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
+                free[deflected] += seen_by[seen, rank:]
+        first = self.orders.index(self.still) * width
+        free[first : first + width] -= np.array([self._error(errors) for _, errors in excitations]).T
+        split = between.reshape(count * width, count, width)
+        matrix = np.einsum("apq,pqr->apr", split, law, optimize=True).reshape(count * width, count * width)
         matrix += np.eye(count * width)
         scale = max(self.rates, default=0.0)
         if any(abs(frequency + self.shift(order)) <= _STANDSTILL * scale for order in self.orders):
             # What is constant in time leaves the train's own turning open.
-            deflections = np.linalg.lstsq(matrix, free.reshape(count * width, -1), rcond=_STANDSTILL)[0]
+            deflections = np.linalg.lstsq(matrix, free, rcond=_STANDSTILL)[0]
         else:
-            deflections = np.linalg.solve(matrix, free.reshape(count * width, -1))
+            deflections = np.linalg.solve(matrix, free)
         forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
+        forces = forces.reshape(count * width, -1)
         motion = {}
         for order, alone in moved.items():
-            acting_forces = np.zeros((rank, len(excitations)), dtype=np.complex128)
-            for n, gap in enumerate(self._offsets):
-                source = _minus(order, gap)
-                if source in places:
-                    acting_forces += mix[:, n * width : (n + 1) * width] @ forces[places[source]]
-            total = -alone[:, :rank] @ acting_forces
+            acting, acted = self._reached[order][1]
+            total = -alone[:, :rank] @ (mix[:, acting] @ forces[acted])
             if order in loads:
                 total += alone[:, rank:]
             motion[order] = total.T
