@@ -399,7 +399,11 @@ class LineModel(MeshHarmonicModel):
             for way in (1.0, -1.0)
         ]
         slope = self.machine.rows(rotor.name, 0.5 * (sides[0] + sides[1]))
-        if mounted.seat is not None:
+        around = next((one for one in self.machine.rotors if one.name == (rotor.carrier or mounted.seat)), None)
+        if around is not None:
+            ends = [around.seat_motions(rotor.axis, rotor.start + at + way * step) for way in (-1.0, 1.0)]
+            slope = slope - self.machine.rows(around.name, (ends[1] - ends[0]) / (2.0 * step))
+        elif mounted.seat is not None:
             assert self.machine.housing is not None
             seat = self.machine.housing.seat_motions(mounted.seat, rotor.start + at)
             slope = slope - self.machine.rows(self.machine.housing.name, rigid_slope(seat))

@@ -22,7 +22,7 @@ def bearing_ports(housing: Housing, machine: Machine) -> dict[str, sparse.csr_ar
             ports[one.seat], machine.shaft(one.rotor).start + one.bearing.at - centers[one.seat]
         )
         for one in machine.bearings
-        if one.seat is not None
+        if one.seat in ports
     }
 
 
