@@ -14,7 +14,7 @@ sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the 
 line.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -206,19 +206,41 @@ class TurningResponse:
         return found
 
     @cached_property
-    def _columns(self) -> ComplexArray:
-        """Directions D_l of all connectors that turn, side by side for each order l of them, (n, l d)."""
-        parts = [
-            one.directions.get(order, np.zeros((self.system.size, len(one.stiffness)), dtype=np.complex128))
-            for order in self._offsets
-            for one in self._turning
-        ]
-        return np.concatenate([np.zeros((self.system.size, 0)), *parts], axis=1)
+    def _columns(self) -> tuple[ComplexArray, list[Order], IntArray]:
+        """Directions D_l that are not zero, (n, c), the order l of each, and its number among the d directions."""
+        columns, orders, numbers = [np.zeros((self.system.size, 0), dtype=np.complex128)], [], []
+        first = 0
+        for one in self._turning:
+            for order, directions in one.directions.items():
+                moving = np.flatnonzero(np.any(directions != 0.0, axis=0))
+                columns.append(directions[:, moving])
+                orders += [order] * len(moving)
+                numbers += (first + moving).tolist()
+            first += len(one.stiffness)
+        return np.concatenate(columns, axis=1), orders, np.array(numbers, dtype=np.int64)
+
+    @cached_property
+    def _reached(self) -> dict[Order, tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray]]]:
+        """Columns by which a motion of each order deflects connectors, and by which their forces act on it.
+
+        With each column stands the place of the connector's direction and order among the unknowns, of the order m + l
+        that a motion of m deflects, and of m - l whose force acts on it.
+        """
+        _, orders, numbers = self._columns
+        places = {order: number for number, order in enumerate(self.orders)}
+
+        def reached(order: Order, step: Callable[[Order, Order], Order]) -> tuple[IntArray, IntArray]:
+            found = [(n, places.get(step(order, gap), -1)) for n, gap in enumerate(orders)]
+            columns = np.array([n for n, place in found if place >= 0], dtype=np.int64)
+            at = np.array([place for _, place in found if place >= 0], dtype=np.int64)
+            return columns, at * self._width + numbers[columns]
+
+        return {order: (reached(order, _plus), reached(order, _minus)) for order in self.orders}
 
     @cached_property
     def _basis(self) -> tuple[ComplexArray, ComplexArray]:
-        """Basis B (n, r) of the columns and their parts M (r, l d): many columns are sums of others."""
-        columns = self._columns
+        """Basis B (n, r) of the columns and their parts M (r, c): many columns are sums of others."""
+        columns = self._columns[0]
         sizes = np.linalg.norm(columns, axis=0)
         sizes[sizes == 0.0] = 1.0
         bases, parts = [], []
@@ -320,7 +342,6 @@ class TurningResponse:
         unknown = {order for loads, _ in excitations for order in loads} - set(self.orders)
         if unknown:
             raise CouplingError(f"loads of orders {sorted(unknown)}; expected orders among those that are followed")
-        places = {order: number for number, order in enumerate(self.orders)}
         count, width = len(self.orders), self._width
         law = self._law(frequency)
         free = np.zeros((count * width, len(excitations)), dtype=np.complex128)
@@ -331,11 +352,8 @@ class TurningResponse:
             if any(order in one for one, _ in excitations)
         }
         # Motions under unit forces along the columns' basis, and under the loads, of each order that is asked for.
-        basis, every_mix = self._basis
+        basis, mix = self._basis
         rank = basis.shape[1]
-        # Few directions have parts of high orders.
-        active = np.flatnonzero(np.any(every_mix != 0.0, axis=0))
-        mix, (gaps, own) = every_mix[:, active], np.divmod(active, width)
         moved: dict[Order, ComplexArray] = {}
         asked = set(self.orders if orders is None else orders)
         for order in self.orders:
@@ -345,19 +363,15 @@ class TurningResponse:
                 moved[order] = alone
             # Deflections of all directions; the columns are complex, and not conjugated.
             seen_by = mix.T @ (basis.T @ alone)
-            compliance = seen_by[:, :rank] @ mix
             # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
-            acting = np.array([places.get(_minus(order, gap), -1) for gap in self._offsets])[gaps]
-            seen = np.array([places.get(_plus(order, gap), -1) for gap in self._offsets])[gaps]
-            rows, columns = np.flatnonzero(seen >= 0), np.flatnonzero(acting >= 0)
-            deflected, acted = seen[rows] * width + own[rows], acting[columns] * width + own[columns]
-            between[np.ix_(deflected, acted)] += compliance[np.ix_(rows, columns)]
+            (seen, deflected), (acting, acted) = self._reached[order]
+            between[np.ix_(deflected, acted)] += seen_by[seen, :rank] @ mix[:, acting]
             if order in loads:
-                free[deflected] += seen_by[rows, rank:]
-        begin = places[self.still] * width
-        free[begin : begin + width] -= np.array([self._error(errors) for _, errors in excitations]).T
-        matrix = np.einsum("abq,bqr->abr", between.reshape(-1, count, width), law, optimize=True)
-        matrix = matrix.reshape(count * width, count * width)
+                free[deflected] += seen_by[seen, rank:]
+        first = self.orders.index(self.still) * width
+        free[first : first + width] -= np.array([self._error(errors) for _, errors in excitations]).T
+        split = between.reshape(count * width, count, width)
+        matrix = np.einsum("apq,pqr->apr", split, law, optimize=True).reshape(count * width, count * width)
         matrix += np.eye(count * width)
         scale = max(self.rates, default=0.0)
         if any(abs(frequency + self.shift(order)) <= _STANDSTILL * scale for order in self.orders):
@@ -366,14 +380,11 @@ class TurningResponse:
         else:
             deflections = np.linalg.solve(matrix, free)
         forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
+        forces = forces.reshape(count * width, -1)
         motion = {}
         for order, alone in moved.items():
-            acting_forces = np.zeros((rank, len(excitations)), dtype=np.complex128)
-            for n, gap in enumerate(self._offsets):
-                source = _minus(order, gap)
-                if source in places:
-                    acting_forces += every_mix[:, n * width : (n + 1) * width] @ forces[places[source]]
-            total = -alone[:, :rank] @ acting_forces
+            acting, acted = self._reached[order][1]
+            total = -alone[:, :rank] @ (mix[:, acting] @ forces[acted])
             if order in loads:
                 total += alone[:, rank:]
             motion[order] = total.T

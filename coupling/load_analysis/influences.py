@@ -177,7 +177,7 @@ class LoadSensitivity:
         if self.lines is None:
             return ()
         system = self.lines.model.machine.system
-        effect = "`system` solves the lines with their sidebands"
+        effect = "`system` solves the lines of sensors with their sidebands, whose sound is listed beside the ranking"
         return frozen_warnings(system, "lines of sensors and of the sound, by which parts are ranked,", effect=effect)
 
     @property

@@ -20,6 +20,7 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
 from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.machine_description import Machine
@@ -35,7 +36,7 @@ from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
-    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
+    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound, SidebandSound
     from gearwhine.housing.acoustics.radiation import HousingRadiation
 
 FloatArray = npt.NDArray[np.float64]
@@ -60,12 +61,16 @@ class SolvedLines:
         Lines of the sound, the loudest by their A-weighted power first.
     housing : HousingModes
         Housing with residual modes of the sensors, and the harmonic responses at the lines.
+    sidebands : tuple of SidebandSound
+        Sound of mesh harmonics and their sidebands, where directions turn with planet carriers; `model` and all other
+        lines freeze these.
     """
 
     model: LineModel
     of_sensors: tuple[Line, ...]
     sound: "tuple[HarmonicSound, ...]"
     housing: HousingModes
+    sidebands: "tuple[SidebandSound, ...]" = ()
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -229,7 +234,8 @@ def solve_lines(
         return None
     progress("responses of the housing at the lines")
     exact = extension.with_harmonic_responses(modes, _housing_loads(first, loaded))
-    return solved(exact, [sound.line.frequency for sound in first.sound])
+    lines = solved(exact, [sound.line.frequency for sound in first.sound])
+    return replace(lines, sidebands=_sidebands(acoustics, lines, radiation, progress))
 
 
 def _radiation(acoustics: "Acoustics | None", field: HousingField, progress: Progress) -> "HousingRadiation | None":
@@ -258,6 +264,22 @@ def _sound(
     progress("sound of the lines")
     limit = min(acoustics.limit_hz(field), field.complete_below_hz)
     return loudest_lines(model, radiation.with_shapes(field.shapes), _TWO_PI * limit, heard)
+
+
+def _sidebands(
+    acoustics: "Acoustics | None", lines: SolvedLines, radiation: "HousingRadiation | None", progress: Progress
+) -> "tuple[SidebandSound, ...]":
+    """Solve for the sound of the loudest mesh harmonics and sidebands of a machine whose directions turn."""
+    machine = lines.model.machine
+    if acoustics is None or radiation is None or not machine.system.turns:
+        return ()
+    from gearwhine.coupling.sound.mesh_harmonics import sideband_sounds
+
+    progress("sound of the sidebands")
+    field = lines.housing.displacement_field
+    limit = min(acoustics.limit_hz(field), field.complete_below_hz)
+    responses = MeshHarmonicModel(machine).parts(_TWO_PI * limit)
+    return sideband_sounds(responses, lines.model.housing, radiation.with_shapes(field.shapes))
 
 
 def _housing_loads(solved: SolvedLines, loaded: Mapping[str, sparse.csr_array]) -> list[tuple[float, FloatArray]]:

@@ -1,0 +1,74 @@
+"""What results say of a machine whose directions turn: lines by kind and phasing, exponents, warnings."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearwhine as gw
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.sensor_level import SensorLevel
+from gearwhine.results.system import sections
+from tests.machines.turning_set import TEETH, turning_machine, turning_set
+
+NATURAL = (900.0, 1300.0)
+RING = TEETH[0] + 2 * TEETH[1]
+
+
+def test_analyses_that_freeze_the_carriers_warn_of_it() -> None:
+    machine = turning_machine(NATURAL)
+    modes = turning_set(NATURAL).modes()
+    level = SensorLevel(MeshHarmonicModel(machine), 0, "x", {1: 1.0})
+    for warnings in (modes.warnings, level.warnings):
+        (told,) = warnings
+        assert told["name"] == "carrier frozen"
+        assert set(told["turning"]) == {
+            f"planet gear {number} -> ring gear{part}" for number in (1, 2, 3) for part in ("", ", tilt")
+        }
+        assert told["turning_hz"] == pytest.approx(machine.speeds["carrier"] / (2.0 * np.pi), rel=1e-12)
+
+
+@pytest.mark.slow
+def test_a_campbell_diagram_over_frozen_carriers_warns_of_it() -> None:
+    diagram = turning_set(NATURAL).campbell([280.0, 300.0], frequency_limit=4000.0)
+    assert [told["name"] for told in diagram.warnings] == ["carrier frozen"]
+
+
+@pytest.mark.slow
+def test_system_tells_sidebands_exponents_and_the_error_of_frozen_carriers(tmp_path: Path) -> None:
+    machine = turning_set(NATURAL)
+    result = gw.Study(machine).system()
+    document = result.document
+    carrier = machine.assembled.speeds["carrier"] / (2.0 * np.pi)
+    strongest = max(document["mesh_lines"], key=lambda line: line["sensor_acceleration_m_per_s2"]["together"]["x"])
+    # Of 83 teeth, three planets keep the line one turn above the first harmonic.
+    assert strongest["frequency_hz"] == pytest.approx((RING + 1) * carrier, rel=1e-9)
+    assert strongest["cause"] == "1× planets' meshes of carrier + 1× carrier"
+    assert strongest["kind"] == "carrier sideband"
+    assert not strongest["suppressed"]
+    assert strongest["order"] == pytest.approx((RING + 1) * carrier * 2.0 * np.pi / 300.0, rel=1e-9)
+    (cancelled,) = (
+        line for line in document["mesh_lines"] if line["frequency_hz"] == pytest.approx((RING - 1) * carrier, rel=1e-9)
+    )
+    assert cancelled["suppressed"]
+    text = [str(one) for section in sections(document) for one in section.content if isinstance(one, str)]
+    (told,) = (one for one in text if one.startswith("Suppressed by the phasing of the planets"))
+    assert f"{(RING - 1) * carrier:.1f} Hz (1× planets' meshes of carrier - 1× carrier)" in told
+
+    (frozen,) = (one for one in document["warnings"] if one["name"] == "carrier frozen")
+    listed = [mode for mode in document["modes"] if mode["turning_frequency_hz"] is not None]
+    errors = [mode["frequency_hz"] / mode["turning_frequency_hz"] - 1.0 for mode in listed]
+    assert len(listed) > 15
+    assert frozen["largest_error"] == pytest.approx(max(errors, key=abs), rel=1e-9)
+    assert 1e-3 < abs(frozen["largest_error"]) < 0.02
+    assert f"{100.0 * frozen['largest_error']:+.2g} %" in frozen["message"]
+
+    result.write(tmp_path)
+    with xr.open_dataset(tmp_path / "results.nc") as stored:
+        kinds = stored["system_line_kind"].values.tolist()
+        assert kinds == [line["kind"] for line in document["mesh_lines"]]
+        assert stored["system_line_phasing"].values == pytest.approx(
+            [line["phasing"] for line in document["mesh_lines"]], abs=1e-12
+        )
+    assert (tmp_path / "system-lines.png").exists()
