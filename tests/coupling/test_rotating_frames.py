@@ -6,11 +6,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from planetary_machines import set_parts
 
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling.analyses import modes_and_responses
 from gearwhine.coupling.assembly import assemble_machine
-from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.linear.complex_modes import coupled_modes, stability
 from gearwhine.coupling.linear.frequency_response import response
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.base_motion import BaseHistory, BaseMotion
@@ -96,6 +97,13 @@ def test_response_does_not_depend_on_the_frames_of_the_coordinates(standing: Col
         torsion = slice(start + 2 * m, start + size)
         assert np.abs(found[(0,)][torsion] - expected[torsion]).max() < 1e-9 * scale
         start += size
+
+
+def test_the_rotation_of_a_set_as_a_whole_neither_grows_nor_decays() -> None:
+    """Centripetal terms and the geometric stiffness of the pins cancel on it, whatever the speed."""
+    modes = Machine(**set_parts() | {"speed": 3000.0}).modes()
+    assert np.sum(modes.eigenvalues == 0.0) == 1
+    assert stability(modes).growing == ()
 
 
 def test_responses_with_directions_that_turn_are_no_superposition_of_modes(monkeypatch: pytest.MonkeyPatch) -> None:
