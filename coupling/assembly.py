@@ -736,7 +736,8 @@ def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]
 
 def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothContact, sense: int) -> Sliding | None:
     """Sliding of one side of the teeth, with the law ``contact``; None without friction, or where nothing turns."""
-    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == mesh_frame(coordinates, mesh):
+    frame = mesh_frame(coordinates, mesh)
+    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == frame:
         return None
     return sliding_flanks(
         coordinates,
@@ -744,6 +745,7 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
         mesh.line_of_action(sense),
+        frame,
     )
 
 

@@ -38,8 +38,11 @@ def sliding_flanks(
     geometry: GearPairGeometry,
     friction: SlidingFriction,
     line: LineOfAction,
+    frame: float = 0.0,
 ) -> Sliding:
     """Sliding velocity of the flanks of a gear pair by the coordinates and the nominal rotation.
+
+    The nominal sliding is that seen from the carrier of a planet, on which both axes stand still.
 
     Parameters
     ----------
@@ -49,6 +52,8 @@ def sliding_flanks(
     geometry : GearPairGeometry
     friction : SlidingFriction
     line : LineOfAction
+    frame : float
+        Speed at which the line of centres turns with the carrier of a planet [rad/s].
     """
     across = line.sense * np.array([-line.push[1], line.push[0]])
     gears = (geometry.driver, geometry.driven)
@@ -62,7 +67,7 @@ def sliding_flanks(
         rim = rotor.rim_section(mounted.name, at)
         moved, rotation = side * (across @ rim[:2]), rim[5]
         directions += coordinates.rows(name, np.array([moved + begin * rotation, (end - begin) * rotation])).T
-        nominal += coordinates.speeds[name] * np.array([begin, end - begin])
+        nominal += (coordinates.speeds[name] - frame) * np.array([begin, end - begin])
     return Sliding(friction, directions, nominal)
 
 

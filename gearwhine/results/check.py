@@ -405,7 +405,7 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "thrust": [
             _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
         ],
-        "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
+        "gear pairs": [_pair_summary(pair) for pair in _listed_pairs(document)],
         "planetary": [line for one in document.get("planetary", ()) for line in set_summary(one)],
         "damping": damping_lines(document.get("damping", ())),
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
@@ -450,6 +450,32 @@ def _is_worth_a_line(location: Document) -> bool:
     return bool(location["rows"]) or bool(location["thrust_plus_z"]) != bool(location["thrust_minus_z"])
 
 
+def _listed_pairs(document: Document) -> Iterator[Document]:
+    """Yield the gear pairs, those that are alike by the symmetry of a set as one with the names of all.
+
+    These are between like members of one set and read alike but for their names.
+    """
+    kinds: dict[tuple[str, str], tuple[str, str]] = {}
+    for one in document.get("planetary", ()):
+        for mesh in one["meshes"]:
+            kinds.setdefault((mesh["driver"], mesh["driven"]), (one["name"], mesh["kind"]))
+    alike: dict[object, list[Document]] = {}
+    for number, pair in enumerate(document.get("gear_pairs", ())):
+        kind = kinds.get((pair["driver"], pair["driven"]))
+        words = () if kind is None else tuple(_pair_lines(_named_pair(pair, ("", "")), on_bearings=True))
+        alike.setdefault((kind, words) if kind is not None else number, []).append(pair)
+    for pairs in alike.values():
+        drivers, drivens = (", ".join(dict.fromkeys(pair[end] for pair in pairs)) for end in ("driver", "driven"))
+        yield _named_pair(pairs[0], (drivers, drivens))
+
+
+def _named_pair(pair: Document, names: tuple[str, str]) -> Document:
+    """Return a gear pair with other names of driver and driven gear."""
+    gears = [{**gear, "name": name} for gear, name in zip(pair["geometry"]["gears"], names, strict=True)]
+    driver, driven = names
+    return {**pair, "driver": driver, "driven": driven, "geometry": {**pair["geometry"], "gears": gears}}
+
+
 def _pair_summary(pair: Document) -> str:
     teeth = " : ".join(str(gear["teeth"]) for gear in pair["geometry"]["gears"])
     line = f"{pair['driver']} → {pair['driven']}: {teeth} teeth, contact ratio {pair['total_contact_ratio']:.3f}"
@@ -467,7 +493,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
         "thrust": [_location_line(location) for location in document.get("axial_location", ())],
         "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
-        "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
+        "gear pairs": [line for pair in _listed_pairs(document) for line in _pair_lines(pair, on_bearings)],
         "planetary": [line for one in document.get("planetary", ()) for line in set_lines(one)],
         "gear bodies": gear_body_lines(document),
         "damping": damping_lines(document.get("damping", ())),

@@ -26,6 +26,7 @@ from gearwhine.output.sections import (
 )
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.bearing_lives import life_quantities
+from gearwhine.results.planetary import MEMBER
 
 if TYPE_CHECKING:
     from gearwhine.coupling.assembly import CoupledMachine
@@ -530,18 +531,6 @@ def _meaning(outcome: Quantity) -> str:
 
 _OF_SENSORS = ("amplitude of acceleration", "m/s2", "sensor_changes", "sensor_line")
 _OF_SOUND = ("sound power", "W", "sound_changes", "loudest_line")
-
-_RPM = 30.0 / np.pi
-MEMBER = (
-    Quantity("role"),
-    Quantity("name", "shaft", heading="member"),
-    Quantity("speed_rpm", lambda member: member.speed * _RPM, heading="speed\n[rpm]", shown=".5g"),
-    Quantity("relative_speed_rpm", lambda member: member.relative_speed * _RPM),
-    Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".5g"),
-    Quantity("power_w", "power", heading="power\n[W]", shown=".4g"),
-    Quantity("state", heading="is"),
-)
-"""Quantities of a member of a planetary set; a row is a :class:`SetMember`."""
 
 PLANET = (
     Quantity("name", "shaft", heading="planet"),

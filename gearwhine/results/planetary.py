@@ -11,6 +11,19 @@ _HARMONICS = 6
 """Mesh harmonics of which the document has the sums over the planets."""
 
 
+MEMBER = (
+    Quantity("role"),
+    Quantity("name", "shaft", heading="member"),
+    Quantity("speed_rpm", lambda member: member.speed * RPM, heading="speed\n[rpm]", shown=".5g"),
+    Quantity("relative_speed_rpm", lambda member: member.relative_speed * RPM),
+    Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".5g"),
+    Quantity("power_w", "power", heading="power\n[W]", shown=".4g"),
+    Quantity("rolling_power_w", "rolling_power"),
+    Quantity("state", heading="is"),
+)
+"""Quantities of a member of a planetary set; a row is a :class:`SetMember`."""
+
+
 def _of_meshes(checked: Any, attribute: str) -> list[float | None]:
     values = getattr(checked, attribute)
     return [None] * len(checked.placed.meshes) if values is None else list(values)
@@ -31,20 +44,7 @@ PLANETARY = (
     Quantity("assembly_number", "placed.assembly_number"),
     Quantity("misfits", "placed.misfits"),
     Quantity("clearance_m", lambda checked: checked.placed.clearances[0].gap if checked.placed.clearances else None),
-    Rows(
-        "members",
-        "members",
-        (
-            Quantity("name", "shaft"),
-            Quantity("role"),
-            Quantity("state"),
-            Quantity("speed_rpm", lambda member: member.speed * RPM),
-            Quantity("relative_speed_rpm", lambda member: member.relative_speed * RPM),
-            Quantity("torque_n_m", "torque"),
-            Quantity("power_w", "power"),
-            Quantity("rolling_power_w", "rolling_power"),
-        ),
-    ),
+    Rows("members", "members", MEMBER),
     Rows(
         "meshes",
         lambda checked: list(

@@ -72,7 +72,9 @@ class Participation:
 
 def participation(rotor: Rotor, lateral: LateralModes, axial: AxialModes | None) -> Participation:
     """Participation of a rotor's modes and vectors in the rigid motions of its ground."""
-    places, inertias = _spread(rotor)
+    # At loads and where the section changes, the slopes of modes and attachment modes jump with the shear strain.
+    nodes = lateral.fields.shaft.nodes
+    places, inertias = _spread(rotor, nodes if axial is None else np.union1d(nodes, axial.fields.shaft.nodes))
     mass, diametral, polar = inertias.T
     displacement, slope = lateral.evaluate(places)
     along = np.zeros(0) if axial is None else axial.evaluate(places) @ mass
@@ -81,17 +83,22 @@ def participation(rotor: Rotor, lateral: LateralModes, axial: AxialModes | None)
     )
 
 
-def _spread(rotor: Rotor) -> tuple[FloatArray, FloatArray]:
-    """Quadrature places (p,) [m] and mass, diametral and polar inertia (p, 3) of the whole rotor there."""
+def _spread(rotor: Rotor, cuts: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Quadrature places (p,) [m] and mass, diametral and polar inertia (p, 3) of the whole rotor there.
+
+    No interval of the quadrature reaches over one of the ``cuts`` [m].
+    """
     stations = rotor.stations
     places, inertias = [stations], [station_inertias(rotor, stations)]
     for part, left in zip(rotor.segments, rotor.joints[:-1].tolist(), strict=True):
         if rotor.mass_model == "lumped" or not isinstance(part, Segment):
             continue
         thinnest = min(outer for outer, _ in part.end_diameters)
-        count = int(np.ceil(part.length / thinnest))
-        fractions = ((np.arange(count)[:, None] + _FRACTIONS) / count).ravel()
-        lengths = np.tile(_WEIGHTS, count) * part.length / count
+        ends = np.linspace(0.0, 1.0, int(np.ceil(part.length / thinnest)) + 1)
+        within = (cuts - left) / part.length
+        ends = np.union1d(ends, within[(within > 0.0) & (within < 1.0)])
+        fractions = (ends[:-1, None] + np.diff(ends)[:, None] * _FRACTIONS).ravel()
+        lengths = (np.diff(ends)[:, None] * _WEIGHTS).ravel() * part.length
         sections = [part.section(float(fraction)) for fraction in fractions]
         mass = lengths * [section.mass_per_length for section in sections]
         polar = lengths * [section.polar_inertia_per_length for section in sections]

@@ -61,6 +61,17 @@ def test_free_shafts_move_as_rigid_bodies() -> None:
     assert held[:, 1] @ held[:, 3] == pytest.approx(-SHAFT.mass * arm, rel=1e-9)
 
 
+def test_rigid_motions_of_a_shaft_on_bearings_are_its_participation() -> None:
+    """Its modes and attachment modes span them; the slopes of these jump at bearings, where no segment ends."""
+    law = 1e9 * np.eye(2)
+    part = component([Bearing(str(at), at, law, 0.0 * law) for at in (0.17, 0.61)])
+    held = participations([part], POINT, {})
+    for at in (0.0, 0.17, 0.4, 0.61, 0.9):
+        arm = START + at - POINT[2]
+        expected = np.array([[1, 0, 0, arm], [0, 1, -arm, 0], [0, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+        assert part.motions(at) @ held[:, [0, 1, 3, 4]] == pytest.approx(expected, abs=1e-9)
+
+
 def test_thrust_bearings_let_the_shaft_be_shaken_along_its_axis() -> None:
     matrix = np.diag([1e7, 1e7, 1e7, 0.0, 0.0])
     part = component([Bearing("one", 0.0, matrix, 0.0 * matrix)])

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from planetary_machines import set_parts
 from scipy.linalg import expm
 
 from gearwhine.coupling import (
@@ -19,7 +20,7 @@ from gearwhine.coupling import (
 )
 from gearwhine.coupling.analyses import modes_and_responses
 from gearwhine.coupling.assembly import assemble_machine
-from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.linear.complex_modes import coupled_modes, stability
 from gearwhine.coupling.linear.frequency_response import response
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.base_motion import BaseHistory, BaseMotion
@@ -176,6 +177,13 @@ def test_a_run_up_does_not_depend_on_the_frame_of_the_coordinates(frame: float) 
     assert np.abs(found - still.displacement).max() < 2e-4 * size.max()
     assert moving.energy.error < 1e-4
     assert still.energy.error < 1e-4
+
+
+def test_the_rotation_of_a_set_as_a_whole_neither_grows_nor_decays() -> None:
+    """Centripetal terms and the geometric stiffness of the pins cancel on it, whatever the speed."""
+    modes = Machine(**set_parts() | {"speed": 3000.0}).modes()
+    assert np.sum(modes.eigenvalues == 0.0) == 1
+    assert stability(modes).growing == ()
 
 
 def test_responses_with_directions_that_turn_are_no_superposition_of_modes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from planetary_case import bearings, gear, ravigneaux, rotor, stage
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.case.model import Case
-from gearwhine.results.check import check_document, sections
+from gearwhine.results.check import check_document, sections, summary
 from gearwhine.results.planetary import set_lines
 
 
@@ -77,6 +77,29 @@ def test_check_tells_members_places_and_phases(case: Case) -> None:
     assert "; 15.71 kW enter, 12.22 kW pass through the meshes" in text
     assert "mesh harmonics 1, 2, 3, 4, 5, 6 excite rotational modes" in text
     json.dumps(document)
+
+
+def test_meshes_that_are_alike_by_symmetry_are_one_line() -> None:
+    """Meshes of another set, and one whose teeth have another law, stay apart."""
+    document = stage()
+    document["gear_pair"] = [{"driver": "s", "driven": "p"}]
+    found = check_document(read(document))
+
+    def lines(told: Any) -> list[str]:
+        (section,) = [one for one in told if one.title == "gear pairs"]
+        return [str(line).strip() for line in (section.note, *section.content)]
+
+    first, second = lines(summary(found))
+    assert first.startswith("s → p 1, p 2, p 3: 24 : 30 teeth, ")
+    assert second.startswith("p 1, p 2, p 3 → r: 30 : -84 teeth, ")
+    told = lines(sections(found))
+    assert [line for line in told if " → " in line] == [told[0], told[len(told) // 2]]
+    assert sum(line.startswith("p 1, p 2, p 3: 30 teeth") for line in told) == 2
+    # All six are in the document, and so is what sets two of them apart.
+    assert len(found["gear_pairs"]) == 6
+    found["gear_pairs"][1]["stiffness_model"] = "another"
+    assert [line.split(":")[0] for line in lines(summary(found))] == ["s → p 1, p 3", "s → p 2", "p 1, p 2, p 3 → r"]
+    assert len(lines(summary(found | {"planetary": []}))) == 6
 
 
 @pytest.mark.parametrize(
