@@ -65,7 +65,7 @@ class SolvedSystem:
         Speeds of the leading rotor [rad/s].
     lines : tuple of ResponseParts
         Motions at the mesh harmonics of operation by transmission error and load shuttling, with a housing that has
-        sensors, about the mean contact.
+        sensors, about the mean contact; none of a machine whose directions turn.
     """
 
     machine: CoupledMachine
@@ -179,9 +179,12 @@ def _mesh_responses(
 
 
 def _sensor_lines(machine: CoupledMachine) -> tuple[ResponseParts, ...]:
-    """Motions at the mesh harmonics below the housing's limit; none without a sensor, a load or a speed."""
+    """Motions at the mesh harmonics below the housing's limit; none without a sensor, a load or a speed.
+
+    None either where directions turn: frozen carriers would put all sidebands of a harmonic into one line.
+    """
     housing = machine.housing
-    if housing is None or not housing.sensors or housing.complete_below is None:
+    if housing is None or not housing.sensors or housing.complete_below is None or machine.system.turns:
         return ()
     return MeshHarmonicModel(machine).parts(housing.complete_below)
 
@@ -241,8 +244,8 @@ def turning_warnings(machine: CoupledMachine) -> list[ResultWarning]:
         f"natural modes and damping ratios are those with the carriers frozen at their first angle, as {named[0]}"
         + (f" and {len(named) - 1} more connectors turn" if len(named) > 1 else " turns")
         + " against parts that are not alike all round; responses are those at the frequency of the excitation, its "
-        "sidebands by the turning of the carriers are solved with them and left out here, and motions over time have "
-        "them all"
+        "sidebands by the turning of the carriers are solved with them and left out here, as are the lines of sensors; "
+        "motions over time have them all"
     )
     return [warning("carrier frozen", message, turning=named)]
 

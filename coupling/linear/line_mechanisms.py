@@ -148,7 +148,12 @@ class LineMechanisms:
         return together
 
     def motions(self, frequency: float, within: float = 0.0) -> list[tuple[float, dict[str, ComplexArray]]]:
-        """Motions q by the mechanisms, shape (n,) each; frequencies and parameters as of `loads`."""
+        """Motions q by the mechanisms, shape (n,) each; frequencies and parameters as of `loads`.
+
+        None of a machine whose directions turn: its lines are sidebands, of excitations at other frequencies.
+        """
+        if self.machine.system.turns:
+            return []
         solved = []
         for at, loads in self.loads(frequency, within):
             moved = linalg.solve(self.model.dynamic_stiffness(at), np.stack([*loads.values()], axis=1)).T

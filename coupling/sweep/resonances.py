@@ -84,7 +84,8 @@ def find_resonances(
 ) -> Resonances | None:
     """Find the resonances of a machine at steady speed up to a frequency.
 
-    None where its speed varies or its base moves, and where it has no mesh, no output, or no proof.
+    None where its speed varies, its base moves or its directions turn with a carrier, and where it has no mesh, no
+    output, or no proof.
 
     Parameters
     ----------
@@ -97,7 +98,8 @@ def find_resonances(
     steady = machine.speed_profile is None and machine.loads.base is None
     heard = speed_of_sound is not None and machine.housing is not None
     listens = machine.housing is not None and (machine.housing.sensors or heard)
-    if not (steady and listens and limit_hz > _LOWEST_HZ):
+    # Frozen carriers would put the sidebands of a harmonic into one line.
+    if machine.system.turns or not (steady and listens and limit_hz > _LOWEST_HZ):
         return None
     model = MeshHarmonicModel(machine)
     try:

@@ -7,9 +7,17 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledMachine, Machine
+from gearwhine.coupling.analyses import modes_and_responses
+from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.description.gear_train import Output
+from gearwhine.coupling.description.parts import TorqueSupport
+from gearwhine.coupling.gears import SquareStiffness
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.coupling.sweep.resonances import find_resonances
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import simulate
@@ -88,6 +96,19 @@ def _machine(speed: float = 300.0) -> CoupledMachine:
     return Machine(**parts, housing=_ring_housing(), speed=speed, torque=200.0).assembled
 
 
+def _varying(held: str) -> CoupledMachine:
+    """The machine with meshes whose stiffness varies, its ring or its carrier held."""
+    parts = plane_set(
+        equal_angles(3), pressure_angle=np.radians(20.0), with_ring=True, damping=1e-5, material=STEEL, diameter=0.05
+    )
+    parts["shafts"] = [replace(shaft, rim_seat="bore") if shaft.name == "ring" else shaft for shaft in parts["shafts"]]
+    parts["gear_pairs"] = [replace(pair, stiffness=SquareStiffness(3e8)) for pair in parts["gear_pairs"]]
+    if held == "carrier":
+        parts |= {"torque_supports": [TorqueSupport("carrier", 0.05, stiffness=2e6)], "outputs": [Output("ring")]}
+    housing = replace(_ring_housing(), complete_below=2.0 * np.pi * 3e3)
+    return Machine(**parts, housing=housing, speed=300.0, torque=200.0).assembled
+
+
 def test_motion_by_harmonic_balance_satisfies_the_equations_in_time() -> None:
     machine = _machine()
     system = machine.system
@@ -124,6 +145,39 @@ def test_motion_by_harmonic_balance_satisfies_the_equations_in_time() -> None:
             left = left + now @ force
             largest = max(largest, float(np.abs(now @ force).max()))
         assert np.abs(left).max() < 1e-6 * largest
+
+
+def test_no_lines_of_frozen_carriers_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three meshes in phase push the third order of the bore, which a sensor hears beside the mesh harmonic alone."""
+    monkeypatch.setattr(modes_and_responses, "resonance_grid", lambda *_: np.array([2e3, 5e3]))
+    turning, held = _varying("ring"), _varying("carrier")
+    w = 2.0 * np.pi * abs(turning.system.contacts[0].mesh_frequency)
+    frozen = MeshHarmonicModel(turning)
+    (number,) = [n for n, one in enumerate(turning.system.contacts) if one.name == "planet gear 1 -> ring gear"]
+    assert turning.system.contacts[number].turning
+    model, row = TurningResponse(turning.system, frozen.contact), turning.sensor_rows["top"]
+    (line,) = frozen.parts(1.1 * w)
+    errors, load = dict[int, complex](), np.zeros(turning.system.size, dtype=np.complex128)
+    for contact, harmonic in line.causes:
+        tooth, law = turning.system.contacts[contact], frozen.contact.stiffness[contact]
+        error = frozen._errors[contact][harmonic - 1]
+        if tooth.turning:
+            errors[contact] = law * error / (law + 1j * w * frozen.contact.damping[contact])
+        else:
+            load += law * error * tooth.direction
+    motion = model.respond(w, [({model.still: load}, errors)])
+    heard = {order: abs(row @ moved[0]) for order, moved in motion.items()}
+    assert heard[model.still] < 1e-9 * max(heard.values())
+    assert abs(row @ line.motion) > 0.5 * max(heard.values())
+
+    assert solve_system(turning).lines == ()
+    assert LineMechanisms(turning).parts(w) == {}
+    assert find_resonances(turning, 3e3) is None
+    # Where the carrier stands still there are no sidebands.
+    w = 2.0 * np.pi * abs(held.system.contacts[0].mesh_frequency)
+    assert len(solve_system(held).lines) > 0
+    assert LineMechanisms(held).parts(w)["top"].together > 0.0
+    assert find_resonances(held, 3e3) is not None
 
 
 @pytest.mark.slow
