@@ -364,6 +364,12 @@ def _in_wall(solid: PlacedSolid, wall: Wall) -> bool:
     return not any(math.hypot(x - a, y - b) + solid.outer <= radius + _SLACK for a, b, radius in wall.bores)
 
 
+def _bore_radius(rotor: Rotor, left: float, right: float) -> float:
+    """Smallest inner radius of a shaft between two places from its left end [m]; 0 off its segments."""
+    radii = [inner for start, end, inner, _ in _shaft_lengths(rotor) if min(end, right) - max(start, left) > _SLACK]
+    return min(radii, default=0.0)
+
+
 def placed_solids(
     shafts: Sequence[Shaft], gears: Sequence[ShaftGear], bearings: Sequence[MountedBearing]
 ) -> list[PlacedSolid]:
@@ -372,7 +378,10 @@ def placed_solids(
     solids = [solid for shaft in shafts for solid in shaft_solids(shaft.rotor, shaft.axis, shaft.start)]
     for mounted in gears:
         shaft = by_name[mounted.shaft]
-        solids += gear_solids(mounted.gear, shaft.name, shaft.axis, shaft.start + mounted.at)
+        for solid in gear_solids(mounted.gear, shaft.name, shaft.axis, shaft.start + mounted.at):
+            # A gear that is made from a hollow shaft has the bore of that.
+            within = _bore_radius(shaft.rotor, solid.left - shaft.start, solid.right - shaft.start)
+            solids.append(solid if solid.inner > 0.0 else replace(solid, inner=within))
     for held in bearings:
         shaft, bearing = by_name[held.rotor], held.bearing
         solids.append(bearing_solid(bearing.name, shaft.rotor, shaft.axis, shaft.start, bearing.at, held.elements))

@@ -93,7 +93,7 @@ def on_an_inner_shaft(hand: float = 1.0, **changes: Any) -> Machine:
         ],
         "gears": [
             machine.gears[0],
-            ShaftGear(toothed("wheel", TEETH[1], -hand, bore=0.045), "out", 0.04),
+            ShaftGear(toothed("wheel", TEETH[1], -hand), "out", 0.04),
             ShaftGear(toothed("second pinion", TEETH[0], -hand), "in", 0.14),
             ShaftGear(toothed("second wheel", TEETH[1], hand), "inner", 0.19),
         ],
@@ -202,6 +202,14 @@ def test_position_of_a_bearing_that_another_shaft_holds(made: Callable[[], Machi
     expected = difference(machine, number, moved, 2.5e-5)[:2]
     own = [pair[outcome].by_bearing_position(name) for outcome in OUTCOMES[:2]]
     np.testing.assert_allclose(own, expected, rtol=1e-6)
+
+
+def test_a_gear_that_is_made_from_a_hollow_shaft_leaves_room_for_a_shaft_inside() -> None:
+    machine = on_an_inner_shaft()
+    thick = Rotor("inner", [Segment(0.25, 0.0262, 0.0, STEEL)])
+    shafts = [replace(one, rotor=thick) if one.name == "inner" else one for one in machine.shafts]
+    with pytest.raises(CouplingError, match="gear 'wheel': at: expected a gear clear of shaft \"inner\"; they overlap"):
+        replace(machine, shafts=shafts)
 
 
 def test_lines_by_the_position_of_a_bearing_that_another_shaft_holds() -> None:
