@@ -98,6 +98,7 @@ from gearwhine.coupling.machine.loads import (
     largest_torques,
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
+from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
@@ -986,7 +987,14 @@ class Machine:
             axis=shaft.axis,
             bodies=[body for body in self.gear_bodies if body.gear in names],
             carrier=shaft.carrier,
+            pin=self._mounted_pin(shaft),
         )
+
+    def _mounted_pin(self, shaft: Shaft) -> MountedPin | None:
+        """Elastic pin of a planet under its bearings; None of a rigid one."""
+        if shaft.pin is None:
+            return None
+        return shaft.pin.mounted([shaft.start + mounted.bearing.at for mounted in self._bearings_on(shaft.name)])
 
     def _static_gears(
         self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
@@ -1014,7 +1022,8 @@ class Machine:
         exact = static_shaft(self.rotor(shaft.name), places)
         acceleration = self._acceleration_on(shaft)
         place = shaft.name, shaft.axis, shaft.start
-        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat)
+        pin = self._mounted_pin(shaft)
+        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat, pin)
 
     def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
         """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
@@ -1058,13 +1067,14 @@ class Machine:
         return replace(mounted, offset=-stiffness @ displacement)
 
     def _seats_in(self, shaft: Shaft) -> list[float]:
-        """Stations of a shaft at the bearings that it holds, such as those of planets, from its left end [m]."""
-        return [
-            min(max(held.start + mounted.bearing.at - shaft.start, 0.0), shaft.rotor.length)
-            for mounted in self.bearings
-            if self.shaft_around(mounted) == shaft.name
-            for held in [self.shaft(mounted.rotor)]
-        ]
+        """Stations of a shaft at the bearings or pins that it holds, as those of planets, from its left end [m]."""
+        places: list[float] = []
+        for mounted in self.bearings:
+            if self.shaft_around(mounted) == shaft.name:
+                held = self.shaft(mounted.rotor)
+                pin = self._mounted_pin(held)
+                places += [held.start + mounted.bearing.at] if pin is None else pin.walls
+        return [min(max(z - shaft.start, 0.0), shaft.rotor.length) for z in dict.fromkeys(places)]
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:
         return [mounted for mounted in self.bearings if mounted.rotor == shaft]

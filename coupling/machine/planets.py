@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.machine.base_motion import rotor_participation
-from gearwhine.coupling.machine.components import HousingComponent, RotorComponent
+from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, pin_name
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.frames import Frames, is_isotropic
@@ -40,6 +40,7 @@ def frame_speeds(
     """
     carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
     frames = {name: speeds[carrier] for name, carrier in carriers.items()}
+    frames |= {pin_name(rotor.name): frames[rotor.name] for rotor in rotors if rotor.pin is not None}
     frames |= {carrier: speeds[carrier] for carrier in carriers.values()}
     for rotor in rotors:
         pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]
@@ -107,6 +108,21 @@ def centrifugal_stiffness(
     law = force * np.array([[0.0, 1.0], [1.0, -distance]])
     directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
     return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
+
+
+def pin_seat(coordinates: MachineCoordinates, planet: RotorComponent, at: float) -> tuple[str, FloatArray]:
+    """Name of a planet's pin, and the motion (5, n) of the seat of a bearing on it, at a station of the planet."""
+    pin = coordinates.pin(planet.name)
+    return pin.name, pin.motions(planet.start + at)
+
+
+def pin_in_walls(coordinates: MachineCoordinates, planet: RotorComponent) -> LinearConnector:
+    """Stiffness of an elastic pin between its bearings' seats and the walls of the carrier that clamp it."""
+    pin, carrier = coordinates.pin(planet.name), coordinates.rotor(planet.carrier or "")
+    own = coordinates.rows(pin.name, np.diag(1.0 / pin.mounted.scale))
+    walls = [coordinates.rows(carrier.name, carrier.seat_motions(planet.axis, wall)) for wall in pin.mounted.walls]
+    stiffness = pin.mounted.stiffness
+    return LinearConnector(pin.name, np.vstack([own, *walls]).T, stiffness, np.zeros_like(stiffness))
 
 
 def mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:
