@@ -356,7 +356,7 @@ def assemble_machine(
 
     acting = frames.loads(_coordinate_loads(coordinates, bearings, loads))
     acting.constant += centrifugal_load(coordinates, frames)
-    for linear, _ in bearing_connectors:
+    for linear in (*(linear for linear, _ in bearing_connectors), *within):
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
     system = CoupledSystem(

@@ -32,6 +32,8 @@ _SAME_PLACE = 1e-6
 """Distance of a bearing from a wall below which it sits in it, and is moved off it by as much [m]."""
 _RIGID = 1e3
 """Stiffness of a rigid pin along the axis, over that of its springs across it."""
+_STIFF = (1e11, 1e11, 1e11, 1e8, 1e8)
+"""Stiffness of a pin that stands for a rigid one [N/m, N m/rad]."""
 _INERTIA = (1e-5, 1e-5, 1e-5, 1e-9, 1e-9)
 """Inertia of a pin's coordinates [kg, kg m²]: a hundredth of a gram, on which no pin vibrates below 100 kHz."""
 
@@ -122,6 +124,13 @@ class PinSprings:
 Pin = PinBeam | PinSprings
 
 
+def stiff_pin(bearings: Sequence[float]) -> "MountedPin":
+    """Return a pin that takes each bearing along as one body with the carrier at its place along z [m]."""
+    stations = tuple(dict.fromkeys(bearings))
+    springs = np.diag(np.tile(_STIFF, len(stations)))
+    return MountedPin(stations, stations, np.block([[springs, -springs], [-springs, springs]]))
+
+
 @dataclass(frozen=True, eq=False)
 class MountedPin:
     """A pin with the bearings on it.
@@ -134,12 +143,23 @@ class MountedPin:
         Over the pin's n coordinates, then x, y, z and the rotations about x and y of each wall.
     arms : ndarray, shape (5 s, n), optional
         Motion of the stations by the coordinates; by default these are their motions.
+    displacement : ndarray, shape (5,), optional
+        Displacement of the whole pin from its place in the walls [m, rad].
     """
 
     stations: tuple[float, ...]
     walls: tuple[float, ...]
     stiffness: FloatArray
     arms: FloatArray | None = None
+    displacement: FloatArray | None = None
+
+    @property
+    def offset(self) -> FloatArray | None:
+        """Force of the displacement over coordinates and walls, in addition to the stiffness' own; None without one."""
+        if self.displacement is None:
+            return None
+        moved = np.concatenate([self.rigid_motions @ self.displacement, np.zeros(5 * len(self.walls))])
+        return np.asarray(-self.stiffness @ moved)
 
     @property
     def size(self) -> int:

@@ -122,7 +122,8 @@ def pin_in_walls(coordinates: MachineCoordinates, planet: RotorComponent) -> Lin
     own = coordinates.rows(pin.name, np.diag(1.0 / pin.mounted.scale))
     walls = [coordinates.rows(carrier.name, carrier.seat_motions(planet.axis, wall)) for wall in pin.mounted.walls]
     stiffness = pin.mounted.stiffness
-    return LinearConnector(pin.name, np.vstack([own, *walls]).T, stiffness, np.zeros_like(stiffness))
+    directions, undamped = np.vstack([own, *walls]).T, np.zeros_like(stiffness)
+    return LinearConnector(pin.name, directions, stiffness, undamped, offset=pin.mounted.offset)
 
 
 def mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:
