@@ -79,9 +79,21 @@ def centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatAr
     for part in coordinates.components:
         if isinstance(part, RotorComponent) and part.carrier is not None:
             outward = np.subtract(part.axis, coordinates.rotor(part.carrier).axis)
-            participation = rotor_participation(part, (0.0, 0.0, 0.0))[:, :2]
+            participation = _shift_participation(part)
             load += coordinates.rows(part.name, participation @ (frames.of(part.name) ** 2 * outward))
     return load
+
+
+def _shift_participation(planet: RotorComponent) -> FloatArray:
+    """Participation of a planet's coordinates in its motion along x and y, (n, 2) [√kg].
+
+    The shift of a free shaft is one of its own coordinates, and bending has no part in it; what a participation by
+    quadrature has of that would be no equilibrium of a set that turns as one.
+    """
+    participation = rotor_participation(planet, (0.0, 0.0, 0.0))[:, :2].copy()
+    rigid, size = planet.modal.lateral.rigid_motions.shape[1], planet.plane_size
+    participation[rigid:size, 0] = participation[size + rigid :, 1] = 0.0
+    return participation
 
 
 def centrifugal_stiffness(
@@ -96,7 +108,7 @@ def centrifugal_stiffness(
     carrier = coordinates.rotor(planet.carrier or "")
     outward = np.subtract(planet.axis, carrier.axis)
     distance = math.hypot(*outward)
-    participation = rotor_participation(planet, (0.0, 0.0, 0.0))[:, :2]
+    participation = _shift_participation(planet)
     mass = float(np.sum(participation[:, 0] ** 2))
     at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
     station = carrier.station(planet.start + at)

@@ -1,0 +1,46 @@
+"""Simple, stepped and double planets in a case: forces of the meshes by hand, modes that stay, mean of the motion."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from planetary_case import double_stage, stage, stepped_stage
+
+import gearwhine as gw
+
+SUN_FORCE = 50.0 / (3.0 * 0.024 * math.cos(math.radians(20.0)))
+"""50 N m on 24 teeth of 2 mm with three planets [N]."""
+# Force of the last mesh over that of the first: a stepped planet is a lever, others hand the force on.
+KINDS = {"simple": (stage, 1.0), "stepped": (stepped_stage, 36 / 18), "double": (double_stage, 1.0)}
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def studied(request: pytest.FixtureRequest) -> tuple[Any, float]:
+    made, lever = KINDS[request.param]
+    return gw.build(**(made() | {"transient": {"revolutions": 2, "discard": 1}})), lever
+
+
+def test_mesh_forces_are_those_of_the_torques(studied: tuple[Any, float]) -> None:
+    study, lever = studied
+    pairs = study.operating_point().document["gear_pairs"]
+    forces = {(one["driver"][0], one["driven"][0]): one["force_n"] for one in pairs}
+    first, last = (next(force for ends, force in forces.items() if name in ends) for name in "sr")
+    assert first == pytest.approx(SUN_FORCE, rel=1e-6)
+    assert last == pytest.approx(lever * SUN_FORCE, rel=1e-6)
+
+
+def test_a_set_that_turns_as_one_neither_comes_back_nor_runs_away(studied: tuple[Any, float]) -> None:
+    """Centrifugal forces of planets that circle balance at any rotation of the set."""
+    modes = studied[0].case.parts.machine.modes()
+    assert modes.kinds[0] == "rigid"
+    assert modes.eigenvalues.real.max() <= 0.0
+    assert np.count_nonzero(modes.frequencies_hz < 100.0) == 1
+
+
+@pytest.mark.slow
+def test_the_mean_of_the_motion_is_the_static_force(studied: tuple[Any, float]) -> None:
+    study, lever = studied
+    means = {(one["driver"], one["driven"]): one["mean_force_n"] for one in study.simulate().document["gear_pairs"]}
+    assert [force for ends, force in means.items() if "s" in ends] == pytest.approx([SUN_FORCE] * 3, rel=5e-3)
+    assert [force for ends, force in means.items() if "r" in ends] == pytest.approx([lever * SUN_FORCE] * 3, rel=5e-3)
