@@ -444,6 +444,11 @@ class Machine:
         """Mean torque that each pair takes from its driver [N m], positive where power flows to the driven gear."""
         return self.train.mean_pair_torques(self.constant_torques, self.speed)
 
+    @cached_property
+    def carrying_pairs(self) -> tuple[bool, ...]:
+        """Whether each gear pair carries a part of the torque; an idle one is pressed by deflections alone."""
+        return tuple(flank is not None for flank in carrying_flanks(self.pair_torques, self.torque))
+
     @property
     def is_loaded(self) -> bool:
         """Whether torque, force, weight or preload loads the shafts in their bearings."""

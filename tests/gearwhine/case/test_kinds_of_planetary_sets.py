@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from planetary_case import double_stage, stage, stepped_stage
+from planetary_case import double_stage, ravigneaux, stage, stepped_stage
 
 import gearwhine as gw
 
@@ -44,3 +44,11 @@ def test_the_mean_of_the_motion_is_the_static_force(studied: tuple[Any, float]) 
     means = {(one["driver"], one["driven"]): one["mean_force_n"] for one in study.simulate().document["gear_pairs"]}
     assert [force for ends, force in means.items() if "s" in ends] == pytest.approx([SUN_FORCE] * 3, rel=5e-3)
     assert [force for ends, force in means.items() if "r" in ends] == pytest.approx([lever * SUN_FORCE] * 3, rel=5e-3)
+
+
+def test_a_set_that_runs_idle_has_no_shares_and_no_warnings_of_its_faces() -> None:
+    """The large sun of a Ravigneaux gearbox turns along without a torque."""
+    result = gw.build(**ravigneaux()).operating_point()
+    assert [one["name"] for one in result.document["planetary"]] == ["stage"]
+    told = [one["name"] for one in result.document["warnings"]]
+    assert set(told) == {"idle gear pair"}
