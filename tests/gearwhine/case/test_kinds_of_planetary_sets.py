@@ -52,3 +52,20 @@ def test_a_set_that_runs_idle_has_no_shares_and_no_warnings_of_its_faces() -> No
     assert [one["name"] for one in result.document["planetary"]] == ["stage"]
     told = [one["name"] for one in result.document["warnings"]]
     assert set(told) == {"idle gear pair"}
+
+
+def test_a_long_pinion_meets_a_sun_at_either_end() -> None:
+    """The long planet of a Ravigneaux gearbox as one gear, in place of one for each sun."""
+    document = ravigneaux()
+    document["gear"] = [one for one in document["gear"] if one["name"] != "back"]
+    long = next(one for one in document["gear"] if one["name"] == "front")
+    long |= {"at": "31.5 mm", "face_width": "48 mm"}
+    document["planetary"][1]["planets"] = [f"front {number}" for number in (1, 2, 3)]
+    study = gw.build(**document)
+    pairs = study.operating_point().document["gear_pairs"]
+    ends = {(one["driver"][0], one["driven"][0]) for one in pairs}
+    assert ends == {("s", "s"), ("s", "f"), ("f", "r"), ("l", "f")}
+    assert [one["force_n"] for one in pairs if one["driven"] == "r"] == pytest.approx([SUN_FORCE] * 3, rel=5e-2)
+    long["at"] = "56 mm"
+    with pytest.raises(gw.CaseError, match="in one plane, within half a face width, 24 mm; they are 41 mm apart"):
+        gw.build(**document)
