@@ -66,6 +66,8 @@ from gearwhine.coupling.machine.loads import Unbalance as Unbalance
 from gearwhine.coupling.machine.mounted_parts import GearMesh as GearMesh
 from gearwhine.coupling.machine.mounted_parts import MountedBearing as MountedBearing
 from gearwhine.coupling.machine.mounted_parts import MountedGear as MountedGear
+from gearwhine.coupling.machine.pins import PinBeam as PinBeam
+from gearwhine.coupling.machine.pins import PinSprings as PinSprings
 from gearwhine.coupling.machine.speed_profile import FreeRun as FreeRun
 from gearwhine.coupling.machine.speed_profile import SpeedProfile as SpeedProfile
 from gearwhine.coupling.machine.speed_profile import SpeedRun as SpeedRun

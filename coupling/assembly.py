@@ -41,6 +41,7 @@ from gearwhine.coupling.machine.components import (
     PedestalComponent,
     RotorComponent,
     pedestal_component,
+    pin_component,
 )
 from gearwhine.coupling.machine.connectors import (
     ContactConnector,
@@ -64,6 +65,8 @@ from gearwhine.coupling.machine.planets import (
     deformed_rim,
     frame_speeds,
     mesh_frame,
+    pin_in_walls,
+    pin_seat,
     shaft_around,
     turning_rims,
 )
@@ -293,7 +296,8 @@ def assemble_machine(
         for mounted in bearings
         if mounted.seat is None and mounted.bearing.pedestal is not None
     ]
-    components: tuple[Component, ...] = (*rotors, *(() if housing is None else (housing,)), *pedestals)
+    pins = [pin_component(rotor.name, rotor.pin) for rotor in rotors if rotor.pin is not None]
+    components: tuple[Component, ...] = (*rotors, *(() if housing is None else (housing,)), *pedestals, *pins)
     if len({component.name for component in components}) < len(components):
         raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
     # Linearised about a load it has an offset, and may be without stiffness: an unloaded one.
@@ -337,6 +341,7 @@ def assemble_machine(
         within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
     for rotor in rotors:
         within += _transports(coordinates, rotor, speeds[rotor.name], frames.of(rotor.name), speed_range)
+    within += [pin_in_walls(coordinates, rotor) for rotor in rotors if rotor.pin is not None]
 
     senses = _senses(meshes, speeds, speed_ratios)
     phases = mesh_phases(
@@ -354,7 +359,7 @@ def assemble_machine(
     acting = frames.loads(_coordinate_loads(coordinates, bearings, loads))
     of_planets = centrifugal_load(coordinates, frames)
     acting.constant += of_planets
-    for linear, _ in bearing_connectors:
+    for linear in (*(linear for linear, _ in bearing_connectors), *within):
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
     system = CoupledSystem(
@@ -447,7 +452,9 @@ def _bearing(
         # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
         axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     relative = coordinates.rows(rotor.name, rotor.motions(at))
-    if around is not None:
+    if rotor.pin is not None:
+        relative = relative - coordinates.rows(*pin_seat(coordinates, rotor, at))
+    elif around is not None:
         relative = relative - coordinates.rows(around.name, around.seat_motions(rotor.axis, rotor.start + at))
     elif mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:

@@ -98,6 +98,7 @@ from gearwhine.coupling.machine.loads import (
     largest_torques,
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
+from gearwhine.coupling.machine.pins import MountedPin, stiff_pin
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
@@ -442,6 +443,11 @@ class Machine:
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes from its driver [N m], positive where power flows to the driven gear."""
         return self.train.mean_pair_torques(self.constant_torques, self.speed)
+
+    @cached_property
+    def carrying_pairs(self) -> tuple[bool, ...]:
+        """Whether each gear pair carries a part of the torque; an idle one is pressed by deflections alone."""
+        return tuple(flank is not None for flank in carrying_flanks(self.pair_torques, self.torque))
 
     @property
     def is_loaded(self) -> bool:
@@ -986,7 +992,14 @@ class Machine:
             axis=shaft.axis,
             bodies=[body for body in self.gear_bodies if body.gear in names],
             carrier=shaft.carrier,
+            pin=self._displaced_pin(shaft),
         )
+
+    def _mounted_pin(self, shaft: Shaft) -> MountedPin | None:
+        """Elastic pin of a planet under its bearings; None of a rigid one."""
+        if shaft.pin is None:
+            return None
+        return shaft.pin.mounted([shaft.start + mounted.bearing.at for mounted in self._bearings_on(shaft.name)])
 
     def _static_gears(
         self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
@@ -1014,7 +1027,8 @@ class Machine:
         exact = static_shaft(self.rotor(shaft.name), places)
         acceleration = self._acceleration_on(shaft)
         place = shaft.name, shaft.axis, shaft.start
-        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat)
+        pin = self._mounted_pin(shaft)
+        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat, pin)
 
     def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
         """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
@@ -1042,29 +1056,40 @@ class Machine:
         return np.array([radial * x - tangential * y, radial * y + tangential * x, 0.0, 0.0, 0.0])
 
     def _on_displaced_pin(self, mounted: MountedBearing) -> MountedBearing:
-        """Return a bearing with the force of its pin's error where its law is linear about no load.
+        """Return a bearing with a linear law with the force of its pin's error, unless the pin has that in motion.
 
-        A law that is linear about the operating point has it in its offset.
+        The offset of one that is linear about its load is of the deflection in its seat.
         """
         displacement = self._pin_displacement(mounted.rotor)
-        if displacement is None or mounted.offset is not None:
+        if displacement is None or self._pin_has_error(mounted.rotor):
             return mounted
-        if mounted.law is not None:
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected "
-                "a bearing that is linear about its load, or a pin_error of 0"
-            )
         stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
-        return replace(mounted, offset=-stiffness @ displacement)
+        about = np.zeros(5) if mounted.offset is None else mounted.offset
+        return replace(mounted, offset=about - stiffness @ displacement)
+
+    def _pin_has_error(self, planet: str) -> bool:
+        """Whether a planet's pin itself is displaced in motion, as a nonlinear law on it has no offset of its own."""
+        nonlinear = any(mounted.law is not None for mounted in self._bearings_on(planet))
+        return nonlinear and self._pin_displacement(planet) is not None
+
+    def _displaced_pin(self, shaft: Shaft) -> MountedPin | None:
+        """Pin of a planet in motion: an elastic one, and a stiff one where it has an error under a nonlinear law."""
+        pin = self._mounted_pin(shaft)
+        if not self._pin_has_error(shaft.name):
+            return pin
+        if pin is None:
+            pin = stiff_pin([shaft.start + mounted.bearing.at for mounted in self._bearings_on(shaft.name)])
+        return replace(pin, displacement=self._pin_displacement(shaft.name))
 
     def _seats_in(self, shaft: Shaft) -> list[float]:
-        """Stations of a shaft at the bearings that it holds, such as those of planets, from its left end [m]."""
-        return [
-            min(max(held.start + mounted.bearing.at - shaft.start, 0.0), shaft.rotor.length)
-            for mounted in self.bearings
-            if self.shaft_around(mounted) == shaft.name
-            for held in [self.shaft(mounted.rotor)]
-        ]
+        """Stations of a shaft at the bearings or pins that it holds, as those of planets, from its left end [m]."""
+        places: list[float] = []
+        for mounted in self.bearings:
+            if self.shaft_around(mounted) == shaft.name:
+                held = self.shaft(mounted.rotor)
+                pin = self._mounted_pin(held)
+                places += [held.start + mounted.bearing.at] if pin is None else pin.walls
+        return [min(max(z - shaft.start, 0.0), shaft.rotor.length) for z in dict.fromkeys(places)]
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:
         return [mounted for mounted in self.bearings if mounted.rotor == shaft]

@@ -101,3 +101,19 @@ def gravity_findings(gravity: Sequence[float]) -> Iterator[Finding]:
 def output_elsewhere(first: str) -> str:
     """Return what is expected of an output on the rotor of the first driver."""
     return f'a rotor other than "{first}", where the torque comes in'
+
+
+def pin_findings(
+    part: Part, carrier: str | None, pin_error: tuple[float, float], pin: float | None, bores: Sequence[float]
+) -> Iterator[Finding]:
+    """Yield a pin of a shaft that is no planet, and one that is thicker than the bore around it.
+
+    ``pin`` is its diameter, 0 where only its stiffness is known, and None of a rigid pin [m]; ``bores`` are those of
+    the shaft's segments.
+    """
+    if carrier is None and any(pin_error):
+        yield Finding(part, "pin_error", pin_error, "(0, 0) of a shaft without a carrier; a place of its own is `axis`")
+    if carrier is None and pin is not None:
+        yield Finding(part, "pin", None, "none of a shaft without a carrier, in whose walls it would be")
+    if pin is not None and any(bores) and pin >= max(bores):
+        yield Finding(part, "pin", None, f"a pin thinner than the bore of the planet around it, {in_mm(max(bores))}")

@@ -1,8 +1,8 @@
 """Gear train: speed ratios, senses of rotation, power flow, mesh phases; checks that a train can exist.
 
 Gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂, z negative of an internal gear (ISO 21771); their
-shafts are as far apart as the geometry of the pair says, and the middles of their faces at most half of the narrower
-face apart along the shafts. A train at constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
+shafts are as far apart as the geometry of the pair says, and half of the narrower face or more meets the other one. A
+train at constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
 
 Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
 to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
@@ -808,8 +808,8 @@ def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], spe
     ------
     CouplingError
         Where both gears of a pair sit on one rotor, turn the same way or not in the ratio of their teeth, have axes
-        that are not at the centre distance of their geometry, or faces whose middles are more than half of the
-        narrower face apart.
+        that are not at the centre distance of their geometry, or faces of which less than half of the
+        narrower one meets the other.
     """
     for mesh in meshes:
         _require_ratio(mesh, speeds)
@@ -930,8 +930,11 @@ def require_one_plane(label: str, places: Sequence[float], gears: Sequence[Gear]
 
 
 def plane_findings(part: Part, places: Sequence[float], gears: Sequence[Gear]) -> Iterator[Finding]:
-    """Yield gears that are not in one plane, as :func:`require_one_plane`."""
-    shift, reach = abs(places[0] - places[1]), 0.5 * min(gear.face_width for gear in gears)
+    """Yield gears that are not in one plane, as :func:`require_one_plane`.
+
+    A long pinion may have its mate at an end of its face.
+    """
+    shift, reach = abs(places[0] - places[1]), 0.5 * max(gear.face_width for gear in gears)
     if shift > reach + LARGEST_OFFSET:
         expected = (
             f"gears in one plane, within half a face width, {1e3 * reach:.6g} mm; they are {1e3 * shift:.6g} mm "

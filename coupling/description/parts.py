@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from math import hypot, pi
 from typing import Any, Protocol
 
-from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, seat_findings
+from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, pin_findings, seat_findings
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain, GivenSpeed, Output
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear
@@ -16,6 +16,7 @@ from gearwhine.coupling.gears.stiffness.beam import shear_modulus
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.machine.pins import Pin, PinBeam, PinSprings
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -75,6 +76,8 @@ class Shaft:
         deforms; by default the rim moves as one body with the shaft.
     pin_error : tuple of float
         Offset of a planet's pin from ``axis``, away from the carrier's axis and counter-clockwise about it [m].
+    pin : PinBeam or PinSprings, optional
+        Elastic pin of a planet, on which its bearings sit; by default it is rigid.
     """
 
     rotor: Rotor
@@ -88,6 +91,7 @@ class Shaft:
     carrier: str | None = None
     pin_error: tuple[float, float] = (0.0, 0.0)
     rim_seat: str | None = None
+    pin: Pin | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
@@ -104,6 +108,7 @@ class Shaft:
             "carrier": Text(optional=True),
             "pin_error": Numbers(2),
             "rim_seat": Text(optional=True),
+            "pin": Instance((PinBeam, PinSprings), "a pin by its beam or its springs, or None", optional=True),
         }
         part = ("shaft", self.name)
         if not self.name:
@@ -111,9 +116,10 @@ class Shaft:
         kinds = kind_findings(part, self, unbalances=ShaftUnbalance)
         refuse([*attribute_findings(part, self, **rules), *kinds], CouplingError)
         refuse(self._station_findings(), CouplingError)
-        if self.carrier is None and any(self.pin_error):
-            expected = "(0, 0) of a shaft without a carrier; a place of its own is `axis`"
-            refuse([Finding(part, "pin_error", self.pin_error, expected)], CouplingError)
+        bores = [segment.inner_diameter for segment in self.rotor.segments if isinstance(segment, Segment)]
+        thickness = self.pin.diameter if isinstance(self.pin, PinBeam) else 0.0
+        pin = None if self.pin is None else thickness
+        refuse(pin_findings(part, self.carrier, self.pin_error, pin, bores), CouplingError)
 
     def _station_findings(self) -> Iterator[Finding]:
         """Yield unbalances and points of a bow beyond the ends of the rotor, and a bow that bends nothing."""

@@ -174,12 +174,17 @@ def overlap_findings(
 
 
 def _on_pin(first: PlacedSolid, second: PlacedSolid, carriers: Mapping[str, str]) -> bool:
-    """Whether two solids are a planet and its bearing inside it, or its pin or bearing and the carrier around them."""
+    """Whether two solids are a planet and its bearing inside it, or its pin or bearing and the carrier around them.
+
+    Or the gear of a planet and a hollow part of the carrier, which joins its walls and has a window for it.
+    """
     kinds = {first.part[0], second.part[0]}
     if first.shaft == second.shaft:
         return first.shaft in carriers and kinds == {"gear", "bearing"}
     of_carrier = carriers.get(first.shaft) == second.shaft or carriers.get(second.shaft) == first.shaft
-    return of_carrier and kinds <= {"shaft", "bearing"}
+    around = first if carriers.get(second.shaft) == first.shaft else second
+    in_window = kinds == {"gear", "shaft"} and around.part[0] == "shaft" and around.inner > 0.0
+    return of_carrier and (in_window or kinds <= {"shaft", "bearing"})
 
 
 def _foreign(

@@ -86,7 +86,11 @@ def load_warnings(solved: SolvedLoad) -> list[ResultWarning]:
         *(entry for bearing in solved.bearings for entry in _bearing_warnings(bearing)),
         *_speed_warnings(solved),
         *_stiffness_warnings(solved, loads),
-        *(entry for pair in solved.point.pairs for entry in _face_warnings(pair)),
+        *(
+            entry
+            for pair, carries in zip(solved.point.pairs, solved.machine.carrying_pairs, strict=False)
+            for entry in (_face_warnings(pair) if carries else ())
+        ),
         *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
     ]

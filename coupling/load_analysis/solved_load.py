@@ -242,7 +242,9 @@ def solve_load(
             replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)
         )
     loaded_sets = [
-        placed for placed in machine.placed_sets if any(point.pairs[one.number].force > 0.0 for one in placed.meshes)
+        placed
+        for placed in machine.placed_sets
+        if any(machine.carrying_pairs[one.number] and point.pairs[one.number].force > 0.0 for one in placed.meshes)
     ]
     planetary = tuple(planetary_load(machine, placed, point) for placed in loaded_sets)
     carriers = dict.fromkeys(placed.of.carrier for placed in loaded_sets) if carrier_turn else {}

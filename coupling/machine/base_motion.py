@@ -152,6 +152,9 @@ def participations(components: Sequence[Component], point: Point, places: dict[s
             x, y, z = np.subtract(places[component.name], point)
             whole[:, 3:] = whole[:, :2] @ np.array([[0.0, z, -y], [-z, 0.0, x]])
             rows.append(whole)
+        else:
+            # The mass of a pin belongs to its carrier.
+            rows.append(np.zeros((component.size, 6)))
     return np.vstack(rows)
 
 

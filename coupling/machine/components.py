@@ -22,6 +22,7 @@ from scipy import linalg
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode
 from gearwhine.coupling.machine.gear_bodies import GearBody, RimSpring
+from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.housing import HousingModes, ModeSet
 from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.numerics.findings import Finding, refuse
@@ -249,6 +250,8 @@ class RotorComponent(Component):
         Damping ratio of the shaft and the gears' bodies.
     carrier : str or None
         Rotor with which the shaft's axis turns, of a planet; ``axis`` is its place at t = 0.
+    pin : MountedPin or None
+        Elastic pin between the carrier and the bearings of a planet; None of a rigid one.
     """
 
     modal: ModalRotor
@@ -260,6 +263,7 @@ class RotorComponent(Component):
     bodies: tuple[GearBody, ...] = ()
     damping_ratio: float = 0.0
     carrier: str | None = None
+    pin: MountedPin | None = None
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -614,6 +618,33 @@ def pedestal_component(name: str, pedestal: Pedestal) -> PedestalComponent:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class PinComponent(Component):
+    """Pin of a planet: motions of its coordinates times the root of an inertia so small that they respond statically.
+
+    Attributes
+    ----------
+    mounted : MountedPin
+    """
+
+    mounted: MountedPin
+
+    def motions(self, z: float) -> FloatArray:
+        """Motion x, y, z and rotations about x and y of the seat of a bearing, (5, n)."""
+        return np.asarray(self.mounted.motions(z) / self.mounted.scale)
+
+
+def pin_component(planet: str, mounted: MountedPin) -> PinComponent:
+    """Make the component of a planet's pin; what holds it are the walls of its carrier."""
+    kinds, zero = ("residual",) * mounted.size, np.zeros((mounted.size, mounted.size))
+    return PinComponent(pin_name(planet), kinds, zero, zero, zero, mounted)
+
+
+def pin_name(planet: str) -> str:
+    """Name of a planet's pin among components and connectors."""
+    return f"pin of {planet}"
+
+
 def _check_damping(matrix: FloatArray, n: int) -> None:
     """Refuse a damping matrix of another order, or one that is not symmetric and free of gain."""
     if matrix.shape != (n, n):
@@ -634,6 +665,7 @@ def rotor_component(
     axis: tuple[float, float] = (0.0, 0.0),
     bodies: Sequence[GearBody] = (),
     carrier: str | None = None,
+    pin: MountedPin | None = None,
 ) -> RotorComponent:
     """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
@@ -678,6 +710,8 @@ def rotor_component(
         Gears on the rotor whose rims move on their hubs.
     carrier : str, optional
         Rotor with which the shaft's axis turns.
+    pin : MountedPin, optional
+        Elastic pin of a planet in its carrier.
     """
     lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
@@ -722,6 +756,7 @@ def rotor_component(
         bodies=tuple(bodies),
         damping_ratio=damping_ratio,
         carrier=carrier,
+        pin=pin,
     )
 
 

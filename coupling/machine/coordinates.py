@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.machine.components import Component, RotorComponent
+from gearwhine.coupling.machine.components import Component, PinComponent, RotorComponent, pin_name
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad, embed
 from gearwhine.coupling.machine.loads import (
@@ -77,6 +77,12 @@ class MachineCoordinates:
         if not isinstance(part, RotorComponent):
             names = sorted(part.name for part in self.components if isinstance(part, RotorComponent))
             raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(names)}")
+        return part
+
+    def pin(self, planet: str) -> PinComponent:
+        """Return the elastic pin of a planet."""
+        part = self.components[self._numbers[pin_name(planet)]]
+        assert isinstance(part, PinComponent)
         return part
 
     def rows(self, name: str, rows: FloatArray) -> FloatArray:

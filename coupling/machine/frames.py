@@ -25,7 +25,13 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.machine.components import Component, FrameTerms, PedestalComponent, RotorComponent
+from gearwhine.coupling.machine.components import (
+    Component,
+    FrameTerms,
+    PedestalComponent,
+    PinComponent,
+    RotorComponent,
+)
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
@@ -49,6 +55,8 @@ def orders_and_quarter_turn(component: Component) -> tuple[IntArray, FloatArray]
         pairs += [(own.start, own.start + 1, mode.nodal_diameters) for _, mode, own in component.plates]
     elif isinstance(component, PedestalComponent):
         pairs.append((0, 1, 1))
+    elif isinstance(component, PinComponent):
+        pairs += [(first + axis, first + axis + 1, 1) for first in range(0, component.size, 5) for axis in (0, 3)]
     for first, second, order in pairs:
         orders[[first, second]] = order
         quarter[second, first], quarter[first, second] = 1.0, -1.0

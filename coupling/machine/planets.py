@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.machine.base_motion import rotor_participation
-from gearwhine.coupling.machine.components import HousingComponent, RotorComponent
+from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, pin_name
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable, TurningPart
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.frames import Frames, is_isotropic
@@ -42,6 +42,7 @@ def frame_speeds(
     """
     carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
     frames = {name: speeds[carrier] for name, carrier in carriers.items()}
+    frames |= {pin_name(rotor.name): frames[rotor.name] for rotor in rotors if rotor.pin is not None}
     frames |= {carrier: speeds[carrier] for carrier in carriers.values()}
     for rotor in rotors:
         pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]
@@ -80,7 +81,7 @@ def centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatAr
     for part in coordinates.components:
         if isinstance(part, RotorComponent) and part.carrier is not None:
             outward = np.subtract(part.axis, coordinates.rotor(part.carrier).axis)
-            participation = rotor_participation(part, (0.0, 0.0, 0.0))[:, :2]
+            participation = _shift_participation(part)
             load += coordinates.rows(part.name, participation @ (frames.of(part.name) ** 2 * outward))
     return load
 
@@ -119,6 +120,22 @@ def centrifugal_stiffness(
         ratios = np.linspace(*speed_range, _SPEEDS_OF_A_RUN)
         table = SpeedTable(ratios, ratios[:, None, None] ** 2 * law, np.zeros((len(ratios), 2, 2)))
     return LinearConnector(f"centrifugal force of {planet.name}", directions, law, none, table)
+
+
+def pin_seat(coordinates: MachineCoordinates, planet: RotorComponent, at: float) -> tuple[str, FloatArray]:
+    """Name of a planet's pin, and the motion (5, n) of the seat of a bearing on it, at a station of the planet."""
+    pin = coordinates.pin(planet.name)
+    return pin.name, pin.motions(planet.start + at)
+
+
+def pin_in_walls(coordinates: MachineCoordinates, planet: RotorComponent) -> LinearConnector:
+    """Stiffness of an elastic pin between its bearings' seats and the walls of the carrier that clamp it."""
+    pin, carrier = coordinates.pin(planet.name), coordinates.rotor(planet.carrier or "")
+    own = coordinates.rows(pin.name, np.diag(1.0 / pin.mounted.scale))
+    walls = [coordinates.rows(carrier.name, carrier.seat_motions(planet.axis, wall)) for wall in pin.mounted.walls]
+    stiffness = pin.mounted.stiffness
+    directions, undamped = np.vstack([own, *walls]).T, np.zeros_like(stiffness)
+    return LinearConnector(pin.name, directions, stiffness, undamped, offset=pin.mounted.offset)
 
 
 def mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:

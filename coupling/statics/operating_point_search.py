@@ -20,6 +20,7 @@ from gearwhine.coupling.machine.components import HousingComponent, seat_in_sect
 from gearwhine.coupling.machine.gear_bodies import GearBody
 from gearwhine.coupling.machine.loads import ShaftForce, Torque
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.coupling.statics.connector_equilibrium import ConnectedStructure
 from gearwhine.coupling.statics.operating_point import (
     BearingLoad,
@@ -153,6 +154,12 @@ class _StaticModel:
         }
         self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
         size += 2 * len(pedestals)
+        pins = [(part, part.pin) for part in shafts if part.pin is not None]
+        ends = size + np.cumsum([0, *(pin.size for _, pin in pins)])
+        self.pins = {
+            part.name: slice(*indices) for (part, _), indices in zip(pins, pairwise(ends.tolist()), strict=True)
+        }
+        size = int(ends[-1])
         springs = [
             (rim.gear, axis, spring.stiffness)
             for rim in rims
@@ -179,11 +186,13 @@ class _StaticModel:
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.directions += [self._torque_direction(support) for support in torque_supports]
+        self.directions += [self._pin_directions(part, pin) for part, pin in pins]
         self.twists = [twist for _, twist in approaches]
         self.laws: list[ConnectorLaw] = [bearing.placed_law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
         held = [LinearLaw(np.array([[support.stiffness or 0.0]])) for support in torque_supports]
+        held += [LinearLaw(pin.stiffness) for _, pin in pins]
         self.laws += held
         nominal = [bearing.nominal for bearing in bearings]
         nominal += [_uniform_stiffness(pair) for pair in pairs]
@@ -246,12 +255,11 @@ class _StaticModel:
         rows = np.zeros((5, self.size))
         part = self._part(mounted.rotor)
         holding = part.carrier or mounted.seat
+        if part.pin is not None:
+            rows[:, self.pins[part.name]] = part.pin.motions(part.start + mounted.bearing.at)
+            return rows
         if holding in self.first:
-            around, z = self._part(holding), part.start + mounted.bearing.at
-            at = min(max(z - around.start, 0.0), around.shaft.length)
-            return seat_in_section(
-                self._section(holding, at), np.subtract(part.axis, around.axis), z - around.start - at
-            )
+            return self._seat_in_shaft(holding, part.axis, part.start + mounted.bearing.at)
         if mounted.seat is not None:
             assert self.housing is not None
             z = part.start + mounted.bearing.at
@@ -261,6 +269,19 @@ class _StaticModel:
             first = self.pedestal_first[mounted.bearing.name]
             rows[0, first] = rows[1, first + 1] = 1.0
         return rows
+
+    def _seat_in_shaft(self, holding: str, axis: tuple[float, float], z: float) -> FloatArray:
+        """Motion of a seat in a shaft, (5, n), its axis at (x, y) and its middle at z [m]."""
+        around = self._part(holding)
+        at = min(max(z - around.start, 0.0), around.shaft.length)
+        return seat_in_section(self._section(holding, at), np.subtract(axis, around.axis), z - around.start - at)
+
+    def _pin_directions(self, planet: StaticShaftPart, pin: MountedPin) -> FloatArray:
+        """Motions of a pin and of the walls of its carrier by all coordinates, (n, d)."""
+        own = np.zeros((pin.size, self.size))
+        own[:, self.pins[planet.name]] = np.eye(pin.size)
+        walls = [self._seat_in_shaft(planet.carrier or "", planet.axis, wall) for wall in pin.walls]
+        return np.asarray(np.vstack([own, *walls]).T)
 
     def _torque_direction(self, support: TorqueSupport) -> FloatArray:
         """Rotation of a shaft against the seat that holds it, (n, 1)."""
@@ -353,6 +374,14 @@ class _StaticModel:
                 column[self._indices_of(part.name)] = rigid[:, :, number].ravel()
                 columns.append(column)
                 words.append(f"the {name} of shaft {part.name!r}")
+        for planet, rows in self.pins.items():
+            pin = self._part(planet).pin
+            assert pin is not None
+            for number, motion in enumerate(pin.rigid_motions.T):
+                column = np.zeros(self.size)
+                column[rows] = motion
+                columns.append(column)
+                words.append(f"the {names[number]} of the pin of {planet!r}")
         if self.housing is not None:
             diagonal = np.diag(self.housing.stiffness)
             for mode in np.flatnonzero(diagonal <= 1e-12 * diagonal.max(initial=0.0)).tolist():
@@ -499,6 +528,10 @@ class _StaticModel:
             imbalances.append((float(np.abs(residual[housing_rows]).max(initial=0.0)) / size, "the housing"))
         for name, first in self.pedestal_first.items():
             imbalances.append((float(np.abs(residual[first : first + 2]).max()), f"the pedestal of bearing {name!r}"))
+        for planet, among in self.pins.items():
+            left = residual[among].reshape(-1, 5)
+            moment = float(np.abs(left[:, 3:]).max()) / longest
+            imbalances.append((max(float(np.abs(left[:, :3]).max()), moment), f"the pin of {planet!r}"))
         worst, where = max(imbalances)
         return worst / largest, where
 

@@ -20,6 +20,7 @@ from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
 from gearwhine.coupling.machine.bearing_laws import GapLaw
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.rotors.analyses.static_stiffness import StaticShaft
 from gearwhine.rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
@@ -187,6 +188,8 @@ class StaticShaftPart:
         Shaft in which its bearings sit, of a planet; None for seats of the housing and the ground.
     rim_seat : str or None
         Seat of the housing whose bore the rim of its ring gear follows.
+    pin : MountedPin or None
+        Elastic pin of a planet, on which its bearings sit.
     """
 
     name: str
@@ -196,6 +199,7 @@ class StaticShaftPart:
     acceleration: tuple[float, ...] | None = None
     carrier: str | None = None
     rim_seat: str | None = None
+    pin: MountedPin | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -180,6 +180,7 @@ class Parts:
                 *_retained_modes(rotor, self.housing_limit_hz),
                 carrier=rotor.carrier,
                 pin_error=rotor.pin_error,
+                pin=rotor.build_pin(self.material),
                 rim_seat=rotor.rim_seat,
             )
             for rotor in self.rotor

@@ -54,10 +54,12 @@ from gearwhine.case.operation import Acceleration, Speeds
 
 if TYPE_CHECKING:
     from gearwhine.case.housing import Material
+    from gearwhine.coupling.machine.pins import Pin as BuiltPin
     from gearwhine.rotors import Coupling as BuiltCoupling
     from gearwhine.rotors import Disc as BuiltDisc
     from gearwhine.rotors import Rotor as BuiltRotor
     from gearwhine.rotors import Segment as BuiltSegment
+    from gearwhine.rotors import ShaftMaterial
     from gearwhine.rotors import Unbalance as BuiltUnbalance
     from gearwhine.rotors.model.loads import Bow as BuiltBow
     from gearwhine.rotors.ross.reading import RossModel
@@ -136,14 +138,12 @@ class Segment(Table):
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltSegment:
         """Build the shaft segment, with its rotor's properties where it has none of its own."""
         from gearwhine.rotors import Segment as BuiltSegment
-        from gearwhine.rotors import ShaftMaterial
 
-        steel = materials[_named(self.material, rotor)]
         return BuiltSegment(
             length=self.length,
             outer_diameter=self.diameter,
             inner_diameter=self.bore,
-            material=ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density),
+            material=_shaft_material_named(self.material, rotor, materials),
             shear_coefficient=self.shear_coefficient or rotor.shear_coefficient,
             right_outer_diameter=self.right_diameter,
             right_inner_diameter=self.right_bore,
@@ -262,6 +262,14 @@ def _named(part_material: str | None, rotor: Rotor) -> str:
     return name
 
 
+def _shaft_material_named(own: str | None, rotor: Rotor, materials: Mapping[str, Material]) -> ShaftMaterial:
+    """Material of a part of a shaft: its own by name, else its rotor's."""
+    from gearwhine.rotors import ShaftMaterial
+
+    steel = materials[_named(own, rotor)]
+    return ShaftMaterial(steel.youngs_modulus, steel.shear_modulus, steel.density)
+
+
 def _segment_form(value: Any) -> str:
     coupled = "coupling" in value if isinstance(value, dict) else isinstance(value, CouplingSegment)
     return "~coupling" if coupled else "~shaft"
@@ -301,6 +309,57 @@ class Bow(Table):
     """Angle from x when the rotor's mark points along x."""
 
 
+class Pin(Table):
+    """`pin` of a planet's `[[rotor]]`, on which its bearings sit: a beam in `walls` of the carrier, or its stiffness.
+
+    The carrier's rotor takes the walls along: what joins two of them is its segments between, and its mass has that of
+    the pin.
+    """
+
+    walls: tuple[Length, ...] | None = Field(default=None, min_length=1, max_length=4)
+    """z of the walls that clamp it: two, or one of a pin that is clamped at one end. Needs `diameter`."""
+    diameter: PositiveLength | None = None
+    """Diameter of the beam."""
+    bore: LengthFromZero = 0.0
+    """Bore of the beam."""
+    material: Name | None = None
+    """Material of the beam. Default: that of the rotor."""
+    at: Length | None = None
+    """z of the place that the stiffness is of; in place of walls."""
+    stiffness: PositiveStiffness | None = None
+    """Force over displacement across the axis, of a rigid pin on springs `at` a place. Needs `tilt_stiffness`."""
+    tilt_stiffness: Annotated[float, Quantity(units.TILT_STIFFNESS, above=0.0)] | None = None
+    """Moment over rotation about an axis across."""
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Pin:
+        beam, springs = ("walls", "diameter"), ("at", "stiffness", "tilt_stiffness")
+        is_beam = self.walls is not None or self.diameter is not None
+        for key in beam if is_beam else springs:
+            if getattr(self, key) is None:
+                both = "'walls' and 'diameter', or 'at', 'stiffness' and 'tilt_stiffness'"
+                raise wrong(both if not is_beam and self.stiffness is None else f"'{key}' beside the others", key)
+        for key in springs if is_beam else ("bore", "material"):
+            if getattr(self, key):
+                raise wrong("nothing beside " + ("walls" if is_beam else "a stiffness"), key)
+        if self.walls is not None and len(set(self.walls)) < len(self.walls):
+            raise wrong("each wall once", "walls")
+        if self.diameter is not None and self.bore >= self.diameter:
+            raise wrong(f"a bore smaller than the diameter of {self.diameter:g} m", "bore")
+        return self
+
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltPin:
+        """Build the pin, of the rotor's material where it has none of its own."""
+        from gearwhine.coupling.machine.pins import PinBeam, PinSprings
+
+        if self.walls is None or self.diameter is None:
+            assert self.at is not None
+            assert self.stiffness is not None
+            assert self.tilt_stiffness is not None
+            return PinSprings(self.at, self.stiffness, self.tilt_stiffness)
+        return PinBeam(self.walls, self.diameter, _shaft_material_named(self.material, rotor, materials), self.bore)
+
+
 _OF_THE_SHAFT = ("segments", "shear_coefficient", "axial_force")
 """Keys that a rotor's file stands for."""
 
@@ -320,6 +379,8 @@ class Rotor(Table):
     and its bearings sit on the carrier. Planets of a `[[planetary]]` have it from there."""
     pin_error: tuple[Length, Length] = (0.0, 0.0)
     """Offset of a planet's pin from `axis`, outward from the carrier's axis and counter-clockwise about it."""
+    pin: Pin | None = None
+    """Elastic pin of a planet between its bearings and the carrier. Default: a rigid one."""
     rim_seat: Name | None = None
     """Seat of the housing, with `ring_orders`, whose bore the rim of the ring gear on this rotor follows as it deforms.
     Default: the rim moves as one body with the rotor."""
@@ -402,6 +463,11 @@ class Rotor(Table):
             return self._saved.rotor.length
         return sum(segment.length for segment in self.segments)
 
+    @property
+    def bores(self) -> tuple[float, ...]:
+        """Bores of the segments of a shaft that stands here, at their left ends [m]."""
+        return tuple(segment.bore for segment in self.segments if isinstance(segment, Segment))
+
     def material_of(self, own: str | None, at: float, materials: Mapping[str, Material]) -> Material | None:
         """Return the material of a disc or gear at a station [m]: its own, the rotor's, else the shaft's of the file.
 
@@ -432,6 +498,10 @@ class Rotor(Table):
                 if left is not None and left == right:
                     segments[number] = replace(segments[number], axial_force=left)
         return segments
+
+    def build_pin(self, materials: Mapping[str, Material]) -> BuiltPin | None:
+        """Build the elastic pin of a planet; None of a rigid one."""
+        return None if self.pin is None else self.pin.build(self, materials)
 
     def build_unbalance(self) -> list[BuiltUnbalance]:
         """Build the unbalances."""

@@ -8,7 +8,9 @@ from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.analyses.shafts_alone import BearingsUnderLoad, bearings_under_load
+from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.gears.geometry.pitch_deviations import has_different_teeth
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair, load_gear_pair
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.operating_point import OperatingPoint
@@ -84,8 +86,7 @@ def solve_gears(parts: Parts, progress: Progress = silent) -> tuple[LoadedGearPa
         Where one cannot be solved as it stands.
     """
     solved = []
-    geometries = parts.pair_geometries if parts.machine is None else parts.machine.pair_geometries
-    of_pairs = parts.gear_pair, parts.gear_pairs, geometries, parts.pair_torques, parts.mesh_speeds
+    of_pairs = parts.gear_pair, parts.gear_pairs, _numbered_geometries(parts), parts.pair_torques, parts.mesh_speeds
     for entry, pair, geometry, torque, speed in zip(*of_pairs, strict=True):
         progress(f"gear pair {entry.driver} -> {entry.driven}")
         loaded = load_gear_pair(
@@ -97,6 +98,15 @@ def solve_gears(parts: Parts, progress: Progress = silent) -> tuple[LoadedGearPa
         )
         solved.append(loaded)
     return tuple(solved)
+
+
+def _numbered_geometries(parts: Parts) -> tuple[GearPairGeometry, ...]:
+    """Return the geometries of all pairs; teeth that differ, of gears with several mates, by the machine's numbers."""
+    named = [name for pair in parts.gear_pair for name in (pair.driver, pair.driven)]
+    several = [gear for name, gear in parts.gears.items() if named.count(name) > 1 and has_different_teeth(gear)]
+    if not several or parts.machine is None:
+        return parts.pair_geometries
+    return parts.machine.pair_geometries
 
 
 def aligned_by_default(parts: Parts) -> tuple[str, ...]:

@@ -1,12 +1,15 @@
 """Planetary sets of a checked case: members, assembly, phasing of the meshes, and how the terminal shows them."""
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from gearwhine.output.quantity import HERTZ, RPM, Quantity, Rows
 from gearwhine.output.sections import Document, counted
 
+_NUMBER_OF_COPY = re.compile(r" \d+$")
+"""Number behind the name of a planet that is made of one."""
 _HARMONICS = 6
 """Mesh harmonics of which the document has the sums over the planets."""
 
@@ -168,24 +171,32 @@ def _harmonic_lines(harmonics: Sequence[Document]) -> Iterator[str]:
 
 def _rate_lines(one: Document) -> Iterator[str]:
     """Yield the rates of faults of each member once, planets and bearings that are alike together."""
-    faults = dict.fromkeys(map(_fault_words, one["tooth_faults"]))
+    faults = dict.fromkeys(_fault_words(fault, one["planets"]) for fault in one["tooth_faults"])
     if not faults:
         return
     meet = dict.fromkeys(f"{mesh['same_teeth_hz']:.4g}" for mesh in one["meshes"])
-    yield f"planets pass a sensor at {one['planet_pass_hz']:.4g} Hz; the same teeth meet again at {', '.join(meet)} Hz"
+    passing = f"planets pass a sensor at {one['planet_pass_hz']:.4g} Hz; " if one["planet_pass_hz"] else ""
+    yield f"{passing}the same teeth meet again at {', '.join(meet)} Hz"
     yield f"a tooth fault strikes: {'; '.join(faults)}"
     bearings = dict.fromkeys(map(_bearing_words, one["planet_bearings"]))
     if bearings:
         yield f"faults of the planets' bearings: {'; '.join(bearings)}"
 
 
-def _fault_words(fault: Document) -> str:
-    """Return the rates of a gear's tooth fault; planets differ in their number alone."""
+def _fault_words(fault: Document, planets: Sequence[str]) -> str:
+    """Return the rates of a gear's tooth fault; planets that are alike differ in their number alone."""
     words = f"{fault['role']} {fault['working_flank_hz']:.5g} Hz"
     if fault["role"] != "planet" or not fault["back_flank_mates"]:
         return words
-    sides = (f"{', '.join(fault[f'{flank}_flank_mates'])} ({flank})" for flank in ("working", "back"))
+    mates = {name: _NUMBER_OF_COPY.sub("", name) if name in planets else name for name in _mates(fault)}
+    sides = (
+        f"{', '.join(mates[name] for name in fault[f'{flank}_flank_mates'])} ({flank})" for flank in ("working", "back")
+    )
     return f"{words} on the flank at {' or '.join(sides)}, {fault['tooth_hz']:.5g} Hz on both"
+
+
+def _mates(fault: Document) -> list[str]:
+    return [*fault["working_flank_mates"], *fault["back_flank_mates"]]
 
 
 def _bearing_words(bearing: Document) -> str:

@@ -78,3 +78,23 @@ def ravigneaux() -> dict[str, Any]:
     document["planetary"].append(second | {"ring": None, "fixed": None})
     document["planetary"][1] = {key: value for key, value in document["planetary"][1].items() if value is not None}
     return document
+
+
+def stepped_stage() -> dict[str, Any]:
+    """Sun 24 and large gears 36 of the planets, their small gears 18 and the ring 78, which is held."""
+    document = stage(planets=["p", "q"])
+    document["rotor"][1] = rotor("p") | {"segments": [{"length": "90 mm", "diameter": "24 mm"}]}
+    small = gear("q", "p", 18) | {"at": "70 mm"}
+    document["gear"] = [gear("s", "sun", 24), gear("p", "p", 36), small, gear("r", "ring", -78, addendum=0.8)]
+    document["rotor"][2]["start"], document["rotor"][3]["start"] = "40 mm", "110 mm"
+    next(one for one in document["bearing"] if one["name"] == "p right")["at"] = "85 mm"
+    return document
+
+
+def double_stage() -> dict[str, Any]:
+    """Sun 24, planets 18 and 21 in mesh with each other, ring 75, which is held."""
+    document = ravigneaux()
+    document["planetary"] = [document["planetary"][0] | {"fixed": "r"}]
+    for kind, of in (("rotor", "name"), ("bearing", "rotor"), ("gear", "rotor")):
+        document[kind] = [one for one in document[kind] if one[of] != "large" and one["name"] != "back"]
+    return document

@@ -127,6 +127,8 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
 
 def _check_planets(draft: Draft) -> Iterator[Finding]:
     """Yield planets without a bearing, and carriers whose own axis turns with another."""
+    from gearwhine.coupling.description.arrangement import pin_findings
+
     held = [entry.get("rotor") for _, entry in draft.raw_entries("bearing")]
     for index, one in draft.planetary:
         fixed = draft.rotor(one.held_rotor([gear for _, gear in draft.gears]))
@@ -134,6 +136,9 @@ def _check_planets(draft: Draft) -> Iterator[Finding]:
             expected = f'sun, ring or carrier; "{fixed.name}" is a planet, whose axis turns with "{fixed.carrier}"'
             yield Finding(("planetary", index, "fixed"), expected)
     for index, rotor in draft.rotors:
+        pin = None if rotor.pin is None else rotor.pin.diameter or 0.0
+        for finding in pin_findings(("rotor", ""), rotor.carrier, rotor.pin_error, pin, rotor.bores):
+            yield placed(("rotor", index), finding)
         if rotor.carrier is None:
             continue
         carrier = draft.rotor(rotor.carrier)
@@ -270,7 +275,9 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
         if not unequal and not aside and driver.name in built and driven.name in built:
             yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
     train = draft.train
-    for wrong in train.contradictions if train is not None else ():
+    # Of a rotor that cannot be read it is not known whether it is a planet.
+    complete = len(draft.rotors) == len(list(draft.raw_entries("rotor")))
+    for wrong in train.contradictions if train is not None and complete else ():
         if wrong.pair is None:
             continue
         index, *gears = draft.readable_pairs[wrong.pair]

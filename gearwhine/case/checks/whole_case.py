@@ -105,6 +105,7 @@ def _check_materials(draft: Draft) -> Iterator[Finding]:
     for kind in ("rotor", "gear"):
         for index, entry in draft.raw_entries(kind):
             yield from _check_reference(entry, (kind, index, "material"), "material", materials)
+            yield from _check_reference(entry.get("pin"), (kind, index, "pin", "material"), "material", materials)
             for part in ("segments", "discs"):
                 pieces = entry.get(part)
                 for place, piece in enumerate(pieces if isinstance(pieces, (list, tuple)) else ()):

@@ -309,3 +309,44 @@ def test_elements_are_within_a_planet_that_turns_around_them() -> None:
     document["bearing"][2]["stiffness"] = {"rolling": balls}
     with pytest.raises(CaseError, match=r"within the bore of the shaft, 18 mm wide there.* they reach to 26 mm"):
         read(document)
+
+
+def test_planets_on_elastic_pins() -> None:
+    document = stage()
+    document["rotor"][1]["pin"] = {"walls": ["-5 mm", "65 mm"], "diameter": "20 mm", "bore": "5 mm"}
+    parts = read(document).parts
+    pins = [one.pin for one in parts.shafts if one.carrier]
+    assert [(pin.walls, pin.diameter, pin.bore) for pin in pins] == [((-0.005, 0.065), 0.02, 0.005)] * 3
+    assert pins[0].material.youngs_modulus == pytest.approx(207e9)
+    document["rotor"][1]["pin"] = {"at": "30 mm", "stiffness": "2e8 N/m", "tilt_stiffness": "1e5 N*m/rad"}
+    springs = read(document).parts.shafts[1].pin
+    assert (springs.at, springs.radial, springs.tilt) == (0.03, 2e8, 1e5)
+
+
+@pytest.mark.parametrize(
+    ("pin", "key", "told"),
+    [
+        ({"walls": ["0 mm"]}, "diameter", "'diameter' beside the others"),
+        ({"stiffness": "1e8 N/m", "at": "0 mm"}, "tilt_stiffness", "'tilt_stiffness' beside the others"),
+        ({}, "at", "'walls' and 'diameter', or 'at', 'stiffness' and 'tilt_stiffness'"),
+        ({"walls": ["0 mm"], "diameter": "9 mm", "stiffness": "1e8 N/m"}, "stiffness", "nothing beside walls"),
+        ({"walls": ["0 mm", "0 mm"], "diameter": "9 mm"}, "walls", "each wall once"),
+        ({"walls": ["0 mm"], "diameter": "9 mm", "material": "brass"}, "material", "steel"),
+        ({"walls": ["0 mm"], "diameter": "20 mm"}, "", "thinner than the bore of the planet around it, 18 mm"),
+    ],
+)
+def test_no_such_pin_of_a_planet(pin: dict[str, Any], key: str, told: str) -> None:
+    document = stage()
+    document["rotor"][1]["segments"][0]["bore"] = "18 mm"
+    document["rotor"][1]["pin"] = pin
+    with pytest.raises(CaseError) as refused:
+        read(document)
+    assert [problem.key for problem in refused.value.problems] == [f"rotor[1].pin{key and '.'}{key}"]
+    assert told in str(refused.value)
+
+
+def test_a_sun_has_no_pin() -> None:
+    document = stage()
+    document["rotor"][0]["pin"] = {"walls": ["0 mm"], "diameter": "9 mm"}
+    with pytest.raises(CaseError, match=r"rotor\[0\].pin.* without a carrier"):
+        read(document)
