@@ -81,7 +81,7 @@ def centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatAr
     for part in coordinates.components:
         if isinstance(part, RotorComponent) and part.carrier is not None:
             outward = np.subtract(part.axis, coordinates.rotor(part.carrier).axis)
-            participation = _shift_participation(part)
+            participation = rotor_participation(part, (0.0, 0.0, 0.0))[:, :2]
             load += coordinates.rows(part.name, participation @ (frames.of(part.name) ** 2 * outward))
     return load
 
