@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwhine.case import Case, CouplingSegment, amounts, rotor_speeds
 from gearwhine.coupling.description.axial_location import ARRANGEMENTS
+from gearwhine.exchange.rexs.notes import Note, in_words
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
@@ -323,8 +324,16 @@ MEASURED = (
 )
 """Quantities of the measurement on the housing."""
 
+IMPORTED = (
+    Quantity("origin"),
+    Quantity("load_cases"),
+    Rows("notes", "notes", (Quantity("kind"), Quantity("about"), Quantity("text"))),
+)
+"""Quantities of a gear unit that was imported: the file, its load cases, and what was assumed, changed and left out."""
+
 CHECK = (
     Quantity("title", "case.title"),
+    Part("imported", "imported", IMPORTED, optional=True),
     Part("housing", lambda checked: ABSENT if checked.mesh is None else checked, HOUSING),
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows(
@@ -397,6 +406,7 @@ def _in_words(parts: Iterable[tuple[str, list[str]]]) -> tuple[Section, ...]:
 
 def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
     parts = {
+        "imported": imported_lines(document["imported"]) if "imported" in document else [],
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(
@@ -414,6 +424,12 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
     }
     return ((part, lines) for part, lines in parts.items() if lines)
+
+
+def imported_lines(imported: Document) -> list[str]:
+    """Return the origin of an imported case, its load cases and notes, those of the same text as one."""
+    notes = [Note(**note) for note in imported["notes"]]
+    return [f"from {imported['origin']}", *imported["load_cases"], *in_words(notes)]
 
 
 def _housing_summary(housing: Document) -> list[str]:
@@ -462,6 +478,7 @@ def _pair_summary(pair: Document) -> str:
 def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
     on_bearings = bool(document.get("bearings"))
     parts = {
+        "imported": imported_lines(document["imported"]) if "imported" in document else [],
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
