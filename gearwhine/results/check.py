@@ -410,7 +410,9 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(
-            document.get("bearings", ()), [one["carrier"] for one in document.get("planetary", ())]
+            document.get("bearings", ()),
+            [one["carrier"] for one in document.get("planetary", ())],
+            [one["name"] for one in document.get("rotors", ())],
         ),
         "thrust": [
             _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
@@ -451,13 +453,19 @@ def _housing_summary(housing: Document) -> list[str]:
     return [first, ", ".join(counts)] if counts else [first]
 
 
-def _bearing_summary(bearings: Sequence[Document], carriers: Sequence[str]) -> list[str]:
+def _bearing_summary(bearings: Sequence[Document], carriers: Sequence[str], rotors: Sequence[str]) -> list[str]:
     if not bearings:
         return []
     on_ground = sum(bearing["seat"] == "ground" for bearing in bearings)
     on_pins = sum(bearing["seat"] in carriers for bearing in bearings)
-    seated = len(bearings) - on_ground - on_pins
-    counts = (seated, "in seats of the housing"), (on_ground, "on the ground"), (on_pins, "on pins of planets")
+    between = sum(bearing["seat"] in rotors for bearing in bearings) - on_pins
+    seated = len(bearings) - on_ground - on_pins - between
+    counts = (
+        (seated, "in seats of the housing"),
+        (on_ground, "on the ground"),
+        (between, "between shafts"),
+        (on_pins, "on pins of planets"),
+    )
     return [", ".join(f"{count} {where}" for count, where in counts if count)]
 
 

@@ -1,6 +1,6 @@
 """Bearings of a REXS file as `[[bearing]]`: rolling bearings by geometry or catalogue, and springs.
 
-All stand on the ground, as the case has no housing; those of planets stand on the carrier.
+They stand on the ground, as the case has no housing; those of planets on their carrier, others between two shafts.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Mounted:
     body : Body
         What turns in it.
     seat : Body or None
-        Carrier on which it stands; None: the ground.
+        Carrier or other shaft on which it stands; None: the ground.
     """
 
     connection: Connection
@@ -104,13 +104,12 @@ def find_bearings(unit: GearUnit, bodies: Bodies, carriers: dict[int, Body], sta
                 unit.notes.changed(component.label, text)
             found.append(Mounted(connection, side, body, carriers[id(body)]))
             continue
-        if len({id(body) for _, body in turning}) == 2:
-            text = f'between "{turning[0][1].name}" and "{turning[1][1].name}": the first stands on the ground there'
-            unit.notes.changed(component.label, text)
-        elif len(turning) == 2:
+        (side, body), *others = turning
+        around = others[0][1] if others else None
+        if around is body:
             unit.notes.left_out(component.label, "both of its sides are one body")
             continue
-        found.append(Mounted(connection, turning[0][0], turning[0][1], None))
+        found.append(Mounted(connection, side, body, around))
     for component in unit.model.of_kind(*BEARINGS):
         if component.number not in places:
             unit.notes.left_out(component.label, "no relation says between which parts it stands")

@@ -429,11 +429,12 @@ def test_a_coupling_between_shafts_is_one_of_their_rotor() -> None:
     assert (between.lateral_stiffness, between.torsional_stiffness, between.tilt_stiffness) == (1e6, 6e3, 200.0)
 
 
-def test_a_pilot_bearing_stands_on_the_ground_and_is_noted() -> None:
+def test_a_bearing_between_two_shafts_stands_on_the_other_one() -> None:
     file = helical_stage()
     bearing = file.add("concept_bearing", "pilot", u_coordinate_on_shaft_inner_side=(5.0, "mm"))
     file.relate("side", assembly=bearing, inner_part=file.number("input"), outer_part=file.number("output"))
-    assert any('between "input" and "output"' in text for text in notes(file, "changed"))
+    pilot = entry(imported(file).document, "bearing", "pilot")
+    assert (pilot["rotor"], pilot["seat"], pilot["at"]) == ("input", "output", "5 mm")
 
 
 def test_what_is_not_taken_is_listed_once_with_its_components() -> None:
