@@ -104,8 +104,8 @@ def find_bearings(unit: GearUnit, bodies: Bodies, carriers: dict[int, Body], sta
                 unit.notes.changed(component.label, text)
             found.append(Mounted(connection, side, body, carriers[id(body)]))
             continue
-        (side, body), *others = turning
-        around = others[0][1] if others else None
+        (side, body), *further = turning
+        around = further[0][1] if further else None
         if around is body:
             unit.notes.left_out(component.label, "both of its sides are one body")
             continue

@@ -186,6 +186,8 @@ def _teeth(unit: GearUnit, gear: Component, shaft: Component, body: Body, coordi
     if angle is None:
         angle = math.radians(20.0)
         unit.notes.assumed(gear.label, "no normal_pressure_angle: 20 degrees")
+    if not math.radians(10.0) <= angle <= math.radians(35.0):
+        raise wrong(f"{gear.label}: normal_pressure_angle", "an angle from 10 to 35 degrees", deg(angle))
     shift = None if flank is None else flank.number_of(_SHIFTS)
     if shift is None and flank is not None:
         shift = flank.number_of("addendum_modification", "m")

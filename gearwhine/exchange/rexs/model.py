@@ -6,7 +6,6 @@ number in SI, a list, a flag or a text, and refused there by component and attri
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,6 +17,8 @@ from gearwhine.exchange.rexs.units import unit_named
 
 _NUMBER = re.compile(r"\s*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?\s*")
 _LONGEST_NUMBER = 100
+_LARGEST = 1e50
+"""Amount beyond which a number is no quantity, and below whose inverse it is 0: products of some stay finite."""
 SCHEMA_VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0", "2.0.0")
 
 
@@ -30,7 +31,7 @@ class Attribute:
 
 
 def finite_number(value: object) -> float | None:
-    """Return a number or its text as a float; None where it is none, or not finite."""
+    """Return a number or its text as a float; None where it is none, or beyond all quantities."""
     if isinstance(value, str):
         if len(value) > _LONGEST_NUMBER or _NUMBER.fullmatch(value) is None:
             return None
@@ -42,7 +43,9 @@ def finite_number(value: object) -> float | None:
             return None
     else:
         return None
-    return number if math.isfinite(number) else None
+    if not abs(number) <= _LARGEST:
+        return None
+    return number if abs(number) >= 1.0 / _LARGEST else 0.0
 
 
 @dataclass(frozen=True)

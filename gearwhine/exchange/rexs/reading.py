@@ -81,7 +81,7 @@ def _model_of_archive(content: bytes) -> bytes:
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, OSError, ValueError) as error:
         if isinstance(error, ValueError) and hasattr(error, "problems"):
             raise
-        raise wrong("the archive", f"a zip archive ({error})") from None
+        raise wrong("the archive", "a whole zip archive", str(error)) from None
     if len(unpacked) > LARGEST_MODEL:
         raise wrong(f"the archive: {member.filename[:60]}", f"a model of at most {LARGEST_MODEL // 10**6} MB")
     return unpacked
