@@ -74,35 +74,37 @@ class Mounted:
         return self.connection.component
 
 
-def find_bearings(unit: GearUnit, bodies: Bodies, carriers: dict[int, Body], standing: Iterable[Body]) -> list[Mounted]:
+def find_bearings(
+    unit: GearUnit, bodies: Bodies, carriers: dict[Body, Body], standing: Iterable[Body]
+) -> list[Mounted]:
     """Return the bearings, with what turns in each.
 
     Parameters
     ----------
     unit, bodies
-    carriers : dict of int to Body
-        Carrier of the body of each planet, by the identity of the body.
+    carriers : dict of Body to Body
+        Carrier of the body of each planet.
     standing : iterable of Body
         Bodies that are held and carry no gears, such as fixed axles: part of the ground.
     """
-    fixed = {id(body) for body in standing}
+    fixed = set(standing)
     found, places = [], set[int]()
     for connection in unit.connections(BEARINGS):
         component = connection.component
         places.add(component.number)
         shafts = [(side, bodies.of(side)) for side in connection.sides if side is not None]
-        turning = [(side, body) for side, body in shafts if body is not None and id(body) not in fixed]
+        turning = [(side, body) for side, body in shafts if body is not None and body not in fixed]
         if not turning:
             unit.notes.left_out(component.label, "no shaft of the case turns in it")
             continue
-        planets = [(side, body) for side, body in turning if id(body) in carriers]
+        planets = [(side, body) for side, body in turning if body in carriers]
         if planets:
             side, body = planets[0]
             others = [other for _, other in shafts if other is not None and other is not body]
-            if others and others[0] is not carriers[id(body)]:
-                text = f'it stands on the carrier "{carriers[id(body)].name}", not on "{others[0].name}"'
+            if others and others[0] is not carriers[body]:
+                text = f'it stands on the carrier "{carriers[body].name}", not on "{others[0].name}"'
                 unit.notes.changed(component.label, text)
-            found.append(Mounted(connection, side, body, carriers[id(body)]))
+            found.append(Mounted(connection, side, body, carriers[body]))
             continue
         (side, body), *further = turning
         around = further[0][1] if further else None

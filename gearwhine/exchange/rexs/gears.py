@@ -42,7 +42,7 @@ _HIGHEST_TOOTH = 3.0  # modules, beyond which an addendum or dedendum is no toot
 _AGREES = 0.02  # modules of profile shift within which a sum is that of a centre distance
 
 
-@dataclass
+@dataclass(eq=False)
 class Teeth:
     """A gear with its teeth, signed after ISO 21771 where it is internal.
 
@@ -97,7 +97,7 @@ class Teeth:
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Two gears in mesh: the component of their stage, gear 1 and gear 2, and the stated centre distance [m]."""
 

@@ -14,7 +14,7 @@ from typing import Any
 from gearwhine.exchange.rexs.bearings import bearing_table, find_bearings, support_table
 from gearwhine.exchange.rexs.errors import RexsError, RexsProblem, wrong
 from gearwhine.exchange.rexs.gear_unit import GearUnit, readable
-from gearwhine.exchange.rexs.gears import Teeth, find_meshes, find_teeth, gear_table, settle_heights, settle_shifts
+from gearwhine.exchange.rexs.gears import Mesh, find_meshes, find_teeth, gear_table, settle_heights, settle_shifts
 from gearwhine.exchange.rexs.materials import Materials
 from gearwhine.exchange.rexs.model import RexsModel
 from gearwhine.exchange.rexs.notes import Note, in_words
@@ -32,13 +32,14 @@ from gearwhine.exchange.rexs.quantities import rpm
 from gearwhine.exchange.rexs.shafts import Body, find_bodies, rotor_table
 from gearwhine.exchange.rexs.toml_text import toml_text
 from gearwhine.exchange.rexs.trains import (
+    PlanetSet,
     find_train,
     in_order_of_power,
     pair_table,
     planetary_table,
 )
 
-_MOST_OF_A_KIND = 1000
+_MOST_OF_A_KIND = 3000
 _LONGEST_NOTES = 9000
 _TAKEN = {
     *("gear_unit", "gear_casing", "shaft", "shaft_section", "side_plate", "planet_carrier", "planetary_stage"),
@@ -168,10 +169,10 @@ def case_of(model: RexsModel, name: str = "", load_case: str = "") -> ImportedCa
                 bearings.append(table)
     if bearings:
         document["bearing"] = bearings
-    in_mesh = _in_mesh(train.meshes)
+    in_mesh = dict.fromkeys(gear for mesh in train.meshes for gear in (mesh.first, mesh.second))
     document["gear"] = [gear_table(unit, materials, one, place) for place, one in enumerate(in_mesh)]
     for gear in teeth.values():
-        if not any(gear is one for one in in_mesh):
+        if gear not in in_mesh:
             unit.notes.left_out(gear.component.label, "it meshes with no gear")
     document["gear_pair"] = [pair_table(unit, mesh) for mesh in train.meshes]
     sets = [planetary_table(unit, one, train, bodies) for one in train.sets]
@@ -208,21 +209,10 @@ def _title(model: RexsModel, name: str) -> str:
     return f"{named or 'Gear unit'}, from {readable(name) or 'a REXS file'}"
 
 
-def _turning(meshes: list[Any], sets: list[Any]) -> list[Body]:
+def _turning(meshes: list[Mesh], sets: list[PlanetSet]) -> list[Body]:
     """Return the bodies that gears or planets turn, in the order of the power."""
     bodies = [gear.body for mesh in meshes for gear in (mesh.first, mesh.second)] + [one.carrier for one in sets]
-    found: list[Body] = []
-    for body in bodies:
-        if body not in found:
-            found.append(body)
-    return found
-
-
-def _in_mesh(meshes: list[Any]) -> list[Teeth]:
-    found: list[Teeth] = []
-    for mesh in meshes:
-        found += [gear for gear in (mesh.first, mesh.second) if not any(gear is one for one in found)]
-    return found
+    return list(dict.fromkeys(bodies))
 
 
 def _require_moderate(model: RexsModel) -> None:

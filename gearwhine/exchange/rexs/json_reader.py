@@ -12,6 +12,8 @@ from gearwhine.exchange.rexs.model import Attribute, Component, LoadCase, Relati
 
 DEEPEST = 32
 """Lists and objects within each other beyond which a file is refused; the schema has ten."""
+MOST_MARKS = 8_000_000
+"""Quotes and brackets beyond which a file is refused: they bound the memory of what is read."""
 
 
 def read_json(content: bytes) -> RexsModel:
@@ -44,8 +46,10 @@ def read_json(content: bytes) -> RexsModel:
 def _require_shallow(content: bytes) -> None:
     """Refuse brackets within each other deeper than the schema has them, before the parser follows them."""
     depth, in_text = 0, False
-    # Only what matters is looked at: without it a file is gone through by its quotes and brackets.
-    for piece in _marks(content):
+    marks = _marks(content)
+    if len(marks) > MOST_MARKS:
+        raise wrong("the file", f"at most {MOST_MARKS} quotes and brackets", len(marks))
+    for piece in marks:
         if piece == 0x22:
             in_text = not in_text
         elif not in_text:

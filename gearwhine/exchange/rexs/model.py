@@ -289,23 +289,24 @@ class RexsModel:
         ]
 
     @cached_property
-    def _parts(self) -> dict[int, list[int]]:
+    def _parts(self) -> dict[int, dict[int, None]]:
         return self._joined("assembly", "part", "assembly", "ordered_assembly")
 
     @cached_property
-    def _assemblies(self) -> dict[int, list[int]]:
+    def _assemblies(self) -> dict[int, dict[int, None]]:
         return self._joined("part", "assembly", "assembly", "ordered_assembly")
 
     @cached_property
-    def _references(self) -> dict[int, list[int]]:
+    def _references(self) -> dict[int, dict[int, None]]:
         return self._joined("origin", "referenced", "reference", "ordered_reference")
 
-    def _joined(self, first: str, second: str, *kinds: str) -> dict[int, list[int]]:
-        found: dict[int, list[int]] = {}
+    def _joined(self, first: str, second: str, *kinds: str) -> dict[int, dict[int, None]]:
+        """Return the components of a second role by that of the first, each once and in order."""
+        found: dict[int, dict[int, None]] = {}
         for relation in self.of_relation(*kinds):
             one, other = relation.role(first), relation.role(second)
-            if one is not None and other is not None and other not in found.get(one, ()):
-                found.setdefault(one, []).append(other)
+            if one is not None and other is not None:
+                found.setdefault(one, {})[other] = None
         return found
 
     def in_load_case(self, load_case: LoadCase) -> RexsModel:
@@ -362,12 +363,25 @@ def _circles(components: Mapping[int, Component], relations: Iterable[Relation])
         whole, part = relation.role("assembly"), relation.role("part")
         if relation.kind in ("assembly", "ordered_assembly") and whole is not None and part is not None:
             parts.setdefault(whole, set()).add(part)
-    # Assemblies without parts that are assemblies fall away, until none is left or only circles are.
-    while parts:
-        ended = [whole for whole, inner in parts.items() if not inner & parts.keys()]
-        if not ended:
-            label = components[min(parts)].label
-            return [RexsProblem(label, "an assembly that is no part of itself, by way of others either")]
-        for whole in ended:
-            del parts[whole]
-    return []
+    # An assembly whose parts are no assemblies is taken away from what it is a part of, until only circles are left.
+    inner = {whole: {part for part in its if part in parts} for whole, its in parts.items()}
+    around: dict[int, list[int]] = {}
+    for whole, its in inner.items():
+        for part in its:
+            around.setdefault(part, []).append(whole)
+    ended = [whole for whole, its in inner.items() if not its]
+    while ended:
+        part = ended.pop()
+        del inner[part]
+        for whole in around.get(part, ()):
+            inner[whole].discard(part)
+            if not inner[whole]:
+                ended.append(whole)
+    if not inner:
+        return []
+    # Some stand around a circle: the way down from any of them ends in one.
+    one, passed = min(inner), set[int]()
+    while one not in passed:
+        passed.add(one)
+        one = min(inner[one])
+    return [RexsProblem(components[one].label, "an assembly that is no part of itself, by way of others either")]

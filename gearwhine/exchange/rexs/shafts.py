@@ -46,7 +46,7 @@ class Section:
         return outer, inner
 
 
-@dataclass
+@dataclass(eq=False)
 class Body:
     """Shafts and plates that are one rotor.
 
@@ -119,8 +119,8 @@ class Bodies:
 
     bodies: list[Body]
     of_part: dict[int, Body]
-    held: dict[int, list[Connection]]
-    """Couplings to the casing of each body that has them, by the identity of the body."""
+    held: dict[Body, list[Connection]]
+    """Couplings to the casing, of each body that has them."""
 
     def of(self, component: Component | None) -> Body | None:
         """Return the body of a shaft, a plate or a pin; None for others."""
@@ -128,7 +128,7 @@ class Bodies:
 
     def holds(self, body: Body) -> list[Connection]:
         """Return the couplings that hold a body in the casing."""
-        return self.held.get(id(body), [])
+        return self.held.get(body, [])
 
 
 def find_bodies(unit: GearUnit, materials: Materials) -> Bodies:
@@ -163,9 +163,9 @@ def find_bodies(unit: GearUnit, materials: Materials) -> Bodies:
             if one.carrier is not None and one.carrier.number == carrier_number and pin in unit.model.components:
                 one.pins.append(unit.model.components[pin])
                 of_part[pin] = one
-    holding: dict[int, list[Connection]] = {}
+    holding: dict[Body, list[Connection]] = {}
     for number, connection in held:
-        holding.setdefault(id(of_part[number]), []).append(connection)
+        holding.setdefault(of_part[number], []).append(connection)
     return Bodies(bodies, of_part, holding)
 
 

@@ -45,15 +45,15 @@ class Train:
     meshes : list of Mesh
         In the order of the power.
     sets : list of PlanetSet
-    carriers : dict of int to Body
-        Carrier of each planet's body, by its identity.
+    carriers : dict of Body to Body
+        Carrier of each planet's body.
     held : list of Body
         Bodies with gears that the casing holds.
     """
 
     meshes: list[Mesh]
     sets: list[PlanetSet]
-    carriers: dict[int, Body]
+    carriers: dict[Body, Body]
     held: list[Body] = field(default_factory=list)
 
     def built(self, first: str) -> GearTrain:
@@ -77,11 +77,11 @@ class Train:
         return {name: float(ratio) for name, ratio in self.built(body.name).ratios.items()} | {body.name: 1.0}
 
     def _carrier_name(self, mesh: Mesh) -> str | None:
-        carrier = self.carriers.get(id(mesh.first.body)) or self.carriers.get(id(mesh.second.body))
+        carrier = self.carriers.get(mesh.first.body) or self.carriers.get(mesh.second.body)
         return None if carrier is None else carrier.name
 
     def _planet_names(self, mesh: Mesh) -> list[str]:
-        return [gear.body.name for gear in (mesh.first, mesh.second) if id(gear.body) in self.carriers]
+        return [gear.body.name for gear in (mesh.first, mesh.second) if gear.body in self.carriers]
 
 
 def find_train(unit: GearUnit, bodies: Bodies, meshes: list[Mesh], teeth: dict[int, Teeth]) -> Train:
@@ -92,17 +92,17 @@ def find_train(unit: GearUnit, bodies: Bodies, meshes: list[Mesh], teeth: dict[i
     RexsError
         Where a planetary stage has no carrier or no planets, or a shaft with gears is held outside one.
     """
-    sets, carriers = [], dict[int, Body]()
+    sets, carriers = [], dict[Body, Body]()
     for stage in unit.model.of_kind("planetary_stage"):
         one = _planet_set(unit, bodies, stage, meshes, teeth)
         sets.append(one)
-        carriers |= {id(gear.body): one.carrier for gear in one.planets}
-    geared = {id(gear.body): gear.body for mesh in meshes for gear in (mesh.first, mesh.second)}
-    geared |= {id(one.carrier): one.carrier for one in sets}
-    held = [body for body in geared.values() if any(_takes_torque(one.component) for one in bodies.holds(body))]
-    central = {id(body) for one in sets for body in (one.carrier, *(g.body for g in (one.sun, one.ring) if g))}
+        carriers |= {gear.body: one.carrier for gear in one.planets}
+    geared = dict.fromkeys(gear.body for mesh in meshes for gear in (mesh.first, mesh.second))
+    geared |= dict.fromkeys(one.carrier for one in sets)
+    held = [body for body in geared if any(_takes_torque(one.component) for one in bodies.holds(body))]
+    central = {body for one in sets for body in (one.carrier, *(g.body for g in (one.sun, one.ring) if g))}
     for body in held:
-        if id(body) not in central:
+        if body not in central:
             raise wrong(
                 body.label, "a shaft that turns: a coupling holds it in the casing, and it is in no planetary set"
             )
@@ -120,8 +120,8 @@ def _planet_set(
 ) -> PlanetSet:
     """Return a planetary set."""
     shafts = _shafts(unit, stage, "planet_shaft")
-    planet_bodies = {id(body) for shaft in shafts if (body := bodies.of(shaft)) is not None}
-    planets = [gear for gear in teeth.values() if id(gear.body) in planet_bodies]
+    planet_bodies = {body for shaft in shafts if (body := bodies.of(shaft)) is not None}
+    planets = [gear for gear in teeth.values() if gear.body in planet_bodies]
     if not planets:
         raise wrong(stage.label, "planets: relations planet_shaft to shafts with gears")
     carrier = next(
@@ -140,7 +140,7 @@ def _planet_set(
     mates = []
     for mesh in meshes:
         for gear, other in ((mesh.first, mesh.second), (mesh.second, mesh.first)):
-            if id(gear.body) in planet_bodies and id(other.body) not in planet_bodies and other not in mates:
+            if gear.body in planet_bodies and other.body not in planet_bodies and other not in mates:
                 mates.append(other)
     suns, rings = [one for one in mates if one.number > 0], [one for one in mates if one.number < 0]
     for further in (*suns[1:], *rings[1:]):
@@ -166,22 +166,25 @@ def in_order_of_power(meshes: list[Mesh], first: Body | None) -> list[Mesh]:
     """Return pairs each with its driver first, in the order in which power reaches them from a body."""
     if first is None or not any(first in (mesh.first.body, mesh.second.body) for mesh in meshes):
         first = meshes[0].first.body
-    reached, ordered, left = [first], list[Mesh](), list(meshes)
-    while left:
-        place = next(
-            ((mesh, body) for body in reached for mesh in left if body is mesh.first.body or body is mesh.second.body),
-            None,
-        )
-        if place is None:  # a train apart from this one
-            reached.append(left[0].first.body)
-            continue
-        mesh, body = place
-        left.remove(mesh)
-        turned = mesh if body is mesh.first.body else Mesh(mesh.stage, mesh.second, mesh.first, mesh.centre_distance)
-        ordered.append(turned)
-        if turned.second.body not in reached:
-            reached.append(turned.second.body)
-    return ordered
+    of_body: dict[Body, list[Mesh]] = {}
+    for mesh in meshes:
+        for gear in (mesh.first, mesh.second):
+            of_body.setdefault(gear.body, []).append(mesh)
+    ordered: dict[Mesh, Mesh] = {}
+    # Each train that is apart from the first one begins at its first pair.
+    for start in (first, *(mesh.first.body for mesh in meshes)):
+        reached = {start: None}
+        for body in (waiting := [start]):
+            for mesh in of_body.get(body, ()):
+                if mesh in ordered:
+                    continue
+                ahead = body is mesh.first.body
+                driver, driven = (mesh.first, mesh.second) if ahead else (mesh.second, mesh.first)
+                ordered[mesh] = Mesh(mesh.stage, driver, driven, mesh.centre_distance)
+                if driven.body not in reached:
+                    reached[driven.body] = None
+                    waiting.append(driven.body)
+    return list(ordered.values())
 
 
 def pair_table(unit: GearUnit, mesh: Mesh) -> dict[str, Any]:

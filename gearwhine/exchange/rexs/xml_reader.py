@@ -16,6 +16,8 @@ from gearwhine.exchange.rexs.model import Attribute, Component, LoadCase, Relati
 
 DEEPEST = 16
 """Elements within each other beyond which a file is refused; the schema has eight."""
+MOST_ELEMENTS = 1_000_000
+"""Elements beyond which a file is refused: they bound the memory and time of reading."""
 _PIECE = 1 << 16
 
 _KNOWN = {
@@ -81,6 +83,7 @@ class _Reader:
 
     path: list[str] = field(default_factory=list)
     passed: int = 0
+    elements: int = 0
     heading: dict[str, str] = field(default_factory=dict)
     components: list[Component] = field(default_factory=list)
     relations: list[Relation] = field(default_factory=list)
@@ -104,6 +107,9 @@ class _Reader:
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         name = name.rpartition(":")[2]
+        self.elements += 1
+        if self.elements > MOST_ELEMENTS:
+            raise wrong("the file", f"at most {MOST_ELEMENTS} elements")
         if len(self.path) + self.passed >= DEEPEST:
             raise wrong("the file", f"elements at most {DEEPEST} deep")
         if self.passed or name not in _KNOWN.get(self.path[-1] if self.path else "", ()):

@@ -236,6 +236,45 @@ def test_assemblies_within_themselves_are_refused() -> None:
     assert "an assembly that is no part of itself" in refusal(file.xml())
 
 
+def test_a_circle_of_several_assemblies_below_a_sound_one_is_found() -> None:
+    file = helical_stage()
+    wheel, flank, relief = (file.number(name) for name in ("wheel", "relief", "oil"))
+    for whole, part in ((wheel, flank), (flank, relief), (relief, wheel)):
+        file.relate("ordered_assembly", assembly=whole, part=part)
+    said = refusal(file.json())
+    assert 'cylindrical_gear 12 "wheel": expected an assembly that is no part of itself' in said
+
+
+def test_files_of_more_parts_than_the_limits_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gearwhine.exchange.rexs.xml_reader.MOST_ELEMENTS", 100)
+    monkeypatch.setattr("gearwhine.exchange.rexs.json_reader.MOST_MARKS", 100)
+    assert "at most 100 elements" in refusal(helical_stage().xml())
+    assert "at most 100 quotes and brackets" in refusal(helical_stage().json())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "relation",
+    [
+        b'<relation id="1" type="assembly"><ref id="1" role="assembly"/><ref id="%d" role="part"/></relation>',
+        b'<relation id="1" type="assembly"><ref id="%d" role="part"/><ref id="%d" role="assembly"/></relation>',
+    ],
+    ids=["wide", "deep"],
+)
+def test_many_relations_take_seconds(relation: bytes) -> None:
+    """Sixty thousand parts of one assembly, and a chain of as many assemblies."""
+    count = 60_000
+    parts = b"".join(b'<component id="%d" type="shaft"/>' % number for number in range(1, count + 2))
+    numbers = relation.count(b"%d")
+    joined = b"".join(relation % tuple(number + place for place in range(numbers)) for number in range(2, count))
+    started = time.perf_counter()
+    model = read_content(
+        b'<model version="1.4"><components>%s</components><relations>%s</relations></model>' % (parts, joined)
+    )
+    assert len(model.parts_of(1 if numbers == 1 else 5, "shaft")) == (count - 2 if numbers == 1 else 1)
+    assert time.perf_counter() - started < 10.0
+
+
 def test_a_number_twice_and_a_load_case_of_nothing_are_refused() -> None:
     file = helical_stage()
     file.components[5]["id"] = 1
