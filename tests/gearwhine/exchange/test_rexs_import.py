@@ -2,11 +2,13 @@
 
 import math
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
 from rexs_files import CENTRE_DISTANCE, HELIX, PLANET, RING, SUN, RexsFile, helical_stage, planetary_stage
 
+import gearwhine as gw
 from gearwhine.case import parse_case
 from gearwhine.case.model import Case
 from gearwhine.exchange.rexs import ImportedCase, RexsError, case_of, read_content
@@ -340,6 +342,44 @@ def test_weight_is_along_the_stated_direction() -> None:
         }
     )
     assert imported(file).document["operation"]["gravity"] == ["0 m/s^2", "-9.80665 m/s^2", "0 m/s^2"]
+
+
+def test_bearing_loads_are_those_of_levers(tmp_path: Path) -> None:
+    """Forces of the teeth and of the belt on the input shaft, by hand: two springs across, one of them axial.
+
+    The driver turns counter-clockwise seen from +z: the wheel holds it back along -t, t = z x e with e from its axis to
+    the wheel's, pushes it away along -e, and its left-hand teeth along -z.
+    """
+    file = helical_stage()
+    file.components[file.number("6205") - 1].update(
+        type="concept_bearing",
+        attributes={
+            "u_coordinate_on_shaft_inner_side": (105.0, "mm"),
+            "radial_stiffness": (3e8, "N / m"),
+            "axial_stiffness": (1e8, "N / m"),
+            "axial_force_absorption": ("both_directions", "none"),
+        },
+    )
+    (tmp_path / "unit.rexs").write_bytes(file.xml())
+    result = gw.load(tmp_path / "unit.rexs").operating_point().document
+    found = {one["name"]: one["force_n"] for one in result["bearings"]}
+
+    radius = 0.1 * 20 / 79
+    tangential = 80.0 / radius
+    cosine = 2.4e-3 * 79 / math.cos(HELIX) / 2.0 / 0.1
+    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(HELIX))
+    radial = tangential * math.tan(math.acos(cosine * math.cos(transverse)))
+    axial = -tangential * math.tan(HELIX) / cosine
+    e, t = (0.6, -0.8), (0.8, 0.6)
+    teeth = [-tangential * t[place] - radial * e[place] for place in (0, 1)]
+    belt = (250.0, 0.0)
+    for place in (0, 1):
+        moment = 0.040 * teeth[place] - 0.015 * belt[place] - radius * e[place] * axial
+        rear = moment / 0.090
+        assert found["6205"][place] == pytest.approx(rear, abs=0.03 * tangential)
+        assert found["front"][place] == pytest.approx(teeth[place] + belt[place] - rear, abs=0.03 * tangential)
+    assert found["6205"][2] == pytest.approx(axial, rel=1e-3)
+    assert found["front"][2] == 0.0
 
 
 def test_a_planetary_set_has_its_members_and_its_carrier(planetary: Case) -> None:
