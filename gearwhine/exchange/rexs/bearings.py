@@ -298,7 +298,7 @@ def _main_dimensions(unit: GearUnit, mounted: Mounted, z: float, place: int) -> 
     at = ("bearing", place, "stiffness")
     if found is not None:
         sizes = " x ".join(f"{size * 1e3:g}" for size in found)
-        unit.notes.assumed(component.label, f"no main dimensions: {sizes} mm, of {designation} by ISO 15", *at)
+        unit.notes.assumed(component.label, f"no main dimensions: {sizes} mm, of {designation} by ISO 15 and 355", *at)
         return found
     bore = mounted.body.diameter_at(z)
     if bore <= 0.0:

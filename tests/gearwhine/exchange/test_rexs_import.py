@@ -12,6 +12,7 @@ import gearwhine as gw
 from gearwhine.case import parse_case
 from gearwhine.case.model import Case
 from gearwhine.exchange.rexs import ImportedCase, RexsError, case_of, read_content
+from gearwhine.exchange.rexs.catalogue import dimensions_of
 
 
 def imported(file: RexsFile, load_case: str = "") -> ImportedCase:
@@ -255,10 +256,39 @@ def test_a_bearing_known_by_its_designation_has_the_sizes_of_iso_15() -> None:
     file.named("6205")["catalogue_designation"] = ("6305-2Z", "none")
     catalogue = entry(imported(file).document, "bearing", "6205")["stiffness"]["rolling"]["catalogue"]
     assert [catalogue[key] for key in ("bore", "outer_diameter", "width")] == ["25 mm", "62 mm", "17 mm"]
-    file.named("6205")["catalogue_designation"] = ("32005 X", "none")
+    file.named("6205")["catalogue_designation"] = ("HK 2512", "none")
     catalogue = entry(imported(file).document, "bearing", "6205")["stiffness"]["rolling"]["catalogue"]
     assert catalogue["bore"] == "25 mm"  # of the shaft there
-    assert any("look up those of 32005 X" in text for text in notes(file, "assumed"))
+    assert any("look up those of HK 2512" in text for text in notes(file, "assumed"))
+
+
+@pytest.mark.parametrize(
+    ("designation", "sizes"),
+    [  # makers' catalogues
+        ("6000", (10, 26, 8)),
+        ("6210-2Z", (50, 90, 20)),
+        ("6306", (30, 72, 19)),
+        ("7208 B", (40, 80, 18)),
+        ("NU 306", (30, 72, 19)),
+        ("NU212", (60, 110, 22)),
+        ("NU 2205", (25, 52, 18)),
+        ("NUP204E", (20, 47, 14)),
+        ("22220", (100, 180, 46)),
+        ("30206", (30, 62, 17.25)),
+        ("32008 X", (40, 68, 19)),
+        ("33014", (70, 110, 31)),
+        ("33016", (80, 125, 36)),
+    ],
+)
+def test_designations_have_the_sizes_of_catalogues(designation: str, sizes: tuple[float, float, float]) -> None:
+    found = dimensions_of(designation)
+    assert found is not None
+    assert tuple(1e3 * size for size in found) == pytest.approx(sizes)
+
+
+@pytest.mark.parametrize("designation", ["", "bearing", "618/8", "6", "60", "6099", "33001", "HK 2512", "K 50x58x25"])
+def test_other_designations_have_none(designation: str) -> None:
+    assert dimensions_of(designation) is None
 
 
 def test_a_stiffness_that_stands_for_rigid_is_bounded_and_noted() -> None:
