@@ -45,7 +45,7 @@ def _import(file: str, output: Path | None, load_case: str) -> dict[str, Any]:
     target = Path(f"{Path(file).name.split('.')[0]}.toml") if output is None else output
     if target.suffix != ".toml":
         raise CaseError([Problem("--output", str(target), "a case file, which ends in .toml")])
-    if target.exists() or target.is_symlink():
+    if target.exists():
         raise CaseError([Problem("--output", str(target), "a place where no file of that name stands yet")])
     imported = imported_case(*read_rexs_file(file), load_case)
     with staging(target.parent, listed=False) as place:  # the case is the user's

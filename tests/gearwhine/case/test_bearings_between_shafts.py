@@ -51,6 +51,17 @@ def test_check_counts_it_apart(tmp_path: Any, capsys: pytest.CaptureFixture[str]
     assert "3 on the ground, 1 between shafts" in capsys.readouterr().out
 
 
+def test_bearings_of_planets_are_not_counted_with_them() -> None:
+    from planetary_case import stage
+
+    from gearwhine.results.check import check_document, summary
+
+    (line,) = [one.note for one in summary(check_document(parse_case(stage()))) if one.title == "bearings"]
+    assert "on pins of planets" in line
+    assert "between" not in line
+    assert "seats" not in line
+
+
 def test_the_name_of_no_rotor_and_no_seat_is_refused() -> None:
     with pytest.raises(CaseError, match="expected the name of a seat"):
         parse_case(tables(seat="outr"))
