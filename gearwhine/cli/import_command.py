@@ -38,11 +38,12 @@ def _import(file: str, output: Path | None, load_case: str) -> dict[str, Any]:
     from gearwhine.case import CaseError, Problem
     from gearwhine.case import load_case as read_case
     from gearwhine.case.load import imported_case, read_rexs_file
+    from gearwhine.exchange.file_names import bare_name
     from gearwhine.output import staging
     from gearwhine.output.quantity import document_of
     from gearwhine.results.check import IMPORTED
 
-    target = Path(f"{Path(file).name.split('.')[0]}.toml") if output is None else output
+    target = Path(f"{bare_name(file)}.toml") if output is None else output
     if target.suffix != ".toml":
         raise CaseError([Problem("--output", str(target), "a case file, which ends in .toml")])
     if target.exists():

@@ -25,7 +25,7 @@ class Names:
         """Return the name of a component's entry, always the same."""
         if component.number not in self._given:
             name = readable(component.name)
-            if not name or name == "ground":
+            if name in ("", "ground", "housing"):
                 name = f"{component.kind} {component.number}"
             if name in self._taken:
                 name = f"{name} ({component.number})"

@@ -29,6 +29,7 @@ from gearwhine.exchange.rexs.operation import (
 )
 from gearwhine.exchange.rexs.placement import Placements
 from gearwhine.exchange.rexs.quantities import rpm
+from gearwhine.exchange.rexs.shaft_places import place_shafts
 from gearwhine.exchange.rexs.shafts import Body, find_bodies, rotor_table
 from gearwhine.exchange.rexs.toml_text import toml_text
 from gearwhine.exchange.rexs.trains import (
@@ -116,6 +117,7 @@ def case_of(model: RexsModel, name: str = "", load_case: str = "") -> ImportedCa
     chosen = chosen_load_case(model, load_case)
     unit = GearUnit(model if chosen is None else model.in_load_case(chosen), Placements(model))
     _require_moderate(model)
+    place_shafts(unit)
     materials = Materials(unit)
     bodies = find_bodies(unit, materials)
     teeth = find_teeth(unit, bodies)

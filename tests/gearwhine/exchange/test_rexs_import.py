@@ -144,6 +144,33 @@ def test_a_shaft_that_points_the_other_way_is_the_same_shaft() -> None:
     assert other.operation == usual.operation
 
 
+def test_shafts_without_a_place_stand_by_centre_distance_and_angle() -> None:
+    """From the input to (60, -80) mm: 143.13 degrees from w about -u; the gears stand at 55 and 45 mm."""
+    file, usual = helical_stage(), case(helical_stage())
+    for name in ("input", "output"):
+        del file.named(name)["support_vector"]
+    file.named("stage")["rotating_angle_around_neg_u_axis"] = (math.degrees(math.atan2(60.0, -80.0)), "deg")
+    made = case(file)
+    assert made.rotor_named("input").axis == (0.0, 0.0)
+    assert made.rotor_named("output").axis == pytest.approx(usual.rotor_named("output").axis)
+    starts = [made.rotor_named(name).start for name in ("input", "output")]
+    assert starts == pytest.approx([0.0, 0.010])
+    assert made.gear == usual.gear
+    assert any("no support_vector: its place by cylindrical_stage" in text for text in notes(file, "assumed"))
+
+
+def test_a_shaft_without_a_place_stands_on_the_axis_of_its_coupling() -> None:
+    file = helical_stage()
+    shaft = file.part("shaft", 1, "motor shaft")
+    file.part("shaft_section", shaft, length=(60.0, "mm"), outer_diameter_begin=(22.0, "mm"))
+    file.relate("reference", origin=shaft, referenced=3)
+    stations = {"u_coordinate_on_shaft_inner_side": (60.0, "mm"), "u_coordinate_on_shaft_outer_side": (0.0, "mm")}
+    coupling = file.add("coupling", "flange", **stations)
+    file.relate("side", assembly=coupling, inner_part=shaft, outer_part=file.number("input"))
+    rotor = case(file).rotor_named("input")
+    assert (rotor.start, rotor.length) == pytest.approx((-0.070, 0.180))
+
+
 def test_cones_keep_their_diameters_from_either_end() -> None:
     file = helical_stage()
     sections = [one["attributes"] for one in file.components if one["type"] == "shaft_section"]

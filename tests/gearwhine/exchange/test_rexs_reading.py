@@ -10,7 +10,7 @@ import pytest
 from rexs_files import RexsFile, archive, helical_stage, planetary_stage
 
 from gearwhine.case.units import si_amount
-from gearwhine.exchange.file_names import LARGEST_MODEL, is_rexs_file
+from gearwhine.exchange.file_names import LARGEST_MODEL, bare_name, is_rexs_file
 from gearwhine.exchange.rexs import RexsError, RexsModel, read_content, read_rexs
 from gearwhine.exchange.rexs.json_reader import DEEPEST as DEEPEST_JSON
 from gearwhine.exchange.rexs.model import Attribute, Component
@@ -66,6 +66,8 @@ def test_a_file_is_read_from_disk_whatever_its_ending(tmp_path: Path) -> None:
     assert is_rexs_file(path)
     assert is_rexs_file("UNIT.REXSZ")
     assert not is_rexs_file("unit.toml")
+    names = {"a/unit v1.2.rexs": "unit v1.2", "unit.rexs.zip": "unit", "UNIT.REXSJ": "UNIT", ".rexs": "unit"}
+    assert {name: bare_name(name) for name in names} == names
 
 
 @pytest.mark.parametrize(
