@@ -365,7 +365,8 @@ def _thrust(unit: GearUnit, mounted: Mounted, sense: str, rows: list[Component],
         text = "its two rows stand back to back"
         unit.notes.assumed(component.label, text, "bearing", place, "stiffness")
         return {"arrangement": "back to back", "spacing": mm(spacing)}
-    ahead = along(unit.placement(mounted.shaft)) > 0
+    # A component on a shaft may have an axis of its own, which may point the other way.
+    ahead = along(unit.placement(component if component.has("u_axis_vector") else mounted.shaft)) > 0
     if sense in ("positive", "negative"):
         return {"carries": "+z" if (sense == "positive") == ahead else "-z"}
     text = "no sense of its thrust: it carries +z, away from the left end"

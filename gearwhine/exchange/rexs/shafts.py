@@ -16,6 +16,7 @@ from gearwhine.exchange.rexs.errors import RexsError, RexsProblem, wrong
 from gearwhine.exchange.rexs.gear_unit import COUPLINGS, Connection, GearUnit
 from gearwhine.exchange.rexs.materials import Materials
 from gearwhine.exchange.rexs.model import Component
+from gearwhine.exchange.rexs.notes import Notes
 from gearwhine.exchange.rexs.placement import along
 from gearwhine.exchange.rexs.quantities import mm, of
 
@@ -26,6 +27,7 @@ RIGID_RADIAL, RIGID_TILT = 1e10, 1e7
 spoils the numbers of others. A greater one of the file is taken as this."""
 _STRUTS_ACROSS, _STRUTS_TILTED = 1e11, 1e9
 """Stiffness [N/m, N m/rad] of what joins the plates of a carrier: above that of a solid shaft as wide."""
+_NEAR_THE_END = 0.2  # part of a shaft's length beyond its end within which a part is taken for one at the end
 _SHORTEST_COUPLING = 1e-4  # length [m] of a coupling between shafts that touch
 
 
@@ -53,6 +55,8 @@ class Body:
     Attributes
     ----------
     name : str
+    notes : Notes
+        Notes of the import, for places that are not quite on it.
     axis : tuple of float
         x and y of its axis [m].
     parts : list of Component
@@ -68,6 +72,7 @@ class Body:
     """
 
     name: str
+    notes: Notes
     axis: tuple[float, float]
     parts: list[Component]
     sections: list[Section] = field(default_factory=list)
@@ -91,15 +96,18 @@ class Body:
         return (self.carrier or self.parts[0]).label
 
     def station(self, z: float, label: str) -> str:
-        """Return the station of a height from the left end, for a case.
+        """Return the station of a height from the left end, for a case; a little beyond an end it is that end.
 
         Raises
         ------
         RexsError
-            Where it is beyond the ends.
+            Where it is far beyond the ends.
         """
         at, length = z - self.start, self.end - self.start
-        if not -_SAME_PLACE <= at <= length + _SAME_PLACE:
+        beyond = max(-at, at - length)
+        if _SAME_PLACE < beyond <= _NEAR_THE_END * length:
+            self.notes.changed(label, f'it stands {mm(beyond)} beyond the end of "{self.name}": taken at the end')
+        elif beyond > _SAME_PLACE:
             raise wrong(
                 label,
                 f'a place on the shaft "{self.name}", from 0 to {length * 1e3:.6g} mm from its left end',
@@ -281,8 +289,11 @@ def _body(unit: GearUnit, materials: Materials, parts: list[Component], carrier:
     """Return the body of some parts, with their sections."""
     first = parts[0]
     origin = unit.placement(first).origin
-    named = carrier if carrier is not None else next((one for one in parts if one.kind == "shaft"), first)
-    body = Body(unit.names.of(named), (float(origin[0]), float(origin[1])), parts, carrier=carrier)
+    named = next((one for one in parts if one.kind == "shaft"), first)
+    if carrier is not None and carrier.kind == "planet_carrier":
+        named = carrier
+    axis = float(origin[0]), float(origin[1])
+    body = Body(unit.names.of(named), unit.notes, axis, parts, carrier=carrier)
     for part in parts:
         if not _on_one_axis(unit, first, part):
             raise wrong(part.label, f'the axis of "{body.name}", to which it is joined')

@@ -276,6 +276,25 @@ def test_angled_bearings_carry_thrust_in_the_sense_of_the_file() -> None:
         assert rolling["catalogue"]["axial_factor"] == 1.6
 
 
+def test_the_sense_of_thrust_is_along_the_bearings_own_axis() -> None:
+    file = helical_stage()
+    file.named("6205").update(
+        bearing_type=("angular_contact_ball_bearing", "none"),
+        axial_force_absorption=("positive", "none"),
+        u_axis_vector=([-1.0, 0.0, 0.0], "mm"),
+    )
+    assert entry(imported(file).document, "bearing", "6205")["stiffness"]["rolling"]["carries"] == "-z"
+
+
+def test_a_part_a_little_beyond_the_end_of_its_shaft_stands_at_the_end() -> None:
+    file = helical_stage()
+    file.named("6205")["u_coordinate_on_shaft_inner_side"] = (126.0, "mm")
+    assert entry(imported(file).document, "bearing", "6205")["at"] == "120 mm"
+    assert any('it stands 6 mm beyond the end of "input"' in text for text in notes(file, "changed"))
+    file.named("6205")["u_coordinate_on_shaft_inner_side"] = (-30.0, "mm")
+    assert 'a place on the shaft "input", from 0 to 120 mm' in refusal(file)
+
+
 def test_a_bearing_known_by_its_designation_has_the_sizes_of_iso_15() -> None:
     file = helical_stage()
     for key in ("inner_diameter", "outer_diameter", "width"):
@@ -478,6 +497,42 @@ def test_a_carrier_is_one_body_of_its_plates_shaft_and_pins(planetary: Case) -> 
     assert disc.mass == pytest.approx(mass, rel=1e-9)
     assert disc.polar_inertia == pytest.approx(mass * (0.054**2 + 0.025**2 / 8.0), rel=1e-9)  # type: ignore[union-attr]
     assert disc.at == pytest.approx(0.030)
+
+
+def test_a_carrier_may_be_a_shaft_alone() -> None:
+    """Planets on bearings straight to the carrier's shaft, without plates, pins and a planet_carrier."""
+    file = planetary_stage()
+    shaft = file.number("carrier shaft")
+    pins = {file.number(f"pin {place}") for place in (1, 2, 3)}
+    for one in file.components:
+        if one["type"] in ("side_plate", "planet_carrier", "coupling") or one["id"] in pins:
+            one["type"] = "point_list"
+    for relation in file.relations:
+        relation["roles"] = [(role, shaft if number in pins else number) for role, number in relation["roles"]]
+    file.relations = [one for one in file.relations if one["type"] != "planet_pin"]
+    for place in (1, 2, 3):
+        for at in (10, 30):
+            del file.named(f"pin bearing {place} at {at}")["u_coordinate_on_shaft_inner_side"]
+    made = imported(file).document
+    (one,) = made["planetary"]
+    assert one["carrier"] == "carrier shaft"
+    assert {segment["diameter"] for segment in entry(made, "rotor", "carrier shaft")["segments"]} == {"60 mm"}
+    assert entry(made, "bearing", "pin bearing 2 at 30")["seat"] == "carrier shaft"
+    parse_case(made)
+
+
+def test_planets_without_a_carrier_and_gears_that_the_casing_holds_are_refused() -> None:
+    file = planetary_stage()
+    file.relations = [one for one in file.relations if one["type"] not in ("planet_carrier_shaft", "assembly")] + [
+        one
+        for one in file.relations
+        if one["type"] == "assembly" and dict(one["roles"])["part"] != file.number("carrier")
+    ]
+    assert 'planetary_stage 8 "set": expected a carrier' in refusal(file)
+    file = helical_stage()
+    coupling = file.add("coupling", "lock", rotational_stiffness=(1e9, "N mm / rad"))
+    file.relate("side", assembly=coupling, inner_part=file.number("output"), outer_part=2)
+    assert "a coupling holds it in the casing" in refusal(file)
 
 
 def test_the_brake_may_give_way_or_be_open() -> None:
