@@ -96,7 +96,7 @@ def _text(text: str) -> str:
     plain = all(letter.isprintable() or letter == "\n" for letter in text)
     if "\n" in text and plain and "'''" not in text and not text.endswith("'"):
         return f"'''\n{text}'''"
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(text, ensure_ascii=False)
 
 
 def _value(value: Any, *, spread: bool = False) -> str:

@@ -171,6 +171,16 @@ def test_a_shaft_without_a_place_stands_on_the_axis_of_its_coupling() -> None:
     assert (rotor.start, rotor.length) == pytest.approx((-0.070, 0.180))
 
 
+def test_places_relative_to_a_component_that_points_the_other_way_are_turned() -> None:
+    file = helical_stage()
+    file.named("output").update(support_vector=([100.0, 60.0, -80.0], "mm"), u_axis_vector=([-1.0, 0.0, 0.0], "mm"))
+    file.named("wheel").update(
+        support_vector=([55.0, 0.0, 0.0], "mm"), reference_component_for_position=(file.number("output"), "none")
+    )
+    # The shaft spans 0 to 100 mm, and the wheel stands 55 mm before its right end.
+    assert entry(imported(file).document, "gear", "wheel")["at"] == "45 mm"
+
+
 def test_cones_keep_their_diameters_from_either_end() -> None:
     file = helical_stage()
     sections = [one["attributes"] for one in file.components if one["type"] == "shaft_section"]
@@ -396,6 +406,24 @@ def test_a_speed_that_is_stated_at_the_output_is_brought_to_the_input() -> None:
     file.named("output")["rotational_speed"] = (-400.0, "1 / min")
     operation = imported(file).document["operation"]
     assert (operation["rotor"], operation["speed"], operation["torque"]) == ("input", "1180 rpm", "60 N*m")
+    # 236 N m taken off there are 80 N m at the input.
+    del file.named("motor")["torque_around_u_axis"]
+    file.named("machine").update(torque_around_u_axis=(236.0, "N m"), defines_torque=(True, "none"))
+    operation = imported(file).document["operation"]
+    assert (operation["rotor"], operation["speed"], operation["torque"]) == ("input", "1180 rpm", "80 N*m")
+    shaft = file.number("output")
+    file.load_cases = [{shaft: {"rotational_speed": (speed, "1 / min")}} for speed in (-400.0, -600.0)]
+    assert imported(file).document["sweep"]["speed"] == ["1180 rpm", "1770 rpm"]
+
+
+def test_the_driver_is_the_gear_that_power_reaches_first() -> None:
+    file = helical_stage()
+    stage = next(one for one in file.relations if one["type"] == "stage")
+    (_, pinion), (_, wheel) = stage["roles"][1:]
+    stage["roles"][1:] = [("gear_1", wheel), ("gear_2", pinion)]
+    made = imported(file).document
+    assert made["gear_pair"] == [{"driver": "pinion", "driven": "wheel"}]
+    assert made["operation"]["torque"] == "80 N*m"
 
 
 def test_power_in_place_of_torque() -> None:
