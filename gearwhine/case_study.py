@@ -73,7 +73,7 @@ def load(
     Parameters
     ----------
     source : str or path
-        Case file (TOML), or name of a bundled case.
+        Case file (TOML), name of a bundled case, or a gear unit in a REXS file.
     changes : mapping or sequence of str
         Keys and their new values, numbers, texts, lists or tables, ``{"housing.box.mesh_size": "20 mm"}``; or texts
         such as ``"housing.box.mesh_size=20 mm"``. An empty text removes a key.
@@ -259,7 +259,7 @@ class CaseStudy(Study):
         from gearwhine.results.check import CHECK
         from gearwhine.solve.case_summary import check_case
 
-        checked = check_case(self.case, self.progress)
+        checked = check_case(self.case, self.progress, self._source.imported)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 
     def mesh(self, suffix: Literal["msh", "vtu", "vtk", "inp", "med", "xdmf"] = "msh") -> "Result[Mesh]":

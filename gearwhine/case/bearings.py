@@ -707,8 +707,8 @@ class Bearing(Table):
     at: LengthFromZero
     """Middle of the bearing from the rotor's left end, whatever its contact angles."""
     seat: Name = "ground"
-    """Name of a seat of the housing, or "ground", which is warned of beside bearings in seats. Of a planet: its
-    carrier, which is the default there."""
+    """Name of a seat of the housing, or "ground", which is warned of beside bearings in seats; or of another rotor on
+    the same axis, in or on which it stands. Of a planet: its carrier, which is the default there."""
     speeds: tuple[SpeedFromZero, ...] | None = Field(default=None, min_length=2, max_length=MOST_ENTRIES)
     """Ascending speeds of the rotor, at which coefficients that are lists are given; all speeds of the case lie between
     them."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -26,7 +26,11 @@ from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
 from gearwhine.case.planetary import with_planets
+from gearwhine.exchange.file_names import LARGEST_MODEL, is_rexs_file
 from gearwhine.numerics.names import did_you_mean
+
+if TYPE_CHECKING:
+    from gearwhine.exchange.rexs import ImportedCase
 
 _SUFFIX = ".toml"
 
@@ -224,6 +228,8 @@ class CaseSource:
         Changes of keys, see `apply_overrides`.
     files : InputFiles
         Input files that have been read.
+    imported : ImportedCase, optional
+        Gear unit of another program's file that `written` was made of.
     """
 
     written: Mapping[str, Any]
@@ -231,6 +237,7 @@ class CaseSource:
     name: str = ""
     changes: tuple[str, ...] = ()
     files: InputFiles = field(default_factory=InputFiles)
+    imported: ImportedCase | None = None
 
     @property
     def input_paths(self) -> list[Path]:
@@ -262,7 +269,8 @@ class CaseSource:
         document, sources = apply_overrides(written, overrides, resolved)
         document = without_changed(document, written, sources.keys())
         case = parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
-        return LoadedCase(case, warnings_of(case), replace(self, changes=overrides, files=case.input_files))
+        warnings = warnings_of(case) if self.imported is None else (self.imported.summary, *warnings_of(case))
+        return LoadedCase(case, warnings, replace(self, changes=overrides, files=case.input_files))
 
 
 def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> LoadedCase:
@@ -271,7 +279,8 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
     Parameters
     ----------
     source : str or path
-        Case file, or name of a bundled case. A file of that name precedes a bundled case.
+        Case file, or name of a bundled case. A file of that name precedes a bundled case. A gear unit in a REXS file
+        is imported.
     overrides : sequence of str
         Changes such as ``"housing.box.wall=10 mm"``, see `apply_overrides`; they remove `[provenance]` of the values
         that they change.
@@ -282,7 +291,54 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
         With everything that is wrong.
     """
     path, content = _read(source)
+    if is_rexs_file(path):
+        imported = imported_case(path.name, content)
+        return CaseSource(imported.document, path.parent, path.name, imported=imported).changed(overrides)
     return CaseSource(_as_case(_parse(content, path.name), path), path.parent, path.name).changed(overrides)
+
+
+def imported_case(name: str, content: bytes, load_case: str = "") -> ImportedCase:
+    """Return the gear unit of a REXS file as a case.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file, for messages.
+    content : bytes
+    load_case : str
+        Number of the load case; by default the first.
+
+    Raises
+    ------
+    CaseError
+        Where the file cannot be read, or has no gear unit that a case can hold.
+    """
+    from gearwhine.exchange.rexs import RexsError, case_of, read_content
+    from gearwhine.exchange.rexs.errors import UNSAID as NO_VALUE
+
+    try:
+        return case_of(read_content(content), name, load_case)
+    except RexsError as error:
+        raise CaseError(
+            Problem(one.place, UNSAID if one.value is NO_VALUE else one.value, one.expected, source=name)
+            for one in error.problems
+        ) from None
+
+
+def read_rexs_file(source: str | os.PathLike[str]) -> tuple[str, bytes]:
+    """Return name and content of a REXS file.
+
+    Raises
+    ------
+    CaseError
+        Where its name has none of the endings of such files, or it cannot be read.
+    """
+    from gearwhine.exchange.file_names import ENDINGS
+
+    if not is_rexs_file(source):
+        raise CaseError([Problem("the file", os.fspath(source), f"a REXS file, which ends in {', '.join(ENDINGS)}")])
+    path, content = _read(source)
+    return path.name, content
 
 
 def parse_case(
@@ -354,8 +410,9 @@ def _read(source: str | os.PathLike[str]) -> tuple[Path, bytes]:
             return Path(str(bundled)), bundled.read_bytes()
         if path.is_dir():
             raise CaseError([Problem("case", name, "a case file; this is a folder")])
-        if path.stat().st_size > LARGEST_FILE:
-            raise CaseError([Problem("case", name, f"a case file of at most {LARGEST_FILE // 10**6} MB")])
+        largest = LARGEST_MODEL if is_rexs_file(path) else LARGEST_FILE
+        if path.stat().st_size > largest:
+            raise CaseError([Problem("case", name, f"a case file of at most {largest // 10**6} MB")])
         return path, path.read_bytes()
     except FileNotFoundError:
         names = bundled_names()

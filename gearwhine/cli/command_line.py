@@ -7,7 +7,7 @@ import warnings
 from cyclopts import App, CycloptsError
 
 from gearwhine import __version__
-from gearwhine.cli import folder_commands
+from gearwhine.cli import folder_commands, import_command
 from gearwhine.cli.study_commands import STUDY_COMMANDS, made_command
 from gearwhine.failures import explain
 from gearwhine.interruption import interruptible, was_interrupted
@@ -25,6 +25,7 @@ for _entry in STUDY_COMMANDS:
     app.command(made_command(_entry))
 for _command in (folder_commands.examples, folder_commands.report, folder_commands.export):
     app.command(_command)
+app.command(import_command.import_, name="import")
 
 
 def run_command(arguments: list[str]) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwhine.case import Case, CouplingSegment, amounts, rotor_speeds
 from gearwhine.coupling.description.axial_location import ARRANGEMENTS
+from gearwhine.exchange.rexs.notes import Note, in_words
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
@@ -323,8 +324,16 @@ MEASURED = (
 )
 """Quantities of the measurement on the housing."""
 
+IMPORTED = (
+    Quantity("origin"),
+    Quantity("load_cases"),
+    Rows("notes", "notes", (Quantity("kind"), Quantity("about"), Quantity("text"))),
+)
+"""Quantities of a gear unit that was imported: the file, its load cases, and what was assumed, changed and left out."""
+
 CHECK = (
     Quantity("title", "case.title"),
+    Part("imported", "imported", IMPORTED, optional=True),
     Part("housing", lambda checked: ABSENT if checked.mesh is None else checked, HOUSING),
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows(
@@ -397,10 +406,13 @@ def _in_words(parts: Iterable[tuple[str, list[str]]]) -> tuple[Section, ...]:
 
 def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
     parts = {
+        "imported": imported_lines(document["imported"]) if "imported" in document else [],
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(
-            document.get("bearings", ()), [one["carrier"] for one in document.get("planetary", ())]
+            document.get("bearings", ()),
+            [one["carrier"] for one in document.get("planetary", ())],
+            [one["name"] for one in document.get("rotors", ())],
         ),
         "thrust": [
             _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
@@ -414,6 +426,12 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
     }
     return ((part, lines) for part, lines in parts.items() if lines)
+
+
+def imported_lines(imported: Document) -> list[str]:
+    """Return the origin of an imported case, its load cases and notes, those of the same text as one."""
+    notes = [Note(**note) for note in imported["notes"]]
+    return [f"from {imported['origin']}", *imported["load_cases"], *in_words(notes)]
 
 
 def _housing_summary(housing: Document) -> list[str]:
@@ -435,13 +453,19 @@ def _housing_summary(housing: Document) -> list[str]:
     return [first, ", ".join(counts)] if counts else [first]
 
 
-def _bearing_summary(bearings: Sequence[Document], carriers: Sequence[str]) -> list[str]:
+def _bearing_summary(bearings: Sequence[Document], carriers: Sequence[str], rotors: Sequence[str]) -> list[str]:
     if not bearings:
         return []
     on_ground = sum(bearing["seat"] == "ground" for bearing in bearings)
     on_pins = sum(bearing["seat"] in carriers for bearing in bearings)
-    seated = len(bearings) - on_ground - on_pins
-    counts = (seated, "in seats of the housing"), (on_ground, "on the ground"), (on_pins, "on pins of planets")
+    between = sum(bearing["seat"] in rotors for bearing in bearings) - on_pins
+    seated = len(bearings) - on_ground - on_pins - between
+    counts = (
+        (seated, "in seats of the housing"),
+        (on_ground, "on the ground"),
+        (between, "between shafts"),
+        (on_pins, "on pins of planets"),
+    )
     return [", ".join(f"{count} {where}" for count, where in counts if count)]
 
 
@@ -488,6 +512,7 @@ def _pair_summary(pair: Document) -> str:
 def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
     on_bearings = bool(document.get("bearings"))
     parts = {
+        "imported": imported_lines(document["imported"]) if "imported" in document else [],
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],

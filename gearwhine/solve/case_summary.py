@@ -18,6 +18,7 @@ from gearwhine.coupling.description.fault_rates import (
 )
 from gearwhine.coupling.description.planetary import PlacedSet, SetMember, part_of_period
 from gearwhine.coupling.gears import GearPairGeometry
+from gearwhine.exchange.rexs import ImportedCase
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.machine import misalignments_of_case
 from gearwhine.from_case.mesh import build_mesh, material_of
@@ -130,6 +131,8 @@ class CheckedCase:
         Machine of the case on rigid seats; None without rotors and an operation.
     warnings : list of dict
         Warnings, as in the documents.
+    imported : ImportedCase or None
+        Gear unit of another program's file that the case was made of.
     """
 
     case: Case
@@ -140,10 +143,18 @@ class CheckedCase:
     sets: tuple[CheckedSet, ...]
     machine: Machine | None
     warnings: list[dict[str, Any]]
+    imported: ImportedCase | None = None
 
 
-def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
+def check_case(case: Case, progress: Progress = silent, imported: ImportedCase | None = None) -> CheckedCase:
     """Build all of a case but the housing's matrices, and read the file of its geometry.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+    imported : ImportedCase, optional
+        Gear unit of another program's file that the case was made of.
 
     Raises
     ------
@@ -177,7 +188,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     sets = tuple(checked_sets(parts))
-    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings)
+    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings, imported)
 
 
 def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:

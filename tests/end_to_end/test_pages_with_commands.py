@@ -145,6 +145,8 @@ def test_commands_of_a_page_are_ones_that_can_be_given(page: Path) -> None:
                 app.parse_args(words, exit_on_error=False, print_error=False)
                 if words[0] == "examples":
                     copied.update(f"{name}.toml" for name in words[2:3])
+                elif words[1].endswith(".rexs"):
+                    copied.update(words[place + 1] for place, word in enumerate(words) if word == "-o")
                 elif words[0] in ("report", "export") and "-o" not in words:
                     assert not words[1].startswith("-"), words  # of a results folder
                 elif not words[1].endswith("updated.toml"):

@@ -46,7 +46,6 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     yield from _check_unique(draft)
     yield from _check_materials(draft)
     rotors, gears, seats = draft.names("rotor"), draft.names("gear"), draft.names("housing", "seat")
-    carriers = {str(rotor["carrier"]) for _, rotor in draft.raw_entries("rotor") if "carrier" in rotor}
     for index, rotor in draft.raw_entries("rotor"):
         if rotor.get("name") == "housing":
             yield Finding(("rotor", index, "name"), "another name than 'housing', which stands for the housing itself")
@@ -66,7 +65,7 @@ def check_names(draft: Draft) -> Iterator[Finding]:
             yield from _check_reference(one, ("planetary", index, "fixed"), "gear or rotor", (*gears, *rotors))
     for index, bearing in draft.raw_entries("bearing"):
         yield from _check_reference(bearing, ("bearing", index, "rotor"), "rotor", rotors)
-        yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground", *carriers))
+        yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground", *rotors))
     for index, gear in draft.raw_entries("gear"):
         yield from _check_reference(gear, ("gear", index, "rotor"), "rotor", rotors)
         if rotors and "rotor" not in gear:

@@ -1,0 +1,74 @@
+"""Command that makes a case of a gear unit in another program's file: import."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from gearwhine.cli.common import Common, hand_over
+
+if TYPE_CHECKING:
+    from gearwhine.output.sections import Document, Section
+
+
+def import_(
+    file: Annotated[str, Parameter(help="A gear unit in a REXS file: .rexs, .rexsj or .rexsz.")],
+    *,
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], help="Case file to write. Default: the file's name with .toml, here."),
+    ] = None,
+    load_case: Annotated[
+        str, Parameter(name=["--load-case"], help="Number of the load case of a load spectrum. Default: the first.")
+    ] = "",
+    json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
+        False
+    ),
+) -> None:
+    """Make a case of a gear unit in a REXS file, and list what was assumed, changed and left out.
+
+    The case is checked as it is written: where it cannot be solved as it stands, the file is there to be completed.
+    """
+    from gearwhine.output.terminal import shown_by
+
+    hand_over(_import(file, output, load_case), Common(json=json), shown_by(_sections))
+
+
+def _import(file: str, output: Path | None, load_case: str) -> dict[str, Any]:
+    from gearwhine.case import CaseError, Problem
+    from gearwhine.case import load_case as read_case
+    from gearwhine.case.load import imported_case, read_rexs_file
+    from gearwhine.exchange.file_names import bare_name
+    from gearwhine.output import staging
+    from gearwhine.output.quantity import document_of
+    from gearwhine.results.check import IMPORTED
+
+    target = Path(f"{bare_name(file)}.toml") if output is None else output
+    if target.suffix != ".toml":
+        raise CaseError([Problem("--output", str(target), "a case file, which ends in .toml")])
+    if target.exists():
+        raise CaseError([Problem("--output", str(target), "a place where no file of that name stands yet")])
+    imported = imported_case(*read_rexs_file(file), load_case)
+    with staging(target.parent, listed=False) as place:  # the case is the user's
+        (place / target.name).write_text(imported.toml, encoding="utf-8")
+    try:
+        warnings = read_case(target).warnings
+    except CaseError as error:
+        error.add_note(f"{target} is written; it is to be completed:")
+        raise
+    return {
+        "folder": str(target.parent),
+        "files": [target.name],
+        "imported": document_of(IMPORTED, imported),
+        "warnings": [{"key": "case", "message": message} for message in warnings],
+    }
+
+
+def _sections(document: "Document") -> "tuple[Section, ...]":
+    """Return what was imported, and the warnings of the case."""
+    from gearwhine.output.sections import Section
+    from gearwhine.results.check import imported_lines
+
+    first, *lines = imported_lines(document["imported"])
+    warnings = tuple(f"warning: {one['message']}" for one in document["warnings"])
+    return (Section("Imported", tuple(lines), note=f" {first}"), *((Section("", warnings),) if warnings else ()))

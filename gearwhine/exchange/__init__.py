@@ -1,0 +1,1 @@
+"""Exchange of whole machines with other programs; a folder for each format."""
