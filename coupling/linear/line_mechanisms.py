@@ -155,8 +155,8 @@ class Drive:
     order: Order
     forces: dict[str, list[Force]]
 
-    def motions(self, model: TurningResponse) -> dict[str, ComplexArray]:
-        """Motions at the line's positive frequency by mechanism, shape (n,) each."""
+    def motions(self, model: TurningResponse) -> dict[str, dict[Order, ComplexArray]]:
+        """Motions e^{i(ω_e + m·f)t} by mechanism and order m, shape (n,) each."""
         loads: list[Excitation] = []
         for forces in self.forces.values():
             total: dict[Order, ComplexArray] = {}
@@ -164,8 +164,11 @@ class Drive:
                 for order, load in force.by_order(model).items():
                     total[order] = total.get(order, 0.0) + load
             loads.append((total, {}))
-        moved = model.respond(self.excitation, loads, [self.order])[self.order]
-        return dict(zip(self.forces, moved if self.line > 0.0 else moved.conj(), strict=True))
+        moved = model.respond(self.excitation, loads)
+        return {
+            mechanism: {order: motion[number] for order, motion in moved.items()}
+            for number, mechanism in enumerate(self.forces)
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,6 +239,11 @@ class LineMechanisms:
         """Harmonic balance of a machine whose directions turn."""
         return TurningResponse(self.machine.system, self.model.contact)
 
+    @cached_property
+    def _driven(self) -> dict[tuple[TurningResponse, float], dict[str, dict[Order, ComplexArray]]]:
+        """Motions by a harmonic balance and an excitation: the sidebands of one mesh harmonic have the same."""
+        return {}
+
     def drives(self, frequency: float, within: float = 0.0) -> list[Drive]:
         """Return the excitations of a line of a machine whose directions turn; parameters as of `loads`."""
         model, reach = self.turning, max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
@@ -268,8 +276,12 @@ class LineMechanisms:
             if place is None:
                 place = {}
                 together.append((at, place))
-            for mechanism, motion in drive.motions(model).items():
-                place[mechanism] = place.get(mechanism, 0.0) + motion
+            key = model, drive.excitation
+            if key not in self._driven:
+                self._driven[key] = drive.motions(model)
+            for mechanism, by_order in self._driven[key].items():
+                motion = by_order[drive.order]
+                place[mechanism] = place.get(mechanism, 0.0) + (motion if drive.line > 0.0 else motion.conj())
         return together
 
     def parts(self, frequency: float, within: float = 0.0) -> dict[str, LineParts]:
