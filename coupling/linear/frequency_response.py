@@ -260,6 +260,29 @@ def mesh_error_response(
     return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", flanks)
 
 
+def mesh_error_responses(
+    machine: CoupledMachine, frequencies: FloatArray, *, meshes: Sequence[int], contact: ContactState | None = None
+) -> tuple[FrequencyResponse, ...]:
+    """Responses of :func:`mesh_error_response` of several meshes, the system solved at every frequency.
+
+    Where directions turn the meshes share the compliances at each frequency, which take most of the time.
+    """
+    state = mean_contact(machine.system) if contact is None else contact
+    if not machine.system.turns:
+        return tuple(mesh_error_response(machine, frequencies, mesh=number, contact=state) for number in meshes)
+    model = TurningResponse(machine.system, state)
+    flanks = [machine.loaded_contacts[number] for number in meshes]
+    moved = [
+        model.respond(w, [model.mesh_error(number, w) for number in flanks], [model.still])[model.still]
+        for w in frequencies.tolist()
+    ]
+    named = [f"transmission error of {machine.system.contacts[number].name}" for number in flanks]
+    return tuple(
+        _named(machine, state, frequencies, of_mesh, name, "m", number)
+        for of_mesh, name, number in zip(np.stack(moved, axis=1), named, flanks, strict=True)
+    )
+
+
 def sensor_force_response(
     machine: CoupledMachine,
     frequencies: FloatArray,

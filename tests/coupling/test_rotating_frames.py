@@ -12,7 +12,7 @@ from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling.analyses import modes_and_responses
 from gearwhine.coupling.assembly import assemble_machine
 from gearwhine.coupling.linear.complex_modes import coupled_modes, stability
-from gearwhine.coupling.linear.frequency_response import response
+from gearwhine.coupling.linear.frequency_response import mesh_error_response, response
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.base_motion import BaseHistory, BaseMotion
 from gearwhine.coupling.machine.loads import TorqueOverTime
@@ -109,7 +109,13 @@ def test_the_rotation_of_a_set_as_a_whole_neither_grows_nor_decays() -> None:
 def test_responses_with_directions_that_turn_are_no_superposition_of_modes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(modes_and_responses, "resonance_grid", lambda *_: np.array([2e3, 5e3]))
     turning, constant = (_assembled(_described(2, standing, 1e-5), 300.0) for standing in (("sun",), ()))
-    assert modes_and_responses.solve_system(turning).superposition_error is None
+    solved = modes_and_responses.solve_system(turning)
+    assert solved.superposition_error is None
+    for number, found_together in enumerate(solved.responses):
+        alone = mesh_error_response(turning, np.array([2e3, 5e3]), mesh=number)
+        scale = np.abs(alone.coordinates).max()
+        assert found_together.excitation == alone.excitation
+        assert found_together.coordinates == pytest.approx(alone.coordinates, abs=1e-9 * scale)
     found = modes_and_responses.solve_system(constant).superposition_error
     assert found is not None
     assert 0.0 < found < 1e-6
