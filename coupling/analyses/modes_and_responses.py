@@ -15,6 +15,7 @@ from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.linear.frequency_response import (
     FrequencyResponse,
     mesh_error_response,
+    mesh_error_responses,
     resonance_grid,
     touching_meshes,
     unbalance_response,
@@ -153,13 +154,10 @@ def _mesh_responses(
     limit = _frequency_limit(machine)
     frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
     try:
-        responses = [
-            mesh_error_response(machine, frequencies, mesh=number, contact=contact, modes=modes) for number in touching
-        ]
+        responses = mesh_error_responses(machine, frequencies, meshes=touching, contact=contact, modes=modes)
     except ModesError:
         # Nearly parallel modes cannot be superposed; the system itself can always be solved.
-        solved = [mesh_error_response(machine, frequencies, mesh=number, contact=contact) for number in touching]
-        return tuple(solved), None
+        return mesh_error_responses(machine, frequencies, meshes=touching, contact=contact), None
     chosen = np.unique(np.linspace(0, frequencies.size - 1, _DIRECT).astype(int))
     largest = 0.0
     for number, by_modes in zip(touching, responses, strict=True):

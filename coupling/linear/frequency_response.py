@@ -243,21 +243,51 @@ def mesh_error_response(
     ModesError
         As :func:`gearwhine.coupling.linear.frequency_response`.
     """
-    if not 0 <= mesh < len(machine.meshes):
-        raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
+    return mesh_error_responses(machine, frequencies, meshes=[mesh], contact=contact, modes=modes)[0]
+
+
+def mesh_error_responses(
+    machine: CoupledMachine,
+    frequencies: FloatArray,
+    *,
+    meshes: Sequence[int],
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> tuple[FrequencyResponse, ...]:
+    """Responses to unit transmission errors of several gear meshes, each alone; see :func:`mesh_error_response`.
+
+    Where connectors turn, the equations at a frequency are set up once for all of them.
+    """
+    for mesh in meshes:
+        if not 0 <= mesh < len(machine.meshes):
+            raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
     state = mean_contact(machine.system) if contact is None else contact
-    flanks = machine.loaded_contacts[mesh]
-    tooth = machine.system.contacts[flanks]
-    law = state.stiffness[flanks] + 1j * frequencies * state.damping[flanks]
-    if state.stiffness[flanks] == 0.0:
-        raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
+    of_meshes = [machine.loaded_contacts[mesh] for mesh in meshes]
+    teeth = [machine.system.contacts[flanks] for flanks in of_meshes]
+    for flanks, tooth in zip(of_meshes, teeth, strict=True):
+        if state.stiffness[flanks] == 0.0:
+            raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
     if machine.system.turns:
         model = TurningResponse(machine.system, state)
-        moved = model.at_excitation(frequencies, lambda w: model.mesh_error(flanks, w))
+        of_each = [
+            model.respond(w, [model.mesh_error(flanks, w) for flanks in of_meshes], [model.still])[model.still]
+            for w in frequencies.tolist()
+        ]
+        moved = np.array(of_each).reshape(len(frequencies), len(of_meshes), machine.system.size).swapaxes(0, 1)
     else:
-        loads = law[:, None, None] * tooth.direction
-        moved = response(machine.system, loads, frequencies, state, _pairs_of(modes))[:, 0]
-    return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", flanks)
+        laws = [state.stiffness[flanks] + 1j * frequencies * state.damping[flanks] for flanks in of_meshes]
+        moved = np.array(
+            [
+                response(machine.system, law[:, None, None] * tooth.direction, frequencies, state, _pairs_of(modes))[
+                    :, 0
+                ]
+                for law, tooth in zip(laws, teeth, strict=True)
+            ]
+        )
+    return tuple(
+        _named(machine, state, frequencies, motion, f"transmission error of {tooth.name}", "m", flanks)
+        for motion, tooth, flanks in zip(moved, teeth, of_meshes, strict=True)
+    )
 
 
 def sensor_force_response(

@@ -12,7 +12,7 @@ D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. It is the ampl
 the housing shows; a frozen picture of the carrier would put all of them into one line.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -289,15 +289,6 @@ class TurningResponse:
                     acting_load -= self._columns[:, n * width : (n + 1) * width] @ forces[places[source]]
             motion[order] = self._moved(frequency + self.shift(order), acting_load).T
         return motion
-
-    def at_excitation(
-        self,
-        frequencies: FloatArray,
-        excitation: Callable[[float], Excitation],
-    ) -> ComplexArray:
-        """Coordinates (f, n) at each frequency ω by an excitation at ω alone, without the sidebands ω + m·f."""
-        moved = [self.respond(w, [excitation(w)], [self.still])[self.still][0] for w in frequencies.tolist()]
-        return np.array(moved).reshape(-1, self.system.size)
 
     def _law(self, frequency: float) -> ComplexArray:
         """Laws k + i ω_m c of the connectors that turn by order, (m, d, d)."""
