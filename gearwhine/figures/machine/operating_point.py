@@ -473,6 +473,18 @@ def _drawn(at: float, force: FloatArray, *, of_gear: bool) -> DrawnForce:
     return DrawnForce(at, (x, y), of_gear, z, (about_x, about_y))
 
 
+def _forces_on_seats(solved: SolvedLoad) -> dict[tuple[str, float], FloatArray]:
+    """Sum of the forces of the bearings that sit in a shaft, as planets on a carrier, by its name and station [N]."""
+    machine, forces = solved.machine, dict[tuple[str, float], FloatArray]()
+    for load in solved.point.bearings:
+        name = machine.shaft_around(load.mounted)
+        if name is not None:
+            around, held = machine.shaft(name), machine.shaft(load.mounted.rotor)
+            at = min(max(held.start + load.mounted.bearing.at - around.start, 0.0), around.rotor.length)
+            forces[name, at] = forces.get((name, at), np.zeros(5)) + load.force
+    return forces
+
+
 def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     """Draw the operating point of a machine.
 
@@ -490,6 +502,8 @@ def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     acting: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
     for load in solved.point.bearings:
         acting[load.mounted.rotor].append(_drawn(load.mounted.bearing.at, -load.force, of_gear=False))
+    for (name, at), force in _forces_on_seats(solved).items():
+        acting[name].append(_drawn(at, force, of_gear=False))
     gears: dict[tuple[str, float], FloatArray] = {}
     for number, pair in enumerate(solved.point.pairs):
         for gear, force in zip((pair.pair.driver, pair.pair.driven), solved.point.gear_forces(number), strict=True):

@@ -75,6 +75,10 @@ def draw_planetary_set(title: str, placed: PlacedSet, load: PlanetaryLoad, solve
             _arrow(axes, at, force * (_LONGEST_ARROW * reach / largest), color)
     for planet in load.planets:
         at = center + placed.places[planet.shaft]
+        # Beside the arrow of the pin's force, which begins at the axis.
+        force = next((force for place, force, color in forces if color == RED and np.allclose(place, at)), np.zeros(2))
+        size = float(np.hypot(*force))
+        at = at if size == 0.0 else at - 0.4 * max(radii[name] for name in placed.of.planets) * force / size
         text = f"{planet.shaft}\n{100.0 * planet.load_share:.2f} %"
         box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75}
         axes.annotate(
