@@ -183,7 +183,7 @@ class MeshHarmonicModel:
         )
 
     def loads(self, limit: float) -> tuple[MeshLoad, ...]:
-        """Return the loads f of the mesh harmonics up to a limit [rad/s], ascending."""
+        """Return the loads f of the mesh harmonics up to a limit [rad/s], ascending, with frozen directions."""
         return tuple(MeshLoad(w, causes, self._load(causes)) for w, causes in self._harmonics(limit))
 
     def responses(self, limit: float) -> tuple[Response, ...]:
@@ -292,7 +292,7 @@ class MeshHarmonicModel:
         return by_error, {} if amplitude is None else self.turning.by_order(w, HarmonicLoad(w, amplitude), frame)
 
     def dynamic_stiffness(self, frequency: float) -> ComplexArray:
-        """Z at a frequency [rad/s], shape (n, n)."""
+        """Z at a frequency [rad/s], shape (n, n), with directions that turn as they stand at t = 0."""
         return self._dynamic(frequency)
 
     def transmission_error(

@@ -279,7 +279,7 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
                 at = (frequencies[place], heights[place])
                 text = _place_beside_harmonic(lines[place])
                 axes.annotate(text, at, (-3, 3), textcoords="offset points", rotation=60, fontsize=NOTE)
-        axes.set_xlim(0.0, 1.15 * float(frequencies.max()))
+        axes.set_xlim(0.9 * float(frequencies.min()), 1.1 * float(frequencies.max()))
         axes.set_ylabel(f"{shortened(name, 14)} [m/s²]")
         if number == 0:
             axes.set_xlabel("frequency [Hz]")
