@@ -158,6 +158,20 @@ def excitation_lines(
     return tuple(lines)
 
 
+def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
+    """Join the names of causes that coincide; the meshes of all planets on a carrier are one."""
+    left = list(dict.fromkeys(names))
+    for carrier in dict.fromkeys(mesh.carrier for mesh in machine.meshes if mesh.carrier is not None):
+        meshes = [mesh.name for mesh in machine.meshes if mesh.carrier == carrier]
+        for name in [name for name in left if meshes[0] in name] if len(meshes) > 1 else ():
+            before, _, after = name.partition(meshes[0])
+            alike = [f"{before}{mesh}{after}" for mesh in meshes]
+            if all(one in left for one in alike):
+                left[left.index(name)] = f"{before}meshes on {carrier}{after}"
+                left = [one for one in left if one not in alike]
+    return ", ".join(left)
+
+
 _Steps = Sequence[tuple[str, float, int]]
 """Causes of a sideband: name, order of its frequency, signed number of the sideband."""
 

@@ -18,7 +18,13 @@ import numpy.typing as npt
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.linear.excitation_orders import ExcitedOrders, excitation_lines, excited_shaft_orders, rotations
+from gearwhine.coupling.linear.excitation_orders import (
+    ExcitedOrders,
+    excitation_lines,
+    excited_shaft_orders,
+    joined_causes,
+    rotations,
+)
 
 LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 
@@ -38,7 +44,8 @@ class LineName:
     kind : str
         ``mean``, ``mesh``, ``shaft``, ``load``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
     name : str
-        Name such as ``1× pinion -> wheel``; coinciding causes are joined by commas.
+        Name such as ``1× pinion -> wheel``; coinciding causes are joined by commas, but for the meshes of all planets
+        on a carrier, ``1× meshes on carrier``.
     order : float
         Cycles per revolution of the leading shaft.
     mode : int or None
@@ -121,7 +128,7 @@ def line_names(
         kind = next((kind for kind in causes if causes[kind]), None)
         if kind is not None:
             fewest = min(line.steps for line in causes[kind])
-            text = ", ".join(line.name for line in causes[kind] if line.steps == fewest)
+            text = joined_causes(machine, [line.name for line in causes[kind] if line.steps == fewest])
             named.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
         elif whole := _whole_order(machine, excited, frequency, of_shafts):
             named.append(LineName("shaft", whole, order, mode))

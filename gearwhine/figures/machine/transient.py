@@ -179,7 +179,7 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     ]
     heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
     height = HEAD + FOOT + sum(heights) + _BARS_GAP * len(groups)
-    note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: bearings"
+    note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: forces on the housing"
     figure = sheet(height, "Where the lines come from", note)
     up = height - HEAD
     for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
