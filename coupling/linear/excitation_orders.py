@@ -158,6 +158,11 @@ def excitation_lines(
     return tuple(lines)
 
 
+def meshes_of_planets(carrier: str) -> str:
+    """Name of the meshes of all planets on a carrier."""
+    return f"planets' meshes of {carrier}"
+
+
 def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
     """Join the names of causes that coincide; the meshes of all planets on a carrier are one."""
     left = list(dict.fromkeys(names))
@@ -167,7 +172,7 @@ def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
             before, _, after = name.partition(meshes[0])
             alike = [f"{before}{mesh}{after}" for mesh in meshes]
             if all(one in left for one in alike):
-                left[left.index(name)] = f"{before}meshes on {carrier}{after}"
+                left[left.index(name)] = f"{before}{meshes_of_planets(carrier)}{after}"
                 left = [one for one in left if one not in alike]
     return ", ".join(left)
 

@@ -32,6 +32,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
     transmission_error_phasors,
 )
 from gearwhine.coupling.linear.carrier_sidebands import SUPPRESSED, CarrierSidebands, Sideband, phasing
+from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
 from gearwhine.coupling.linear.turning_response import Order
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
@@ -116,7 +117,7 @@ def causes_in_words(
         together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(name)
     words = []
     for (harmonic, carrier, off), names in together.items():
-        meshes = names if carrier is None or len(names) == 1 else [f"planets' meshes of {carrier}"]
+        meshes = names if carrier is None or len(names) == 1 else [meshes_of_planets(carrier)]
         words += [f"{harmonic}× {name}{off}" for name in meshes]
     return words
 
