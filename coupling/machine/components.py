@@ -40,10 +40,9 @@ _DAMPING_MATRIX_ROUNDING = 1e-10
 
 @dataclass(frozen=True)
 class FrameTerms:
-    """What the turning of a component's frame adds to its equation of motion, see
-    :mod:`gearwhine.coupling.machine.frames`; shapes (n, n).
+    """What the turning of a component's frame adds to its equation of motion, shapes (n, n).
 
-    At the relative speed s' and the angular acceleration s'' it adds s' ``coriolis`` to the damping, and s'
+    :mod:`gearwhine.coupling.machine.frames` has the equation. At the relative speed s' and the angular acceleration s'' it adds s' ``coriolis`` to the damping, and s'
     ``circulatory`` + s'² ``centripetal`` + s'' ``angular`` to the stiffness.
 
     Attributes
