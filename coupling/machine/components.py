@@ -42,8 +42,9 @@ _DAMPING_MATRIX_ROUNDING = 1e-10
 class FrameTerms:
     """What the turning of a component's frame adds to its equation of motion, shapes (n, n).
 
-    :mod:`gearwhine.coupling.machine.frames` has the equation. At the relative speed s' and the angular acceleration s'' it adds s' ``coriolis`` to the damping, and s'
-    ``circulatory`` + s'² ``centripetal`` + s'' ``angular`` to the stiffness.
+    :mod:`gearwhine.coupling.machine.frames` has the equation. At the relative speed s' and the angular acceleration s''
+    it adds s' ``coriolis`` to the damping, and s' ``circulatory`` + s'² ``centripetal`` + s'' ``angular`` to the
+    stiffness.
 
     Attributes
     ----------
