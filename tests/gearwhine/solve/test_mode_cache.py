@@ -177,6 +177,7 @@ def test_the_inputs_say_what_the_key_is_made_of() -> None:
 # Imported by what solves the modes, and without a say in them: files, words, and what is laid on modes that are read.
 WITHOUT_A_SAY = (
     "gearwhine.coupling",
+    "gearwhine.exchange",  # what it makes is the case itself, by which modes are found
     "gearwhine.housing.measured",
     "gearwhine.output.files",
     "gearwhine.output.quantity",
