@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from gearwhine.housing.modal_test import PlannedSurvey
     from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.meshes import Mesh
+    from gearwhine.exchange.rexs.notes import Note
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
@@ -628,6 +629,29 @@ class CaseStudy(Study):
         from gearwhine.results_folder import export_results
 
         return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
+
+    def export_rexs(
+        self, file: str | os.PathLike[str], folder: str | os.PathLike[str] | None = None
+    ) -> "tuple[Note, ...]":
+        """Write the gear unit as a REXS file; see :func:`gearwhine.results_folder.export_rexs`.
+
+        Parameters
+        ----------
+        file : path
+            File to write, which ends in ``.rexs``.
+        folder : path, optional
+            Results folder whose operating point becomes a load case.
+
+        Returns
+        -------
+        tuple of Note
+            What is changed or left out.
+        """
+        from gearwhine.exchange.rexs.notes import Note
+        from gearwhine.results_folder import export_rexs
+
+        document = export_rexs(self.case, Path(file), None if folder is None else Path(folder))
+        return tuple(Note(**note) for note in document["rexs"]["notes"])
 
     # What the analyses of a machine ask of its study, as the case has it.
 
