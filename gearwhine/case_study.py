@@ -33,13 +33,13 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.motion_lines import MotionLines
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
+    from gearwhine.exchange.rexs.notes import Note
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.modal_test import PlannedSurvey
     from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.meshes import Mesh
-    from gearwhine.exchange.rexs.notes import Note
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor

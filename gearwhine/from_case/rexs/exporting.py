@@ -73,6 +73,8 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None) -> ExportedUnit:
     unit = sheet.add("gear_unit", case.title, title | gravity_of(case))
     casing = sheet.part(unit, "gear_casing", "casing")
     shafts = Shafts(sheet, unit, casing, add_materials(sheet, case.material))
+    if case.housing is not None and case.housing.material is not None:
+        sheet.relate("reference", origin=casing, referenced=shafts.materials[case.housing.material])
     add_shafts(case, shafts)
     gears = add_gears(case, shafts)
     add_stages(case, shafts, gears)
