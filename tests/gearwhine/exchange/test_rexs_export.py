@@ -340,6 +340,8 @@ def test_the_operating_point_is_a_load_case() -> None:
     seen = model.in_load_case(model.load_cases[0])
     speeds = {one.name: one.number_of("rotational_speed", "rad/s") for one in seen.of_kind("shaft")}
     assert speeds == pytest.approx({"input": 5500.0 * math.pi / 30.0, "output": -5500.0 * math.pi / 30.0}, rel=1e-12)
+    back = parse_case(imported_case("unit.rexs", exported.xml.encode()).document)
+    assert unexpected(differences(study.case, back)) == []
     half = 0.5 * 71.77 / (14.0 * 3.175e-3)
     for bearing in seen.of_kind("concept_bearing"):
         # The wheel pushes the pinion down, against its turn, and apart; bearings push the pinion's shaft up.
