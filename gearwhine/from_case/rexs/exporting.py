@@ -82,6 +82,8 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None) -> ExportedUnit:
     given = add_loads(case, shafts)
     if load is not None:
         add_load_case(shafts, given, bearings, load)
+        if case.housing is not None and load["seats"] == "rigid":
+            sheet.notes.changed("load case", "the operating point is that of rigid seats, without the housing")
     for key, text in _TABLES.items():
         if getattr(case, key):
             sheet.notes.left_out(f"[{key}]", text)

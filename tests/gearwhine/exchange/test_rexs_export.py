@@ -351,6 +351,13 @@ def test_the_operating_point_is_a_load_case() -> None:
         assert force(bearing, "outer") == pytest.approx([-part for part in force(bearing, "inner")])
 
 
+def test_an_operating_point_in_rigid_seats_is_noted_beside_a_housing() -> None:
+    case = load_case("small-gearbox").case
+    for seats, is_noted in (("rigid", True), ("housing", False)):
+        notes = rexs_of(case, {"seats": seats, "bearings": []}).notes
+        assert any("rigid seats" in note.text for note in notes) == is_noted
+
+
 def force(bearing: Component, side: str) -> list[float]:
     return [bearing.required(f"force_acting_on_{side}_component_{axis}", "N") for axis in "uvw"]
 
