@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.motion_lines import MotionLines
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
+    from gearwhine.exchange.rexs.notes import Note
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
@@ -629,6 +630,29 @@ class CaseStudy(Study):
         from gearwhine.results_folder import export_results
 
         return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
+
+    def export_rexs(
+        self, file: str | os.PathLike[str], folder: str | os.PathLike[str] | None = None
+    ) -> "tuple[Note, ...]":
+        """Write the gear unit as a REXS file; see :func:`gearwhine.results_folder.export_rexs`.
+
+        Parameters
+        ----------
+        file : path
+            File to write, which ends in ``.rexs``.
+        folder : path, optional
+            Results folder whose operating point becomes a load case.
+
+        Returns
+        -------
+        tuple of Note
+            What is changed or left out.
+        """
+        from gearwhine.exchange.rexs.notes import Note
+        from gearwhine.results_folder import export_rexs
+
+        document = export_rexs(self.case, Path(file), None if folder is None else Path(folder))
+        return tuple(Note(**note) for note in document["rexs"]["notes"])
 
     # What the analyses of a machine ask of its study, as the case has it.
 

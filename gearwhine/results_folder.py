@@ -159,6 +159,97 @@ def export_results(
     return document | {"folder": str(folder), "files": files}
 
 
+def export_rexs(case: Case, target: Path, folder: Path | None = None) -> dict[str, Any]:
+    """Write the gear unit of a case as a REXS file, with a load case where its operating point is solved.
+
+    Parameters
+    ----------
+    case : Case
+    target : path
+        File to write, which ends in ``.rexs``.
+    folder : path, optional
+        Results folder; the operating point in it is taken where ``gearwhine load`` solved it of this very case.
+
+    Returns
+    -------
+    dict
+        ``rexs`` with ``version``, ``components``, ``relations``, whether it has a ``load_case``, and ``notes`` on what
+        is changed or left out.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no gears on rotors, or a part that no component of the schema stands for, or the file stands
+        there already.
+    """
+    from gearwhine.from_case.rexs import rexs_of
+
+    if not target.name.lower().endswith(".rexs"):
+        raise CaseError([Problem("export --rexs", str(target), "the name of a REXS file, which ends in .rexs")])
+    if target.exists():
+        raise CaseError([Problem("export --rexs", str(target), "a place where no file of that name stands yet")])
+    load = None if folder is None else _solved_load(folder, case)
+    exported = rexs_of(case, load)
+    with staging(target.parent, listed=False) as place:  # the file is the user's
+        (place / target.name).write_text(exported.xml, encoding="utf-8")
+    model = exported.model
+    document: dict[str, Any] = {
+        "folder": str(target.parent),
+        "files": [target.name],
+        "rexs": {
+            "version": model.version,
+            "components": len(model.components),
+            "relations": len(model.relations),
+            "load_case": load is not None,
+            "notes": [{"kind": note.kind, "about": note.about, "text": note.text} for note in exported.notes],
+        },
+    }
+    add_warnings(document)
+    return document
+
+
+def _solved_load(folder: Path, case: Case) -> Document | None:
+    """Return the operating point of a case from a results folder; None where that of this very case is not there."""
+    from gearwhine.output.store import earlier_result
+
+    if not folder.is_dir():
+        return None
+    _checked(folder, lambda name: name.endswith((".json", "case.toml")))
+    found = earlier_result(folder, "load")
+    if found is None:
+        return None
+    place, document = found
+    try:
+        return document if load_case(place / "case.toml").case == case else None
+    except (CaseError, OSError):
+        return None
+
+
+def case_in(folder: Path) -> Case:
+    """Return the case of the newest result in a folder.
+
+    Raises
+    ------
+    CaseError
+        Where there is none that can be read.
+    """
+    case = _stored_case(folder)
+    if case is None:
+        raise CaseError([Problem("export --rexs", str(folder), "a case, or a folder with results of one")])
+    return case
+
+
+def rexs_sections(document: Document) -> tuple[Section, ...]:
+    """Return what a REXS file holds, and what it does not."""
+    from gearwhine.exchange.rexs.notes import Note, in_words
+
+    unit = document["rexs"]
+    count = f"REXS {unit['version']}: {unit['components']} components, {unit['relations']} relations"
+    point = "with the operating point as a load case" if unit["load_case"] else "without an operating point"
+    notes = [Note(note["kind"], note["about"], note["text"]) for note in unit["notes"]]
+    return (Section("Exported", tuple(in_words(notes)), note=f" {count}, {point}"),)
+
+
 def _missing_points(document: Document) -> Iterator[dict[str, Any]]:
     """Yield a warning for each universal file with sensors whose points are not known."""
     for row in document.get("universal_files", ()):

@@ -154,16 +154,29 @@ def export(
         bool,
         Parameter(name=["--all-signals"], negative=(), help="With --uff: forces and motions of the machine, too."),
     ] = False,
+    rexs: Annotated[
+        Path | None,
+        Parameter(
+            name=["--rexs"],
+            help="The case's gear unit as this REXS file (.rexs), with the operating point that `load` left in OUT.",
+        ),
+    ] = None,
     common: Common = NONE_GIVEN,
 ) -> None:
     """Write the results in a folder in formats of other programs: of a folder, or of a case's OUT.
 
     OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all are written.
+    With --rexs it is the gear unit of the case that is written, and no results are needed.
     """
     from gearwhine.case import CaseError, Problem
     from gearwhine.output.terminal import shown_by
     from gearwhine.results_folder import Format, export_results, export_sections
 
+    if rexs is not None:
+        if csv or uff or wav:
+            raise CaseError([Problem("--rexs", str(rexs), "none of --csv, --uff and --wav beside it")])
+        _export_rexs(results, rexs, common)
+        return
     if common.settings:
         expected = "none: results are exported as they are, of the case that they were solved with"
         raise CaseError([Problem("--set", common.settings[0], expected)])
@@ -174,3 +187,13 @@ def export(
         return export_results(folder, formats, signals="all" if all_signals else "sensors", seconds=seconds)
 
     _on_results(results, common, work, shown_by(export_sections))
+
+
+def _export_rexs(results: str, target: Path, common: Common) -> None:
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results_folder import case_in, export_rexs, rexs_sections
+
+    def work(folder: Path, loaded: "LoadedCase | None", progress: "Progress") -> dict[str, Any]:
+        return export_rexs(case_in(folder) if loaded is None else loaded.case, target, folder)
+
+    _on_results(results, common, work, shown_by(rexs_sections))

@@ -17,7 +17,7 @@ from gearwhine.exchange.rexs.placement import along
 from gearwhine.exchange.rexs.quantities import deg, mm, of, plain, um
 from gearwhine.exchange.rexs.shafts import RIGID_RADIAL, RIGID_TILT, Bodies, Body
 
-_TYPES = {
+TYPES = {
     "radial_grooved_ball_bearing": "deep-groove",
     "angular_contact_ball_bearing": "angular-contact",
     "four_point_contact_ball_bearing": "four-point",
@@ -28,7 +28,8 @@ _TYPES = {
     "radial_self_aligning_roller_bearing": "spherical-roller",
     "radial_spherical_roller_bearing": "spherical-roller",
 }
-_ELEMENTS = {
+"""Type of a catalogue bearing by `bearing_type`; a later one of a type is its name in other versions."""
+ELEMENTS = {
     "deep-groove": "ball",
     "angular-contact": "ball",
     "four-point": "four-point-ball",
@@ -37,9 +38,10 @@ _ELEMENTS = {
     "tapered-roller": "tapered-roller",
     "spherical-roller": "spherical-roller",
 }
+"""Rolling element of each type."""
 _ANGLED = ("angular-contact", "four-point", "tapered-roller", "self-aligning-ball", "spherical-roller")
-_ONE_WAY = ("angular-contact", "tapered-roller")
-_CLEARANCES = (
+ONE_WAY = ("angular-contact", "tapered-roller")
+CLEARANCES = (
     "operating_radial_bearing_clearance",
     "mounted_radial_bearing_clearance",
     "radial_bearing_clearance",
@@ -214,7 +216,7 @@ def _rolling(unit: GearUnit, mounted: Mounted, z: float, place: int) -> dict[str
     """Return a rolling bearing; None for one whose type the case does not have."""
     component = mounted.component
     named = component.text("bearing_type")
-    kind = _TYPES.get(named)
+    kind = TYPES.get(named)
     if kind is None:
         shown = named or "no type"
         unit.notes.changed(component.label, f"{shown}: springs in its place", "bearing", place, "stiffness")
@@ -240,7 +242,7 @@ def _geometry(unit: GearUnit, component: Component, kind: str, rows: list[Compon
             unit.notes.changed(component.label, "its rows lack elements or sizes: estimated from its main dimensions")
         return None
     table: dict[str, Any] = {
-        "element": _ELEMENTS[kind],
+        "element": ELEMENTS[kind],
         "count": count,
         "element_diameter": mm(diameter),
         "pitch_diameter": mm(pitch),
@@ -315,8 +317,8 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
     component, notes = mounted.component, unit.notes
     at = ("bearing", place, "stiffness")
     table: dict[str, Any] = {}
-    clearance = next((name for name in _CLEARANCES if component.has(name)), None)
-    if clearance is not None and kind not in _ONE_WAY:
+    clearance = next((name for name in CLEARANCES if component.has(name)), None)
+    if clearance is not None and kind not in ONE_WAY:
         value = component.number_of(clearance, "m") or 0.0
         if abs(value) > _NO_VALUE:
             table["clearance"] = um(value)
@@ -331,7 +333,7 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
     sense = component.text("axial_force_absorption")
     if not sense and rows:
         sense = rows[0].text("axial_force_absorption_of_row")
-    if kind in _ONE_WAY:
+    if kind in ONE_WAY:
         table |= _thrust(unit, mounted, sense, rows, place)
     elif sense == "no_direction" and kind != "cylindrical-roller":
         table["floating"] = True

@@ -25,13 +25,13 @@ from gearwhine.exchange.rexs.quantities import deg, mm, plain, um
 from gearwhine.exchange.rexs.shafts import Bodies, Body
 
 GEARS = ("cylindrical_gear", "ring_gear")
-_SHIFTS = (
+SHIFTS = (
     "addendum_modification_coefficient",
     "generated_addendum_modification_coefficient",
     "addendum_modification_coefficient_after_finishing",
 )
 _CORNER_FACTORS = ("tip_corner_radius_factor_reference_profile", "tip_radius_factor")
-_CORNERS = ("tip_corner_radius_reference_profile", "tip_radius")
+CORNERS = ("tip_radius", "tip_corner_radius_reference_profile")
 _TOLERANCE_SERIES = (
     "din_3967_deviation_tolerance_series",
     "tooth_thickness_deviation_tolerance_series_din_3967_1978",
@@ -188,7 +188,7 @@ def _teeth(unit: GearUnit, gear: Component, shaft: Component, body: Body, coordi
         unit.notes.assumed(gear.label, "no normal_pressure_angle: 20 degrees")
     if not math.radians(10.0) <= angle <= math.radians(35.0):
         raise wrong(f"{gear.label}: normal_pressure_angle", "an angle from 10 to 35 degrees", deg(angle))
-    shift = None if flank is None else flank.number_of(_SHIFTS)
+    shift = None if flank is None else flank.number_of(SHIFTS)
     if shift is None and flank is not None:
         shift = flank.number_of("addendum_modification", "m")
         shift = None if shift is None else shift / module
@@ -475,7 +475,7 @@ def _root_radius(teeth: Teeth) -> float | None:
     if tool is None or tool.kind != "rack_shaped_tool" or teeth.number < 0:
         return None
     factor = tool.positive(_CORNER_FACTORS)
-    return factor * teeth.module if factor is not None else tool.positive(_CORNERS, "m")
+    return factor * teeth.module if factor is not None else tool.positive(CORNERS, "m")
 
 
 def _thinning(unit: GearUnit, teeth: Teeth) -> float:

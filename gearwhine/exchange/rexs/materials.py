@@ -9,6 +9,12 @@ from gearwhine.exchange.rexs.gear_unit import GearUnit
 from gearwhine.exchange.rexs.model import Component
 from gearwhine.exchange.rexs.quantities import of, plain
 
+PROPERTIES = (
+    ("youngs_modulus", "elastic_modulus", "Pa"),
+    ("poisson_ratio", "poisson_ratio", ""),
+    ("density", "density", "kg/m^3"),
+)
+"""Key of a material, attribute and SI unit of each property."""
 _STEEL = (210e9, 0.3, 7850.0)  # Young's modulus [Pa], Poisson's ratio, density [kg/m³]
 _STIFFER_THAN_MATTER = 2e12  # Young's modulus [Pa] of no material, by which programs mean a rigid part
 _DENSITY_OF_NO_MASS = 1.0  # kg/m³
@@ -53,13 +59,8 @@ class Materials:
         if name in self.tables:
             return name
         notes, values = self.unit.notes, []
-        keys = ("youngs_modulus", "poisson_ratio", "density")
-        given = (
-            material.positive("elastic_modulus", "Pa"),
-            material.positive("poisson_ratio"),
-            material.positive("density", "kg/m^3"),
-        )
-        for key, value, steel in zip(keys, given, _STEEL, strict=True):
+        given = [material.positive(name, measure) for _, name, measure in PROPERTIES]
+        for (key, _, _), value, steel in zip(PROPERTIES, given, _STEEL, strict=True):
             if value is None:
                 rigid = key == "density" and (given[0] or 0.0) >= _STIFFER_THAN_MATTER
                 value = _DENSITY_OF_NO_MASS if rigid else steel

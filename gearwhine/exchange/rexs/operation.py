@@ -18,6 +18,10 @@ from gearwhine.exchange.rexs.quantities import of, rpm
 from gearwhine.exchange.rexs.shafts import Bodies, Body
 
 _STANDARD_GRAVITY = 9.80665
+FORCES = (("z", "force_u_direction"), ("x", "force_v_direction"), ("y", "force_w_direction"))
+"""Key of a force along an axis of the machine, and attribute, in the order u, v, w."""
+GRAVITY = tuple(f"direction_vector_gravity_{axis}" for axis in "vwu")
+"""Attributes of the direction of gravity along x, y, z."""
 _DURATIONS = ("operating_time_fraction", "load_duration_fraction")
 
 
@@ -208,8 +212,7 @@ def _outputs(unit: GearUnit, drive: Drive, loads: list[Load], speeds: Mapping[st
 def _force(unit: GearUnit, load: Load) -> dict[str, Any] | None:
     """Return the force of a load in x, y, z; None where it has none."""
     component = load.component
-    names = ("force_u_direction", "force_v_direction", "force_w_direction")
-    along_axes = [component.number_of(name, "N") or 0.0 for name in names]
+    along_axes = [component.number_of(name, "N") or 0.0 for _, name in FORCES]
     for name in ("torque_around_v_axis", "torque_around_w_axis"):
         if component.number_of(name, "N*m"):
             unit.notes.left_out(f"{component.label}: {name}", "loads of a case have no moment across the shaft")
@@ -228,8 +231,7 @@ def _gravity(unit: GearUnit) -> list[str] | None:
     gear_unit = next(unit.model.of_kind("gear_unit"), None)
     if gear_unit is None or gear_unit.flag("account_for_gravity") is not True:
         return None
-    names = ("direction_vector_gravity_v", "direction_vector_gravity_w", "direction_vector_gravity_u")
-    direction = [gear_unit.number_of(name) or 0.0 for name in names]
+    direction = [gear_unit.number_of(name) or 0.0 for name in GRAVITY]
     length = sum(part * part for part in direction) ** 0.5
     if not 1e-9 < length < 1e9:
         return None
@@ -248,13 +250,14 @@ def swept_speeds(unit: GearUnit, bodies: Bodies, model: RexsModel, ratio: float)
     ratio : float
         Speed at the input over that of the shaft whose speed is stated.
     """
-    found = set[float]()
+    found: dict[str, float] = {}
     for load_case in model.load_cases:
         shown = GearUnit(model.in_load_case(load_case), unit.places, unit.names)
         speed = speed_of(shown, bodies)
         if speed is not None:
-            found.add(float(f"{abs(speed[1] * ratio):.11g}"))
-    return sorted(found)
+            amount = abs(speed[1] * ratio)
+            found.setdefault(f"{amount:.11g}", amount)
+    return sorted(found.values())
 
 
 def described_load_case(model: RexsModel, load_case: LoadCase) -> str:

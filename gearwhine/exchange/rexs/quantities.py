@@ -35,10 +35,15 @@ def plain(number: float) -> float:
     return float(_rounded(number))
 
 
+_NOISE = 1e-13
+"""Part of a number by which conversions of units may change it."""
+
+
 def _rounded(number: float) -> str:
-    """Write a number by eleven digits, in the shorter way: what conversions leave behind is rounded away."""
+    """Write a number by eleven digits, in the shorter way; by all that it has where that is no mere noise."""
     if abs(number) <= 1e-12:
         return "0"
-    digits, exponent = f"{number:.10e}".split("e")
-    by_power = f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}"
-    return min(f"{number:.11g}".replace("e+0", "e").replace("e-0", "e-").replace("e+", "e"), by_power, key=len)
+    digits = 11 if abs(float(f"{number:.10e}") - number) <= _NOISE * abs(number) else 15
+    mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
+    by_power = f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}"
+    return min(f"{number:.{digits}g}".replace("e+0", "e").replace("e-0", "e-").replace("e+", "e"), by_power, key=len)

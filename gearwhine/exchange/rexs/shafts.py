@@ -25,6 +25,18 @@ _SAME_PLACE = 1e-7  # length [m] within which sections join
 RIGID_RADIAL, RIGID_TILT = 1e10, 1e7
 """Stiffness [N/m, N m/rad] of a rigid connection: a hundred times that of a stiff bearing, and not so much that it
 spoils the numbers of others. A greater one of the file is taken as this."""
+COUPLING_STIFFNESS = (
+    ("lateral_stiffness", "radial_stiffness", "N/m", RIGID_RADIAL),
+    ("axial_stiffness", "axial_stiffness", "N/m", RIGID_RADIAL),
+    ("tilt_stiffness", "bending_stiffness", "N*m/rad", RIGID_TILT),
+    ("torsional_stiffness", "rotational_stiffness", "N*m/rad", RIGID_TILT),
+)
+"""Key of a coupling, attribute, SI unit and rigid value of each stiffness."""
+INERTIAS = (
+    ("polar_inertia", "moment_of_inertia_u_axis"),
+    ("diametral_inertia", "moment_of_inertia_v_axis"),
+)
+"""Key of a disc, and attribute of an additional mass."""
 _STRUTS_ACROSS, _STRUTS_TILTED = 1e11, 1e9
 """Stiffness [N/m, N m/rad] of what joins the plates of a carrier: above that of a solid shaft as wide."""
 _NEAR_THE_END = 0.2  # part of a shaft's length beyond its end within which a part is taken for one at the end
@@ -270,14 +282,8 @@ def _join_coupled(
 
 def is_rigid(coupling: Component) -> bool:
     """Whether a coupling is as good as rigid; without any stiffness it is taken as that."""
-    stiffness = (
-        coupling.number_of("radial_stiffness", "N/m"),
-        coupling.number_of("axial_stiffness", "N/m"),
-        coupling.number_of("bending_stiffness", "N*m/rad"),
-        coupling.number_of("rotational_stiffness", "N*m/rad"),
-    )
-    limits = (RIGID_RADIAL, RIGID_RADIAL, RIGID_TILT, RIGID_TILT)
-    return all(value is None or value >= limit for value, limit in zip(stiffness, limits, strict=True))
+    stiffness = ((coupling.number_of(name, measure), rigid) for _, name, measure, rigid in COUPLING_STIFFNESS)
+    return all(value is None or value >= rigid for value, rigid in stiffness)
 
 
 def _on_one_axis(unit: GearUnit, one: Component, other: Component) -> bool:
@@ -467,12 +473,7 @@ def _filled(
 def _coupling(unit: GearUnit, body: Body, coupling: Connection, length: float, place: int) -> dict[str, Any]:
     """Return a coupling between two shafts of a body."""
     component, table = coupling.component, {}
-    for key, name, measure, rigid in (
-        ("lateral_stiffness", "radial_stiffness", "N/m", RIGID_RADIAL),
-        ("axial_stiffness", "axial_stiffness", "N/m", RIGID_RADIAL),
-        ("tilt_stiffness", "bending_stiffness", "N*m/rad", RIGID_TILT),
-        ("torsional_stiffness", "rotational_stiffness", "N*m/rad", RIGID_TILT),
-    ):
+    for key, name, measure, rigid in COUPLING_STIFFNESS:
         value = component.number_of(name, measure)
         if value is None or value > rigid:
             if value is None:
@@ -531,10 +532,7 @@ def _masses(unit: GearUnit, body: Body) -> list[dict[str, Any]]:
                 unit.notes.left_out(mass.label, "it has no mass, or no place on its shaft")
                 continue
             disc = {"at": body.station(unit.height(part, at), mass.label), "mass": of(amount, "kg")}
-            inertias = (
-                ("polar_inertia", mass.number_of("moment_of_inertia_u_axis", "kg*m^2")),
-                ("diametral_inertia", mass.number_of("moment_of_inertia_v_axis", "kg*m^2")),
-            )
+            inertias = ((key, mass.number_of(name, "kg*m^2")) for key, name in INERTIAS)
             disc |= {key: of(value, "kg*m^2") for key, value in inertias if value is not None and value > 0.0}
             if mass.has("eccentricity_vector") and any(mass.vector("eccentricity_vector") or ()):
                 unit.notes.left_out(f"{mass.label}: eccentricity_vector", "its unbalance is not taken")

@@ -71,3 +71,26 @@ def unit_named(name: str) -> Unit | None:
 
 
 _BY_BARE_NAME = {"".join(name.split()): unit for name, unit in UNITS.items()}
+
+WRITTEN = {
+    "": "none",
+    "m": "mm",
+    "rad": "deg",
+    "kg": "kg",
+    "kg*m^2": "kg m^2",
+    "kg/m^3": "kg / dm^3",
+    "N": "N",
+    "N*m": "N m",
+    "N/m": "N / m",
+    "N*m/rad": "N mm / rad",
+    "Pa": "N / mm^2",
+    "rad/s": "1 / min",
+    "m/s^2": "m / s^2",
+}
+"""Unit that the schema 1.7 has for most attributes of a measure, by the SI unit."""
+
+
+def in_unit(number: float, name: str) -> float:
+    """Return an amount in SI in a unit of the schema."""
+    unit = UNITS[name]
+    return (number - unit.offset) / unit.factor
