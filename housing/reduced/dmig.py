@@ -11,6 +11,7 @@ with IFO 1 (square) or 6 (symmetric, one triangle given) and TIN 1 or 2 (real); 
 in free fields (commas), small ones (8 characters, eight a line) or large ones (16 characters, four a line).
 """
 
+import io
 import re
 from collections.abc import Iterator
 
@@ -138,7 +139,7 @@ def _real(text: str, entry: _Entry, file: str) -> float:
 def _entries(text: str, file: str) -> Iterator[_Entry]:
     """Yield the DMIG entries of a file, continuations joined."""
     current: _Entry | None = None
-    for number, raw in enumerate(text.splitlines(), start=1):
+    for number, raw in enumerate(io.StringIO(text), start=1):
         line = raw.split("$", 1)[0].rstrip().expandtabs(8)
         if not line:
             continue

@@ -18,8 +18,11 @@ from gearwhine.housing.reduced.matrices import MOST_COORDINATES, LabelledMatrix
 
 FloatArray = npt.NDArray[np.float64]
 
-LARGEST_FILE = 600_000_000
+LARGEST_FILE = 300_000_000
 """Bytes beyond which a file is not read: a full matrix of the largest order, 24 characters a number, takes 216 MB."""
+
+LARGEST_DMIG = 100_000_000
+"""Bytes beyond which a DMIG file is not read, whose terms take several times as much while they are read."""
 
 ENDINGS = (".mtx", ".npz", ".pch", ".bdf", ".dat", ".nas")
 
@@ -41,8 +44,9 @@ def read_matrix(path: Path, *, name: str = "") -> LabelledMatrix:
     """
     ending = path.suffix.lower()
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise HousingError(f"{path.name}: expected a file of at most {LARGEST_FILE // 10**6} MB")
+        largest = LARGEST_FILE if ending in (".mtx", ".npz") else LARGEST_DMIG
+        if path.stat().st_size > largest:
+            raise HousingError(f"{path.name}: expected a file of at most {largest // 10**6} MB")
         if ending == ".mtx":
             return LabelledMatrix(_matrix_market(path))
         if ending == ".npz":

@@ -12,6 +12,7 @@ from reduced_frames import write_dmig
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.results.first_page import machine_section
 
 SEATS = {"input-back": 11, "input-front": 12, "output-back": 21, "output-front": 22}
 SEAT_MASS, SEAT_INERTIA, SPRING, TILT_SPRING = 6.0, 0.02, 3e8, 2e6
@@ -87,6 +88,18 @@ def test_tables_without_effect_are_warned_of(document: dict[str, Any]) -> None:
     warnings = gw.build(**document).warnings
     assert any(one.startswith("[acoustics] has no effect: [housing.reduced] has no shapes") for one in warnings)
     assert any(one.startswith("[housing] has no [[housing.sensor]]") for one in warnings)
+
+
+def test_its_damping_is_listed(document: dict[str, Any]) -> None:
+    document["housing"]["damping_ratio"] = 0.03
+    listed = gw.build(**document).check().document["damping"]
+    (of_housing,) = [one for one in listed if one["part"] == "housing"]
+    assert of_housing["damping"] == "3 % of critical in every mode"
+
+
+def test_the_report_names_it(document: dict[str, Any]) -> None:
+    words = "2 shafts, 4 bearings and 1 gear pair in a housing of reduced matrices on 4 supports; 1 sensor."
+    assert words in machine_section(gw.build(**document).case).content
 
 
 def test_it_is_written_and_read_again(document: dict[str, Any]) -> None:

@@ -135,3 +135,11 @@ def test_damaged_files(tmp_path: Path, name: str, write: Callable[[Path], None],
     write(tmp_path / name)
     with pytest.raises(HousingError, match=words):
         read_matrix(tmp_path / name)
+
+
+@pytest.mark.parametrize(("name", "megabytes"), [("k.pch", 100), ("k.mtx", 300)])
+def test_a_file_too_large_is_not_read(tmp_path: Path, name: str, megabytes: int) -> None:
+    with (tmp_path / name).open("wb") as file:
+        file.truncate(megabytes * 10**6 + 1)  # a sparse file, which takes no room on the disk
+    with pytest.raises(HousingError, match=f"{name}: expected a file of at most {megabytes} MB"):
+        read_matrix(tmp_path / name)
