@@ -111,16 +111,21 @@ def test_damping_ratio_and_matrix_add() -> None:
 
 
 def test_motion_without_mass_responds_statically() -> None:
-    """A body on a spring k to a massless node that stands on K: k K/(k + K), and the node's compliance at rest."""
-    one, other, body = 4e6, 1e7, 20.0
+    """A body on a spring k to a massless node that stands on K: k K/(k + K), and the node's compliance at rest.
+
+    Across x and y the node's springs are coupled by c: along the diagonals they have K + c and K - c.
+    """
+    one, other, across, body = 4e6, 1e7, 3e6, 20.0
     mass, stiffness = np.zeros((12, 12)), np.zeros((12, 12))
     for axis in range(6):
         mass[axis, axis] = body if axis < 3 else 0.1
         pair = [axis, axis + 6]
         stiffness[np.ix_(pair, pair)] = [[one, -one], [-one, one + other]]
+    stiffness[6, 7] = stiffness[7, 6] = across
     matrices = ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES))
     housing = free_frame(matrices=matrices)
-    series = one * other / (one + other)
+    ground = np.array([other - across, other, other + across])
+    series = one * ground / (one + ground)
     np.testing.assert_allclose(housing.modes.frequencies[:3], np.sqrt(series / body), rtol=1e-10)
     assert len(housing.modes.all_frequencies) == 12
     assert housing.certificate is not None
@@ -128,7 +133,7 @@ def test_motion_without_mass_responds_statically() -> None:
     row = housing.seat_motions()["front"][:, 0]
     compliance = np.sum((row / housing.modes.all_frequencies) ** 2)
     # From the node to the ground; the body's spring leads nowhere.
-    assert compliance == pytest.approx(1.0 / other, rel=1e-10)
+    assert compliance == pytest.approx(other / (other**2 - across**2), rel=1e-10)
 
 
 def test_rows_by_order_with_internal_coordinates(tmp_path: Path) -> None:
