@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
+    from gearwhine.coupling.machine.components import HousingComponent
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.motion_lines import MotionLines
     from gearwhine.coupling.sound.solution import SolvedSound
@@ -219,6 +221,13 @@ class CaseStudy(Study):
         """The solved housing, which the first call meshes and solves; None in a case without one."""
         return self.solved_housing()
 
+    @cached_property
+    def _reduced(self) -> "HousingComponent | None":
+        """The housing of reduced matrices; None in a case without one."""
+        from gearwhine.from_case.reduced_housing import reduced_component
+
+        return reduced_component(self.case)
+
     @property
     def machine(self) -> "Machine":
         """The shafts, gears, bearings and gear pairs of the case as one object, with all that loads it.
@@ -229,7 +238,7 @@ class CaseStudy(Study):
 
         with self._lock:
             if self._described is None:
-                self._described = describe_machine(self.case, self.housing)
+                self._described = describe_machine(self.case, self.housing or self._reduced)
             return self._described
 
     @property
@@ -494,7 +503,7 @@ class CaseStudy(Study):
         case, progress = self.case, self.progress
         self.require("gears")
         housing = self._housing_of_gears()
-        loaded, point = solve_pairs(case, housing, progress)
+        loaded, point = solve_pairs(case, housing or self._reduced, progress)
         analysed = analyse_pairs(case, loaded, point)
         if aims:
             require_aims(aims, len(analysed))
@@ -502,7 +511,9 @@ class CaseStudy(Study):
         else:
             aims = relief_aims(case, loaded, progress, point=point, housing=housing)
         pairs = solve_over_torques(analysed, progress, aims)
-        seats = None if point is None or case.housing is None else "rigid" if housing is None else "housing"
+        is_housed = housing is not None or self._reduced is not None
+        has_seats = case.housing is not None or case.reduced_housing is not None
+        seats = None if point is None or not has_seats else "housing" if is_housed else "rigid"
         return gears_result(pairs, self.origin, seats)
 
     def _housing_of_gears(self) -> "HousingModes | None":

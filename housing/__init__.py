@@ -12,6 +12,7 @@
   :func:`read_modes` and :func:`write_modes` keep it on file.
 - :func:`compare_by_shapes`, :func:`compare_by_dominance` and :func:`compare_by_frequency` pair model modes with
   measured ones.
+- :mod:`gearwhine.housing.reduced` reads housings that another program has reduced to matrices.
 
 Sub-packages and modules, each of which imports only those before it: ``gearwhine.housing.material``,
 ``gearwhine.housing.fem`` (assembly, factorisation), ``gearwhine.housing.model`` (supports, seats, fixtures),
@@ -20,7 +21,8 @@ Sub-packages and modules, each of which imports only those before it: ``gearwhin
 ``gearwhine.housing.correlation`` (modal assurance criterion and others), ``gearwhine.housing.updating`` (model
 updating), ``gearwhine.housing.pictures`` (rendering), ``gearwhine.housing.model_warnings``, and
 ``gearwhine.housing.housing``: the whole description, and what is known of it once its modes are solved. Upon these
-stand ``gearwhine.housing.mesh_refinement`` and ``gearwhine.housing.modal_test``.
+stand ``gearwhine.housing.mesh_refinement`` and ``gearwhine.housing.modal_test``. ``gearwhine.housing.reduced`` stands
+beside them.
 """
 
 from gearwhine.housing.correlation.comparison import compare_by_dominance as compare_by_dominance

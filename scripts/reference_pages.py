@@ -21,6 +21,7 @@ from pydantic.fields import FieldInfo
 
 from gearwhine.case import Case, bearings, fields, measured, rotors
 from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
+from gearwhine.case.model import KEY_OF_FORM
 from gearwhine.cli.command_line import app
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -46,7 +47,8 @@ def tables_in(annotation: Any) -> Iterator[type[Table]]:
 def keys_of(table: type[Table]) -> dict[str, FieldInfo]:
     """Keys of a table as a case file has them, its own before inherited ones."""
     own = vars(table).get("__annotations__", {})
-    keys = {field.alias or name: field for name, field in table.model_fields.items() if name not in table.later}
+    hidden = {*table.later, *KEY_OF_FORM}
+    keys = {field.alias or name: field for name, field in table.model_fields.items() if name not in hidden}
     return dict(sorted(keys.items(), key=lambda item: (item[1].alias or item[0]) not in own and item[0] not in own))
 
 
@@ -87,16 +89,19 @@ def sections() -> list[Section]:
     """Every table of a case once, in the order of the schema."""
     found: list[Section] = []
 
-    def walk(table: type[Table], path: str) -> None:
+    def walk(table: type[Table], path: str, form: str = "") -> None:
         for key, hint in annotations(table).items():
             inner = list(tables_in(hint))
             for one in inner:
                 if any(section.table is one for section in found):
                     continue
                 others = [other for other in inner if other is not one]
-                place = f"{path}.{key}".lstrip(".")
-                found.append(Section(place, _heading(place, hint, one, others), one, path))
-                walk(one, place)
+                place = f"{path}.{KEY_OF_FORM.get(key, key)}".lstrip(".")
+                of_form = f" with `{next(iter(keys_of(one)))}`" if key in KEY_OF_FORM else form
+                heading = _heading(place, hint, one, others)
+                heading += of_form * any(section.heading == heading for section in found)
+                found.append(Section(place, heading, one, path))
+                walk(one, place, of_form)
 
     walk(Case, "")
     return found

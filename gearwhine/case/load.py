@@ -23,7 +23,7 @@ from gearwhine.case.checks.whole_case import check, warnings_of, without_changed
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, problem_of
 from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
 from gearwhine.case.input_files import InputFiles
-from gearwhine.case.model import Case, case_document, draft_of_case, draft_of_document
+from gearwhine.case.model import KEY_OF_FORM, Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
 from gearwhine.case.planetary import with_planets
 from gearwhine.exchange.file_names import LARGEST_MODEL, is_rexs_file
@@ -90,10 +90,13 @@ def findings_of(error: ValidationError) -> Iterator[Finding]:
         # Steps that begin with "~" tell which form of a key was meant; they are not in the file.
         steps = [step for step in detail["loc"] if not str(step).startswith("~") and step != "[key]"]
         location = (*steps, *context.get("at", ()))
+        meaning, tables = _meaning_of(location)[1], _meaning_of(location[:-1])[0]
+        if len(location) > 1:
+            location = (KEY_OF_FORM.get(str(location[0]), location[0]), *location[1:])
         if detail["type"] == "missing":
-            yield Finding(location, _describe(_meaning_of(location)[1], location), NOTHING)
+            yield Finding(location, _describe(meaning, location), NOTHING)
         elif detail["type"] == "extra_forbidden":
-            yield Finding(location, _unknown_key(str(location[-1]), _meaning_of(location[:-1])[0]))
+            yield Finding(location, _unknown_key(str(location[-1]), tables))
         else:
             yield Finding(location, _expected(detail, context), note=context.get("note", ""))
 

@@ -18,8 +18,8 @@ from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
-from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
-from gearwhine.case.fields import MOST_ENTRIES, Name, Table
+from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem, look_up
+from gearwhine.case.fields import MOST_ENTRIES, Name, Table, wrong
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
 from gearwhine.case.gears import Gear, GearPair, readable_pairs, train_of_pairs
 from gearwhine.case.housing import Housing, Material, Seat, Sensor, Support
@@ -27,6 +27,7 @@ from gearwhine.case.input_files import InputFiles, files_of, paths_in
 from gearwhine.case.measured import Measured, Update
 from gearwhine.case.operation import Operation, Sweep, Transient
 from gearwhine.case.planetary import Planetary, train_members
+from gearwhine.case.reduced_housing import ReducedHousing
 from gearwhine.case.rotors import Rotor, RotorAnalysis
 
 if TYPE_CHECKING:
@@ -34,6 +35,9 @@ if TYPE_CHECKING:
     from gearwhine.coupling.description.gear_train import GearTrain
 
 Text = Annotated[str, Field(max_length=10_000)]
+
+KEY_OF_FORM = {"reduced_housing": "housing"}
+"""Key in the file of each table that stands there under the key of another form."""
 
 
 class _Named(Protocol):
@@ -67,6 +71,8 @@ class Case(Table):
     """Materials by name, `[material.NAME]`."""
     housing: Housing | None = None
     """Housing; without it bearings stand on the ground."""
+    reduced_housing: ReducedHousing | None = None
+    """Housing of reduced matrices: the table `[housing]` where it has `reduced`."""
     rotor: tuple[Rotor, ...] = Field(default=(), max_length=1000)
     """Shafts, `[[rotor]]`."""
     bearing: tuple[Bearing, ...] = Field(default=(), max_length=1000)
@@ -100,6 +106,15 @@ class Case(Table):
 
     _files: InputFiles = PrivateAttr(default_factory=InputFiles)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _housing_by_form(cls, document: Any) -> Any:
+        if not isinstance(document, Mapping):
+            return document
+        if "reduced_housing" in document:
+            raise wrong("no such key: matrices are the table [housing.reduced]", "reduced_housing")
+        return _with_form(document)
+
     @model_validator(mode="after")
     def _with_files(self, info: ValidationInfo) -> Case:
         self._files = files_of(info).among(paths_in(self))
@@ -123,7 +138,8 @@ class Case(Table):
         """The library's objects of the tables, each made once."""
         from gearwhine.case.parts import Parts  # it brings the library
 
-        limit = None if self.housing is None else self.housing.frequency_limit
+        housing = self.housing or self.reduced_housing
+        limit = None if housing is None else housing.frequency_limit
         return Parts(
             self.material,
             self.rotor,
@@ -154,6 +170,14 @@ class Case(Table):
         preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
         preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
         return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
+
+
+def _with_form(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a document whose housing stands under the name of its form."""
+    housing = document.get("housing")
+    if not isinstance(housing, Mapping) or "reduced" not in housing:
+        return document
+    return {"reduced_housing" if key == "housing" else key: value for key, value in document.items()}
 
 
 AnyTable = TypeVar("AnyTable", bound=Table)
@@ -334,7 +358,14 @@ def require(case: Case, *tables: str, command: str) -> None:
 
 def lacking(case: Case, *tables: str, command: str) -> CaseError:
     """Return the error of a case that lacks some of the tables that a command needs."""
-    return CaseError(_lacking(table, command) for table in tables if not getattr(case, table))
+    missing = [table for table in tables if not getattr(case, table)]
+    if "housing" in missing and case.reduced_housing is not None:
+        expected = (
+            f"a box, CAD or mesh file: '{command}' needs a mesh and the shapes of its modes, which reduced matrices do "
+            "not have; `check` lists their natural frequencies"
+        )
+        return CaseError([Problem("housing.reduced", UNSAID, expected)])
+    return CaseError(_lacking(table, command) for table in missing)
 
 
 def housing_table(case: Case, command: str) -> Housing:
@@ -359,7 +390,7 @@ def _lacking(table: str, command: str) -> Problem:
 def case_document(case: Case) -> dict[str, Any]:
     """Return a case as nested tables and lists with quantities as text; what is None or empty is left out."""
     document = case.model_dump(mode="json", by_alias=True, exclude_none=True)
-    return {key: value for key, value in document.items() if value not in ("", [], {})}
+    return {KEY_OF_FORM.get(key, key): value for key, value in document.items() if value not in ("", [], {})}
 
 
 def dump_case(case: Case) -> str:

@@ -107,6 +107,30 @@ HOUSING = (
 )
 """Quantities of a housing as the case gives it, and of its mesh as far as that is known."""
 
+REDUCED_HOUSING = (
+    Quantity("coordinates", "matrices.size"),
+    Quantity("nodes", lambda housing: list(housing.matrices.nodes)),
+    Quantity("frequency_limit_hz", "limit"),
+    Quantity("frequencies_hz", lambda housing: housing.frequencies_hz.tolist()),
+    Quantity("damping_ratio"),
+    Quantity("seats", lambda housing: [seat.name for seat in housing.seats]),
+    Quantity("supports", lambda housing: [support.name for support in housing.supports]),
+    Quantity("sensors", lambda housing: [sensor.name for sensor in housing.sensors]),
+    Part(
+        "certificate",
+        "certificate",
+        (
+            Quantity("least_mass_eigenvalue"),
+            Quantity("least_stiffness_eigenvalue"),
+            Quantity("massless_coordinates", "massless_count"),
+            Quantity("free_rigid_motions", "free_motions"),
+            Quantity("mass_kg"),
+        ),
+        optional=True,
+    ),
+)
+"""Quantities of a housing of reduced matrices, and what is proved of these."""
+
 ROTOR = (
     Quantity("name", "given.name"),
     Quantity("length_m", "built.length"),
@@ -335,6 +359,7 @@ CHECK = (
     Quantity("title", "case.title"),
     Part("imported", "imported", IMPORTED, optional=True),
     Part("housing", lambda checked: ABSENT if checked.mesh is None else checked, HOUSING),
+    Part("reduced_housing", "reduced", REDUCED_HOUSING, optional=True),
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows(
         "rotor_analysis",
@@ -407,7 +432,7 @@ def _in_words(parts: Iterable[tuple[str, list[str]]]) -> tuple[Section, ...]:
 def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
     parts = {
         "imported": imported_lines(document["imported"]) if "imported" in document else [],
-        "housing": _housing_summary(document["housing"]) if "housing" in document else [],
+        "housing": _housing_summary(document["housing"]) if "housing" in document else _reduced_lines(document),
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(
             document.get("bearings", ()),
@@ -513,7 +538,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
     on_bearings = bool(document.get("bearings"))
     parts = {
         "imported": imported_lines(document["imported"]) if "imported" in document else [],
-        "housing": _housing_lines(document["housing"]) if "housing" in document else [],
+        "housing": _housing_lines(document["housing"]) if "housing" in document else _reduced_lines(document),
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
         "thrust": [_location_line(location) for location in document.get("axial_location", ())],
@@ -612,6 +637,27 @@ def _housing_lines(housing: Document) -> list[str]:
     if housing["masses"]:
         lines.append("masses: " + ", ".join(f"{mass['name']} {mass['mass_kg']:g} kg" for mass in housing["masses"]))
     return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
+
+
+def _reduced_lines(document: Document) -> list[str]:
+    """Return the lines of a housing of reduced matrices; none without one."""
+    housing = document.get("reduced_housing")
+    if housing is None:
+        return []
+    size = f"{counted(housing['coordinates'], 'coordinate')}, {counted(len(housing['nodes']), 'interface node')}"
+    lines = [f"reduced matrices of {size}; modes below {housing['frequency_limit_hz']:g} Hz"]
+    if (proved := housing.get("certificate")) is not None:
+        free = f"{proved['free_rigid_motions']} of 6 rigid motions free without the supports"
+        massless = f", {proved['massless_coordinates']} without mass" if proved["massless_coordinates"] else ""
+        lines.append(f"proved: symmetric, no negative eigenvalue, {free}{massless}; {proved['mass_kg']:.6g} kg")
+    frequencies = housing["frequencies_hz"]
+    shown = ", ".join(f"{frequency:.2f}" for frequency in frequencies[:_REDUCED_FREQUENCIES])
+    more = f" and {len(frequencies) - _REDUCED_FREQUENCIES} more" if len(frequencies) > _REDUCED_FREQUENCIES else ""
+    lines.append(f"natural frequencies: {shown} Hz{more}" if frequencies else "no natural frequency below the limit")
+    return lines + [f"{kind}: {', '.join(housing[kind])}" for kind in ("seats", "supports", "sensors") if housing[kind]]
+
+
+_REDUCED_FREQUENCIES = 12  # natural frequencies of a reduced housing that are shown
 
 
 def _bushing_line(kind: str, bushing: Document) -> str:

@@ -152,6 +152,11 @@ def _paragraph(
         if number
     ]
     machine = ", ".join(parts[:-1]) + (" and " if len(parts) > 1 else "") + parts[-1] if parts else ""
+    if (reduced := case.reduced_housing) is not None:
+        on = f" on {counted(len(reduced.support), 'support')}" if reduced.support else ""
+        sensors = f"; {counted(len(reduced.sensor), 'sensor')}" if reduced.sensor else ""
+        inside = f"{machine} in a " if machine else "A "
+        return f"{inside}housing of reduced matrices{on}{sensors}."
     if case.housing is None:
         return f"{machine}; no housing.".capitalize()
     solved = next((summary.housing for summary in summaries if summary.housing), {})

@@ -20,10 +20,12 @@ from gearwhine.coupling.description.planetary import PlacedSet, SetMember, part_
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.exchange.rexs import ImportedCase
 from gearwhine.from_case import mesh_health
-from gearwhine.from_case.machine import misalignments_of_case
+from gearwhine.from_case.machine import describe_machine, misalignments_of_case
 from gearwhine.from_case.mesh import build_mesh, material_of
 from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
+from gearwhine.from_case.reduced_housing import build_reduced_housing, reduced_component
+from gearwhine.housing.reduced import ReducedHousing
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
@@ -133,6 +135,8 @@ class CheckedCase:
         Warnings, as in the documents.
     imported : ImportedCase or None
         Gear unit of another program's file that the case was made of.
+    reduced : ReducedHousing or None
+        Housing of reduced matrices.
     """
 
     case: Case
@@ -144,6 +148,7 @@ class CheckedCase:
     machine: Machine | None
     warnings: list[dict[str, Any]]
     imported: ImportedCase | None = None
+    reduced: ReducedHousing | None = None
 
 
 def check_case(case: Case, progress: Progress = silent, imported: ImportedCase | None = None) -> CheckedCase:
@@ -174,6 +179,12 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
             material_of(case.material, name)
         mesh, warnings = mesh_health.preview_mesh(case.housing, case.material, case.input_files, progress)
         warnings += _checked_acoustics(case, case.housing, mesh)
+    reduced = None if case.reduced_housing is None else build_reduced_housing(case.reduced_housing, case.input_files)
+    if reduced is not None:
+        component = reduced_component(case)
+        if machine is not None:
+            describe_machine(case, component)
+        warnings += reduced.warnings
     rotors, pairs = checked_rotors(parts), tuple(checked_pairs(parts))
     for built, geometry in zip(parts.gear_pairs, parts.pair_geometries, strict=True):
         warnings += geometry_warnings(built, geometry)
@@ -188,7 +199,7 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     sets = tuple(checked_sets(parts))
-    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings, imported)
+    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings, imported, reduced)
 
 
 def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:

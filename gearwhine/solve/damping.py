@@ -53,6 +53,10 @@ def part_dampings(case: Case) -> tuple[PartDamping, ...]:
         if isinstance(word, str):
             text += f" ({word}: {STRUCTURAL_DAMPING[word].source})"
         parts.append(PartDamping("housing", "housing.damping_ratio", text, _gives(case.housing, "damping_ratio")))
+    if (reduced := case.reduced_housing) is not None:
+        text = f"{100.0 * reduced.damping_ratio:.3g} % of critical in every mode"
+        text += " beside its damping matrix" if reduced.reduced.damping is not None else ""
+        parts.append(PartDamping("housing", "housing.damping_ratio", text, _gives(reduced, "damping_ratio")))
     for number, rotor in enumerate(case.rotor):
         text = f"{100.0 * rotor.damping_ratio:.3g} % of critical"
         key = f"rotor[{number}].damping_ratio"

@@ -30,6 +30,7 @@ from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, reduce_motion
 from gearwhine.coupling.sweep.resonances import Resonances
 from gearwhine.failures import explain
 from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.reduced_housing import reduced_component
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 from gearwhine.numerics.result_warnings import ResultWarning
@@ -99,7 +100,7 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        described = describe_machine(case, housing)
+        described = describe_machine(case, housing or reduced_component(case))
         load, warnings_of_load = load_of_case(case, described)
         acoustics = None if case.acoustics is None else acoustics_of(case)
         return solve_motion_of_point(described, load, warnings_of_load, plan_of(case), begin, acoustics)

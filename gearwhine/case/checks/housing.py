@@ -107,10 +107,12 @@ def check_housing_form(draft: Draft) -> Iterator[Finding]:
     housing = draft.document.get("housing")
     if not isinstance(housing, Mapping):
         return
-    forms = [key for key in GEOMETRIES if key in housing]
+    forms = [key for key in (*GEOMETRIES, "reduced") if key in housing]
+    if forms == ["reduced"]:
+        return
     if len(forms) != 1:
         value = forms or NOTHING
-        *others, last = (f"[housing.{key}]" for key in GEOMETRIES)
+        *others, last = (f"[housing.{key}]" for key in (*GEOMETRIES, "reduced"))
         expected = f"exactly one of {', '.join(others)} and {last}"
         yield Finding(("housing",), expected, value)
     limits = [key for key in ("frequency_limit", "modes") if key in housing]

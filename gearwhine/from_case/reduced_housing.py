@@ -1,0 +1,107 @@
+"""Reduced housing of a case as the library's description, and as a component of its machine."""
+
+from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case.errors import UNSAID
+from gearwhine.case.fields import unit_vector
+from gearwhine.case.fixtures import amounts
+from gearwhine.case.input_files import ChangedFileError, InputFiles
+from gearwhine.case.reduced_housing import ReducedFiles
+from gearwhine.case.reduced_housing import ReducedHousing as ReducedTable
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.reduced_component import component_of_reduced_housing
+from gearwhine.housing import HousingError
+from gearwhine.housing.reduced import (
+    LabelledMatrix,
+    NodeSeat,
+    NodeSensor,
+    NodeSpring,
+    ReducedHousing,
+    read_matrix,
+    reduced_matrices,
+)
+
+_TWO_PI = 6.283185307179586
+_KEYS = {"limit": "housing.frequency_limit", "damping_ratio": "housing.damping_ratio"}
+
+
+def reduced_component(case: Case) -> HousingComponent | None:
+    """Return the reduced housing of a case as a component of its machine; None in a case without one.
+
+    Raises
+    ------
+    CaseError
+        As :func:`build_reduced_housing`.
+    """
+    table = case.reduced_housing
+    if table is None:
+        return None
+    housing = build_reduced_housing(table, case.input_files)
+    try:
+        return component_of_reduced_housing(housing)
+    except HousingError as error:
+        raise CaseError(_problems(table, error)) from error
+
+
+def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHousing:
+    """Read the matrices of a reduced housing and build its description.
+
+    Raises
+    ------
+    CaseError
+        With what is wrong with the files, their matrices, or with what is at their nodes.
+    """
+    read = _read(table.reduced, files)
+    try:
+        return ReducedHousing(
+            reduced_matrices(read, table.reduced.nodes, table.reduced.units),
+            [NodeSeat(seat.name, seat.node, seat.center) for seat in table.seat],
+            [NodeSensor(one.name, one.node, one.position, unit_vector(one.direction)) for one in table.sensor],
+            [
+                NodeSpring(one.name, one.node, one.position, amounts(one.stiffness), amounts(one.damping))
+                for one in table.support
+            ],
+            table.damping_ratio,
+            limit=_TWO_PI * table.frequency_limit,
+        )
+    except HousingError as error:
+        raise CaseError(_problems(table, error)) from error
+
+
+def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
+    """Read the matrices; each file that cannot be used is a problem of its key."""
+    read, problems = dict[str, LabelledMatrix](), []
+    for kind in ("mass", "stiffness", "damping"):
+        path = getattr(table, kind)
+        if path is None:
+            continue
+        try:
+            read[kind] = files.read(path, read_matrix, name=getattr(table, f"{kind}_name"))
+        except (HousingError, ChangedFileError) as error:
+            problems.append(Problem(f"housing.reduced.{kind}", path.name, f"a file of the {kind} matrix; {error}"))
+    if problems:
+        raise CaseError(problems)
+    return read
+
+
+def _problems(table: ReducedTable, error: HousingError) -> list[Problem]:
+    """Return findings as problems of the keys that they come from."""
+    names = {
+        "seat": [seat.name for seat in table.seat],
+        "sensor": [sensor.name for sensor in table.sensor],
+        "support": [support.name for support in table.support],
+    }
+    problems = []
+    for finding in error.findings:
+        kind, name = finding.part
+        value = UNSAID if finding.value is None else finding.value
+        place = names[kind].index(name) if name in names.get(kind, ()) else None
+        if place is not None:
+            key, label = f"housing.{kind}[{place}].{finding.attribute}", f'{kind} "{name}"'
+            problems.append(Problem(key, value, finding.expected, label=label))
+            continue
+        key = _KEYS.get(finding.attribute, "housing.reduced" + f".{name}" * bool(name))
+        if finding.attribute in ReducedFiles.model_fields:
+            key = f"housing.reduced.{finding.attribute}"
+        label = "" if finding.attribute in (*_KEYS, *ReducedFiles.model_fields) else finding.attribute
+        problems.append(Problem(key, value, finding.expected, label=label))
+    return problems

@@ -1,0 +1,20 @@
+"""Housings that another program has reduced to mass, stiffness and damping matrices with interface nodes.
+
+- :func:`read_matrix` reads a matrix from Matrix Market (``.mtx``), NumPy (``.npz``), or the DMIG entries of Nastran
+  (``.pch``, ``.bdf``, ``.dat``, ``.nas``) as a :class:`LabelledMatrix`; :func:`reduced_matrices` makes
+  :class:`ReducedMatrices` in SI of them.
+- :class:`ReducedHousing` stands on :class:`NodeSpring` entries and has named seats and sensors at its nodes
+  (:class:`NodeSeat`, :class:`NodeSensor`); its :class:`ReducedCertificate` holds what can be proved of it.
+- :meth:`ReducedHousing.modes` solves its natural modes.
+"""
+
+from gearwhine.housing.reduced.certificate import ReducedCertificate as ReducedCertificate
+from gearwhine.housing.reduced.matrices import LabelledMatrix as LabelledMatrix
+from gearwhine.housing.reduced.matrices import ReducedMatrices as ReducedMatrices
+from gearwhine.housing.reduced.matrices import reduced_matrices as reduced_matrices
+from gearwhine.housing.reduced.matrix_files import read_matrix as read_matrix
+from gearwhine.housing.reduced.reduced_housing import NodeSeat as NodeSeat
+from gearwhine.housing.reduced.reduced_housing import NodeSensor as NodeSensor
+from gearwhine.housing.reduced.reduced_housing import NodeSpring as NodeSpring
+from gearwhine.housing.reduced.reduced_housing import ReducedHousing as ReducedHousing
+from gearwhine.housing.reduced.reduced_housing import ReducedModes as ReducedModes

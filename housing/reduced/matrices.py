@@ -1,0 +1,234 @@
+"""Reduced mass, stiffness and damping matrices: their coordinates, their units, and what they must be.
+
+A coordinate is a motion of an interface node, by the node's number and a component (1 to 3: along x, y, z; 4 to 6:
+about x, y, z), or an internal one of the component 0, such as the amplitude of a fixed-interface mode (Craig and
+Bampton 1968, AIAA Journal 6(7), Eq. 15).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.housing.errors import HousingError
+from gearwhine.numerics.findings import Finding, Part, refuse
+
+FloatArray = npt.NDArray[np.float64]
+Coordinate = tuple[int, int]
+"""Number of a node and a component from 1 to 6; component 0 of an internal coordinate."""
+
+MOST_COORDINATES = 3000
+"""Order of a matrix beyond which it is refused: three dense ones of this order take 216 MB."""
+
+ASYMMETRY = 1e-6
+"""Largest |A - Aᵀ| over |A| of a matrix that is printed with seven digits, as of small fields."""
+
+INDEFINITENESS = 1e-8
+"""Largest negative eigenvalue of a semidefinite matrix that is printed, over its largest one."""
+
+MASSLESS = INDEFINITENESS
+"""Eigenvalue of the mass matrix with a diagonal of ones, below which a combination of coordinates has no mass."""
+
+UNITS = {"SI": (1.0, 1.0), "mm-t-s": (1e-3, 1e-3)}
+"""Length [m] and energy [J] of each system of units: t mm²/s² is 1e-3 J."""
+
+
+@dataclass(frozen=True)
+class LabelledMatrix:
+    """A square matrix as a file holds it.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n, n)
+        In the units of the file.
+    coordinates : tuple of Coordinate, or None
+        Coordinates of rows and columns, where the file names them.
+    """
+
+    values: FloatArray
+    coordinates: tuple[Coordinate, ...] | None = None
+
+
+@dataclass(frozen=True)
+class ReducedMatrices:
+    """Mass, stiffness and damping of a reduced housing in SI.
+
+    Attributes
+    ----------
+    mass : ndarray, shape (n, n)
+        M: kg of translations, kg m and kg m² with rotations.
+    stiffness : ndarray, shape (n, n)
+        K: N/m of translations, N and N m with rotations.
+    coordinates : tuple of Coordinate
+        Coordinate of each row, each once.
+    damping : ndarray, shape (n, n), or None
+        C of viscous damping: N s/m of translations.
+
+    Raises
+    ------
+    HousingError
+        Where a matrix is not square, finite, symmetric or semidefinite, is of another order, or a coordinate is given
+        twice.
+    """
+
+    mass: FloatArray
+    stiffness: FloatArray
+    coordinates: tuple[Coordinate, ...]
+    damping: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        """Keep symmetric copies; check order, symmetry and definiteness."""
+        given = {"mass": self.mass, "stiffness": self.stiffness}
+        if self.damping is not None:
+            given["damping"] = self.damping
+        matrices = {name: np.array(matrix, dtype=np.float64) for name, matrix in given.items()}
+        object.__setattr__(self, "coordinates", tuple((int(node), int(axis)) for node, axis in self.coordinates))
+        refuse(self._order_findings(matrices), HousingError)
+        refuse(_symmetry_findings(matrices), HousingError)
+        for name, matrix in matrices.items():
+            symmetric = 0.5 * (matrix + matrix.T)
+            symmetric.setflags(write=False)
+            object.__setattr__(self, name, symmetric)
+        refuse(_definiteness_findings({name: getattr(self, name) for name in matrices}), HousingError)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinates)
+
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """Numbers of the interface nodes, in order."""
+        return tuple(dict.fromkeys(node for node, axis in self.coordinates if axis))
+
+    def rows(self, node: int) -> dict[int, int]:
+        """Row of each component of a node."""
+        return {axis: row for row, (number, axis) in enumerate(self.coordinates) if number == node and axis}
+
+    def _order_findings(self, matrices: Mapping[str, FloatArray]) -> Iterator[Finding]:
+        """Yield matrices of another order or with numbers that are not finite, and coordinates that there cannot be."""
+        n = len(self.coordinates)
+        for name, matrix in matrices.items():
+            if matrix.shape != (n, n):
+                expected = f"a square matrix of order {n}, that of the coordinates; its shape is {matrix.shape}"
+                yield Finding(_part(name), "", None, expected)
+            elif not np.isfinite(matrix).all():
+                row, column = np.argwhere(~np.isfinite(matrix))[0]
+                place = f"row {row + 1}, column {column + 1}"
+                yield Finding(_part(name), place, float(matrix[row, column]), "a finite number")
+        if not 0 < n <= MOST_COORDINATES:
+            yield Finding(("reduced housing", ""), "order", n, f"from 1 to {MOST_COORDINATES} coordinates")
+        seen: set[Coordinate] = set()
+        for coordinate in self.coordinates:
+            if coordinate in seen:
+                yield Finding(("reduced housing", ""), "coordinates", coordinate, "each coordinate once")
+            if not 0 <= coordinate[1] <= 6:
+                yield Finding(("reduced housing", ""), "coordinates", coordinate, "a component from 0 to 6")
+            seen.add(coordinate)
+
+
+def reduced_matrices(
+    matrices: Mapping[str, LabelledMatrix], nodes: Sequence[int] = (), units: str = "SI"
+) -> ReducedMatrices:
+    """Make reduced matrices in SI from those of files.
+
+    With the length L [m] and the energy E [J] of the units, and S = diag(L for a translation, 1 otherwise), energies
+    qᵀ A q are the same in SI where A_SI = E S⁻¹ A S⁻¹.
+
+    Parameters
+    ----------
+    matrices : mapping of str to LabelledMatrix
+        ``mass``, ``stiffness``, and ``damping`` where there is one. Rows that one of labelled matrices lacks are zero.
+    nodes : sequence of int
+        Numbers of the nodes to which the first rows belong, six each, where the files name no coordinates; the others
+        are internal.
+    units : {"SI", "mm-t-s"}
+        Units of the files.
+
+    Raises
+    ------
+    HousingError
+        Where one file names its coordinates and another does not, there are fewer rows than motions of the nodes, or
+        the matrices are not those of a housing.
+    """
+    if units not in UNITS:
+        refuse([Finding(("reduced housing", ""), "units", units, f"one of {', '.join(UNITS)}")], HousingError)
+    labelled = {name: matrix.coordinates for name, matrix in matrices.items() if matrix.coordinates is not None}
+    if labelled and len(labelled) < len(matrices):
+        without = next(name for name in matrices if name not in labelled)
+        expected = f"node numbers in its file as in that of the {next(iter(labelled))}, in place of rows by order alone"
+        refuse([Finding(_part(without), "", None, expected)], HousingError)
+    values = {name: matrix.values for name, matrix in matrices.items()}
+    if labelled:
+        if nodes:
+            expected = "none beside files that name their nodes themselves"
+            refuse([Finding(("reduced housing", ""), "nodes", tuple(nodes), expected)], HousingError)
+        union = sorted(set().union(*labelled.values()), key=lambda one: (one[1] == 0, one))
+        if len(union) > MOST_COORDINATES:
+            expected = f"from 1 to {MOST_COORDINATES} coordinates"
+            refuse([Finding(("reduced housing", ""), "order", len(union), expected)], HousingError)
+        place = {coordinate: row for row, coordinate in enumerate(union)}
+        for name, coordinates in labelled.items():
+            rows = [place[coordinate] for coordinate in coordinates]
+            values[name] = np.zeros((len(union), len(union)))
+            values[name][np.ix_(rows, rows)] = matrices[name].values
+        coordinates = tuple(union)
+    else:
+        order = len(matrices["stiffness"].values)
+        if 6 * len(nodes) > order or not nodes:
+            expected = f"at least one node, and six rows for each: the order of the stiffness is {order}"
+            refuse([Finding(("reduced housing", ""), "nodes", tuple(nodes), expected)], HousingError)
+        at_nodes = [(node, axis) for node in nodes for axis in range(1, 7)]
+        coordinates = (*at_nodes, *((number, 0) for number in range(1, order - len(at_nodes) + 1)))
+    length, energy = UNITS[units]
+    per_unit = np.array([1.0 / length if 1 <= axis <= 3 else 1.0 for _, axis in coordinates])
+    for name, matrix in values.items():
+        if matrix.shape == (len(coordinates),) * 2:
+            values[name] = energy * per_unit[:, None] * matrix * per_unit
+    return ReducedMatrices(values["mass"], values["stiffness"], coordinates, values.get("damping"))
+
+
+def _part(name: str) -> Part:
+    return ("reduced housing", name)
+
+
+def scaled(matrix: FloatArray) -> FloatArray:
+    """Return D A D with D = |diag A|^(-1/2), in which translations and rotations have no units any more; (n, n)."""
+    diagonal = np.abs(np.diag(matrix))
+    per_row = np.divide(1.0, np.sqrt(diagonal), out=np.zeros(len(matrix)), where=diagonal > 0.0)
+    return np.asarray(per_row[:, None] * matrix * per_row)
+
+
+def _symmetry_findings(matrices: Mapping[str, FloatArray]) -> Iterator[Finding]:
+    """Yield matrices that are not symmetric, each with the place of its largest asymmetry."""
+    for name, matrix in matrices.items():
+        difference = np.abs(matrix - matrix.T)
+        # By a translation's and a rotation's own size, whose units differ.
+        size = np.sqrt(np.outer(np.abs(np.diag(matrix)), np.abs(np.diag(matrix))))
+        size = np.maximum(np.maximum(size, np.abs(matrix)), np.abs(matrix.T))
+        relative = np.divide(difference, size, out=np.zeros_like(size), where=size > 0.0)
+        if relative.max(initial=0.0) > ASYMMETRY:
+            row, column = np.unravel_index(int(relative.argmax()), relative.shape)
+            expected = (
+                f"a symmetric matrix; row {row + 1}, column {column + 1} is {matrix[row, column]:.6g} and its mirror "
+                f"{matrix[column, row]:.6g}"
+            )
+            yield Finding(_part(name), "", None, expected)
+
+
+def _definiteness_findings(matrices: Mapping[str, FloatArray]) -> Iterator[Finding]:
+    """Yield matrices with negative eigenvalues, which hold negative energy."""
+    for name, matrix in matrices.items():
+        without_diagonal = (np.diag(matrix) == 0.0) & (np.abs(matrix).max(axis=1, initial=0.0) > 0.0)
+        if without_diagonal.any():
+            row = int(np.flatnonzero(without_diagonal)[0]) + 1
+            expected = f"no negative eigenvalue; row {row} has a diagonal of zero and others beside it"
+            yield Finding(_part(name), "", None, expected)
+            continue
+        eigenvalues = np.linalg.eigvalsh(scaled(matrix))
+        if eigenvalues[0] < -INDEFINITENESS * max(float(np.abs(eigenvalues).max(initial=0.0)), 1e-300):
+            expected = f"no negative eigenvalue; with a diagonal of ones the least one is {eigenvalues[0]:.4g}"
+            yield Finding(_part(name), "", None, expected)
+        elif name != "damping" and not np.abs(matrix).max() > 0.0:
+            yield Finding(_part(name), "", None, "numbers other than zero")

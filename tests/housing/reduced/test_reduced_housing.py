@@ -1,0 +1,214 @@
+"""Reduced housings beside closed forms: two bodies on a beam, springs in a row; and what there cannot be."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from reduced_frames import (
+    AREA,
+    FRAME_COORDINATES,
+    LENGTH,
+    MASS,
+    PLACES,
+    POLAR_INERTIA,
+    SECOND_MOMENT,
+    SHEAR_MODULUS,
+    TILT_INERTIA,
+    TORSION_CONSTANT,
+    YOUNGS_MODULUS,
+    frame,
+    write_dmig,
+    write_matrix_market,
+)
+
+from gearwhine.housing import HousingError
+from gearwhine.housing.reduced import (
+    LabelledMatrix,
+    NodeSeat,
+    NodeSensor,
+    NodeSpring,
+    ReducedHousing,
+    ReducedMatrices,
+    read_matrix,
+    reduced_matrices,
+)
+
+SEATS = (NodeSeat("back", 101, PLACES[101]), NodeSeat("front", 205, PLACES[205]))
+
+
+def free_frame(**changes: Any) -> ReducedHousing:
+    parts = {"matrices": ReducedMatrices(*frame(), tuple(FRAME_COORDINATES)), "seats": SEATS, "limit": 1e6}
+    return ReducedHousing(**parts | changes)
+
+
+def closed_form() -> list[float]:
+    """Elastic frequencies of two equal bodies on a beam [rad/s], ascending.
+
+    Along: 2 EA/(L m), twist: 2 GJ/(L I_p), both ends tilted against each other: 2 EI/(L I_t). Tilted alike by θ with
+    the ends' shifts ±v: the strain is θ + 2 v/L, so that ω² = 12 EI/L (1/(2 I_t) + (2/L)²/(2 m)).
+    """
+    bending = YOUNGS_MODULUS * SECOND_MOMENT / LENGTH
+    squares = [
+        2.0 * YOUNGS_MODULUS * AREA / (LENGTH * MASS),
+        2.0 * SHEAR_MODULUS * TORSION_CONSTANT / (LENGTH * POLAR_INERTIA),
+        *[2.0 * bending / TILT_INERTIA] * 2,
+        *[12.0 * bending * (0.5 / TILT_INERTIA + 2.0 / (MASS * LENGTH**2))] * 2,
+    ]
+    return sorted(np.sqrt(squares).tolist())
+
+
+def test_two_bodies_on_a_beam() -> None:
+    housing = free_frame()
+    assert housing.modes.frequencies[:6].tolist() == [0.0] * 6
+    np.testing.assert_allclose(housing.modes.frequencies[6:], closed_form(), rtol=1e-10)
+    certificate = housing.certificate
+    assert certificate is not None
+    assert certificate.is_free
+    assert certificate.massless_count == 0
+    assert certificate.mass == pytest.approx(2.0 * MASS, rel=1e-12)
+    # Inertia about x through the origin, at the first body: that of both, and the second one's m L².
+    assert certificate.rigid_mass[3, 3] == pytest.approx(2.0 * TILT_INERTIA + MASS * LENGTH**2, rel=1e-12)
+    assert certificate.rigid_mass[5, 5] == pytest.approx(2.0 * POLAR_INERTIA, rel=1e-12)
+
+
+def test_units_of_millimetres_tonnes_and_seconds(tmp_path: Path) -> None:
+    mass, stiffness = frame(length=1e-3, mass=1e3)
+    path = write_dmig(tmp_path / "r.bdf", {"M": mass, "K": stiffness}, FRAME_COORDINATES, field="free")
+    read = {"mass": read_matrix(path, name="M"), "stiffness": read_matrix(path, name="K")}
+    matrices = reduced_matrices(read, units="mm-t-s")
+    expected_mass, expected_stiffness = frame()
+    np.testing.assert_allclose(matrices.mass, expected_mass, rtol=1e-12)
+    np.testing.assert_allclose(matrices.stiffness, expected_stiffness, rtol=1e-12)
+    # Taken for SI it is a housing of 0.024 kg whose nodes do not move as a body by their places in metres.
+    wrong = free_frame(matrices=reduced_matrices(read))
+    assert wrong.certificate is not None
+    assert not wrong.certificate.is_free
+    assert any("resists" in one["message"] for one in wrong.warnings)
+
+
+def test_support_and_its_damping() -> None:
+    """On springs at both nodes along z, the frame moves as one on them, 2 k/(2 m); the dashpots damp it by c/m."""
+    springs = [
+        NodeSpring(f"foot {node}", node, place, (0, 0, 3e4, 0, 0, 0), (0, 0, 50.0, 0, 0, 0))
+        for node, place in PLACES.items()
+    ]
+    housing = free_frame(supports=springs, damping_ratio=0.0)
+    along = int(np.argmax(np.abs(housing.seat_motions()["back"][:6, 2])))
+    assert housing.modes.frequencies[along] == pytest.approx(np.sqrt(3e4 / MASS), rel=1e-8)
+    assert housing.damping_matrix()[along, along] == pytest.approx(50.0 / MASS, rel=1e-8)
+    assert housing.warnings[0]["count"] == 5
+
+
+def test_damping_ratio_and_matrix_add() -> None:
+    mass, stiffness = frame()
+    matrices = ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES), 2e-6 * stiffness)
+    housing = free_frame(matrices=matrices, damping_ratio=0.02)
+    frequencies = housing.modes.frequencies
+    expected = np.diag(0.04 * frequencies + 2e-6 * frequencies**2)
+    np.testing.assert_allclose(housing.damping_matrix(), expected, atol=1e-9 * expected.max())
+
+
+def test_motion_without_mass_responds_statically() -> None:
+    """A body on a spring k to a massless node that stands on K: k K/(k + K), and the node's compliance at rest.
+
+    Across x and y the node's springs are coupled by c: along the diagonals they have K + c and K - c.
+    """
+    one, other, across, body = 4e6, 1e7, 3e6, 20.0
+    mass, stiffness = np.zeros((12, 12)), np.zeros((12, 12))
+    for axis in range(6):
+        mass[axis, axis] = body if axis < 3 else 0.1
+        pair = [axis, axis + 6]
+        stiffness[np.ix_(pair, pair)] = [[one, -one], [-one, one + other]]
+    stiffness[6, 7] = stiffness[7, 6] = across
+    matrices = ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES))
+    housing = free_frame(matrices=matrices)
+    ground = np.array([other - across, other, other + across])
+    series = one * ground / (one + ground)
+    np.testing.assert_allclose(housing.modes.frequencies[:3], np.sqrt(series / body), rtol=1e-10)
+    assert len(housing.modes.all_frequencies) == 12
+    assert housing.certificate is not None
+    assert housing.certificate.massless_count == 6
+    row = housing.seat_motions()["front"][:, 0]
+    compliance = np.sum((row / housing.modes.all_frequencies) ** 2)
+    # From the node to the ground; the body's spring leads nowhere.
+    assert compliance == pytest.approx(other / (other**2 - across**2), rel=1e-10)
+
+
+def test_rows_by_order_with_internal_coordinates(tmp_path: Path) -> None:
+    mass, stiffness = (np.pad(matrix, (0, 1)) for matrix in frame())
+    mass[12, 12], stiffness[12, 12] = 1.0, 4e6
+    files = {"mass": mass, "stiffness": stiffness}
+    read = {name: read_matrix(write_matrix_market(tmp_path / f"{name}.mtx", one)) for name, one in files.items()}
+    matrices = reduced_matrices(read, nodes=(101, 205))
+    assert matrices.nodes == (101, 205)
+    assert matrices.coordinates[-1] == (1, 0)
+    housing = free_frame(matrices=matrices)
+    assert np.isclose(housing.modes.frequencies, 2000.0, rtol=1e-12).sum() == 1
+    with pytest.raises(HousingError, match="six rows for each: the order of the stiffness is 13"):
+        reduced_matrices(read, nodes=(1, 2, 3))
+
+
+def changed(kind: str, row: int, column: int, value: float) -> dict[str, Any]:
+    matrices = dict(zip(("mass", "stiffness"), frame(), strict=True))
+    matrices[kind][row, column] = value
+    return matrices
+
+
+@pytest.mark.parametrize(
+    ("matrices", "words"),
+    [
+        (changed("stiffness", 0, 6, 0.0), r"'stiffness': expected a symmetric matrix; row 1, column 7 is 0 and its"),
+        (changed("stiffness", 2, 2, 1.0), "'stiffness': expected no negative eigenvalue"),
+        (changed("mass", 3, 3, -1.0), "'mass': expected no negative eigenvalue"),
+        (changed("mass", 3, 4, np.nan), "'mass': row 4, column 5 is nan; expected a finite number"),
+        ({"mass": np.eye(11), "stiffness": np.eye(12)}, r"'mass': expected a square matrix of order 12"),
+        ({"mass": np.zeros((12, 12)), "stiffness": np.eye(12)}, "'mass': expected numbers other than zero"),
+    ],
+)
+def test_matrices_of_no_housing(matrices: dict[str, Any], words: str) -> None:
+    with pytest.raises(HousingError, match=words):
+        ReducedMatrices(coordinates=tuple(FRAME_COORDINATES), **matrices)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"seats": [NodeSeat("back", 7, PLACES[101])]}, "seat 'back': node is 7; expected an interface node of the"),
+        ({"seats": [SEATS[0], replace(SEATS[1], name="back")]}, "seat 'back': name is 'back'; expected each name once"),
+        ({"sensors": [NodeSensor("top", 101, (0, 1, 0), (0, 1, 0))]}, "sensor 'top': position .* one place of node"),
+        ({"supports": [NodeSpring("foot", 9, (0, 0, 0))]}, "support 'foot': node is 9"),
+        ({"limit": 0.0}, "limit is 0; expected a finite number above 0 rad/s"),
+        ({"damping_ratio": 1.5}, "damping_ratio is 1.5"),
+        ({"matrices": 3}, "matrices is 3; expected reduced matrices"),
+    ],
+)
+def test_parts_that_do_not_fit(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(HousingError, match=words):
+        free_frame(**changes)
+
+
+def test_mass_of_other_units() -> None:
+    mass, stiffness = frame()
+    with pytest.raises(HousingError, match=r"total \[kg\] is 2.4e\+10; expected a housing of 0.001 to 1e\+06 kg"):
+        free_frame(matrices=ReducedMatrices(1e9 * mass, stiffness, tuple(FRAME_COORDINATES)))
+
+
+def test_motion_without_mass_and_stiffness() -> None:
+    mass, stiffness = frame()
+    mass[11, 11] = 0.0
+    stiffness[[5, 11]] = stiffness[:, [5, 11]] = 0.0
+    with pytest.raises(HousingError, match="stiffness of every motion that has no mass; one has neither"):
+        _ = free_frame(matrices=ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES))).modes
+
+
+def test_files_that_name_their_nodes_beside_one_that_does_not() -> None:
+    mass, stiffness = frame()
+    labelled = LabelledMatrix(stiffness, tuple(FRAME_COORDINATES))
+    with pytest.raises(HousingError, match="'mass': expected node numbers in its file as in that of the stiffness"):
+        reduced_matrices({"mass": LabelledMatrix(mass), "stiffness": labelled})
+    with pytest.raises(HousingError, match=r"nodes is .*; expected none beside files that name their nodes"):
+        reduced_matrices({"mass": replace(labelled, values=mass), "stiffness": labelled}, nodes=(101, 205))
+    with pytest.raises(HousingError, match="units is 'inches'; expected one of SI, mm-t-s"):
+        reduced_matrices({"mass": replace(labelled, values=mass), "stiffness": labelled}, units="inches")
