@@ -278,7 +278,19 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
             if heights[place] > least:
                 at = (frequencies[place], heights[place])
                 text = _place_beside_harmonic(lines[place])
-                axes.annotate(text, at, (-3, 3), textcoords="offset points", rotation=60, fontsize=NOTE)
+                # Names of lines below and above a harmonic lean apart.
+                is_below = sum(turns for _, turns in lines[place].sidebands[0].turns) < 0
+                side, lean = ("right", -60) if is_below else ("left", 60)
+                axes.annotate(
+                    text,
+                    at,
+                    (-4 if is_below else 4, 3),
+                    textcoords="offset points",
+                    rotation=lean,
+                    rotation_mode="anchor",
+                    ha=side,
+                    fontsize=NOTE,
+                )
         axes.set_xlim(0.9 * float(frequencies.min()), 1.1 * float(frequencies.max()))
         axes.set_ylabel(f"{shortened(name, 14)} [m/s²]")
         if number == 0:
