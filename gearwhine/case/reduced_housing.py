@@ -27,7 +27,7 @@ class ReducedFiles(Table):
     """`[housing.reduced]`: files of the matrices, and what these do not say."""
 
     mass: CaseFile
-    """Mass matrix: Matrix Market (`.mtx`), NumPy (`.npz`) or Nastran DMIG (`.pch`, `.bdf`, `.dat`, `.nas`)."""
+    """Mass matrix: Matrix Market (`.mtx`), NumPy (`.npz`) or Nastran (OUTPUT4 `.op4`; DMIG `.pch`, `.bdf`, `.nas`)."""
     stiffness: CaseFile
     """Stiffness matrix."""
     damping: CaseFile | None = None

@@ -1,4 +1,4 @@
-"""Readers of reduced matrices: Matrix Market, NumPy arrays, and the DMIG entries of Nastran.
+"""Readers of reduced matrices: Matrix Market, NumPy arrays, and the DMIG entries and OUTPUT4 files of Nastran.
 
 Sizes are checked before anything is allocated, and nothing in a file is executed.
 """
@@ -15,6 +15,7 @@ from scipy import sparse
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.dmig import read_dmig
 from gearwhine.housing.reduced.matrices import MOST_COORDINATES, LabelledMatrix
+from gearwhine.housing.reduced.op4 import read_op4
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,7 +25,7 @@ LARGEST_FILE = 300_000_000
 LARGEST_DMIG = 100_000_000
 """Bytes beyond which a DMIG file is not read, whose terms take several times as much while they are read."""
 
-ENDINGS = (".mtx", ".npz", ".pch", ".bdf", ".dat", ".nas")
+ENDINGS = (".mtx", ".npz", ".op4", ".pch", ".bdf", ".dat", ".nas")
 
 
 def read_matrix(path: Path, *, name: str = "") -> LabelledMatrix:
@@ -33,9 +34,10 @@ def read_matrix(path: Path, *, name: str = "") -> LabelledMatrix:
     Parameters
     ----------
     path : path
-        Matrix Market (``.mtx``), NumPy (``.npz``) or Nastran (``.pch``, ``.bdf``, ``.dat``, ``.nas``) file.
+        Matrix Market (``.mtx``), NumPy (``.npz``) or Nastran (OUTPUT4: ``.op4``; DMIG: ``.pch``, ``.bdf``, ``.dat``,
+        ``.nas``) file.
     name : str
-        Name of the array or DMIG matrix in the file; by default the only one.
+        Name of the array or matrix in the file; by default the only one.
 
     Raises
     ------
@@ -44,13 +46,15 @@ def read_matrix(path: Path, *, name: str = "") -> LabelledMatrix:
     """
     ending = path.suffix.lower()
     try:
-        largest = LARGEST_FILE if ending in (".mtx", ".npz") else LARGEST_DMIG
+        largest = LARGEST_FILE if ending in (".mtx", ".npz", ".op4") else LARGEST_DMIG
         if path.stat().st_size > largest:
             raise HousingError(f"{path.name}: expected a file of at most {largest // 10**6} MB")
         if ending == ".mtx":
             return LabelledMatrix(_matrix_market(path))
         if ending == ".npz":
             return LabelledMatrix(_numpy_array(path, name))
+        if ending == ".op4":
+            return LabelledMatrix(read_op4(path, name))
         if ending in ENDINGS:
             return read_dmig(path.read_text("latin-1"), path.name, name)
     except OSError as error:

@@ -1,0 +1,262 @@
+"""OUTPUT4 files of Nastran: matrices by columns, binary or as text, dense or sparse.
+
+Format: NX Nastran User's Guide, module OUTPUT4. A matrix begins with NCOL, NROW, form, type and name; NROW is negative
+where strings have a head of two numbers. A column is ICOL, IROW, NW and its numbers: from row IROW on, or, where IROW
+is 0, strings of L words from row I on, each with the head I + 65536 (L + 1), or L + 1 and I. A double has two words.
+The column NCOL + 1 ends the matrix. A symmetric matrix has all its columns.
+"""
+
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.reduced.matrices import MOST_COORDINATES
+
+FloatArray = npt.NDArray[np.float64]
+
+Strings = Iterator[tuple[int, int, FloatArray]]
+"""Column, first row and numbers of each string of a matrix."""
+
+_HEAD_BYTES = 24  # of the record that begins a matrix, with integers of 32 bits
+_HEAD_BYTES_64 = 48
+_WORDS = {1: 1, 2: 2}  # words of a number by the type of real matrices
+_STRING = 65536
+
+
+@dataclass(frozen=True)
+class _Head:
+    """Beginning of a matrix."""
+
+    name: str
+    columns: int
+    rows: int
+    type: int
+    two_numbers: bool
+
+
+def read_op4(path: Path, name: str = "") -> FloatArray:
+    """Read the real square matrix of a name, or the only one, shape (n, n).
+
+    Raises
+    ------
+    HousingError
+        Where there is no such matrix, it is complex, not square or too large, or the file is damaged.
+    OSError
+        Where the file cannot be opened.
+    """
+    content = path.read_bytes()
+    matrices = _of_text(content, path.name) if _is_text(content) else _of_records(content, path.name)
+    wanted, names, found = name.upper(), list[str](), None
+    for head, columns in matrices:
+        names.append(head.name)
+        if wanted not in ("", head.name):
+            for _ in columns:
+                pass
+            continue
+        if found is not None and not wanted:
+            raise HousingError(f"{path.name}: expected the name of one of its matrices, such as {', '.join(names)}")
+        found = _square(head, columns, path.name)
+    if found is None:
+        listed = ", ".join(names) or "none at all"
+        raise HousingError(f"{path.name}: expected a matrix {name!r}; it has {listed}")
+    return found
+
+
+def _square(head: _Head, columns: Strings, file: str) -> FloatArray:
+    """Put the strings of a matrix into their places."""
+    if head.type not in _WORDS:
+        raise HousingError(f"{file}: matrix {head.name} is of type {head.type}; expected 1 or 2 (real)")
+    if head.columns != head.rows or not 0 < head.rows <= MOST_COORDINATES:
+        size = f"{head.rows} x {head.columns}"
+        raise HousingError(f"{file}: {head.name} is {size}; expected a square matrix of order 1 to {MOST_COORDINATES}")
+    values = np.zeros((head.rows, head.columns))
+    for column, row, numbers in columns:
+        if not (1 <= column <= head.columns and row >= 1 and row + numbers.size - 1 <= head.rows):
+            last = row + numbers.size - 1
+            raise HousingError(
+                f"{file}: rows {row} to {last} of column {column} of {head.name}; expected rows within its order, "
+                f"{head.rows}"
+            )
+        values[row - 1 : row - 1 + numbers.size, column - 1] = numbers
+    if not np.all(np.isfinite(values)):
+        raise HousingError(f"{file}: {head.name} has entries that are not finite; expected real numbers")
+    return values
+
+
+# ------------------------------------------------------------------------------------------------------------ binary
+
+
+def _is_text(content: bytes) -> bool:
+    """Whether the first line of a file is that of a matrix as text, of printable characters."""
+    return bool(re.match(rb"[ 0-9-]{32}", content[:32]))
+
+
+def _of_records(content: bytes, file: str) -> Iterator[tuple[_Head, Strings]]:
+    """Yield the matrices of a binary file of 32-bit integers, in either order of bytes."""
+    order = next((one for one in "<>" if struct.unpack(one + "i", content[:4].ljust(4, b"\0"))[0] == _HEAD_BYTES), None)
+    if order is None:
+        if any(struct.unpack(one + "i", content[:4].ljust(4, b"\0"))[0] == _HEAD_BYTES_64 for one in "<>"):
+            raise HousingError(f"{file} has integers of 64 bits; expected an OUTPUT4 file with integers of 32 bits")
+        raise HousingError(f"{file}: expected an OUTPUT4 file of Nastran, binary or text")
+    records = _records(content, order, file)
+    for record in records:
+        if len(record) != _HEAD_BYTES:
+            raise HousingError(f"{file}: expected the beginning of a matrix after the last one")
+        columns, rows, _, kind = struct.unpack(order + "4i", record[:16])
+        name = record[16:].decode("latin-1").strip().upper()
+        head = _Head(name, columns, abs(rows), kind, rows < 0)
+        yield head, _binary_columns(records, head, order, file)
+
+
+def _records(content: bytes, order: str, file: str) -> Iterator[bytes]:
+    """Yield the records of an unformatted file: each has its number of bytes before and after it."""
+    at = 0
+    while at < len(content):
+        size = struct.unpack(order + "i", content[at : at + 4])[0] if at + 4 <= len(content) else -1
+        end = at + 4 + size
+        if size < 0 or content[end : end + 4] != content[at : at + 4]:
+            raise HousingError(f"{file}: expected whole records; that at byte {at} is cut off or damaged")
+        yield content[at + 4 : end]
+        at = end + 4
+
+
+def _binary_columns(records: Iterator[bytes], head: _Head, order: str, file: str) -> Strings:
+    """Yield column, first row and numbers of each string of a matrix up to its last record."""
+    words = _WORDS.get(head.type, 2)
+    dtype = np.dtype(order + ("f4" if words == 1 else "f8"))
+    for record in records:
+        if len(record) < 12:
+            raise HousingError(f"{file}: expected the columns of {head.name}, complete to its end")
+        column, row, _ = struct.unpack(order + "3i", record[:12])
+        if column > head.columns:
+            return
+        data = record[12:]
+        if row > 0:
+            yield column, row, _numbers(data, dtype, file)
+            continue
+        while data:
+            row, count, data = _string(data, head, order, file)
+            yield column, row, _numbers(data[: 4 * count], dtype, file)
+            data = data[4 * count :]
+    raise HousingError(f"{file}: expected the columns of {head.name}, complete to its end")
+
+
+def _string(data: bytes, head: _Head, order: str, file: str) -> tuple[int, int, bytes]:
+    """First row, number of words, and what follows the head of a string."""
+    size = 8 if head.two_numbers else 4
+    if len(data) < size:
+        raise HousingError(f"{file}: expected whole strings in the columns of {head.name}")
+    if head.two_numbers:
+        length, row = struct.unpack(order + "2i", data[:8])
+    else:
+        length, row = divmod(struct.unpack(order + "i", data[:4])[0], _STRING)
+    if not 2 <= length <= len(data) // 4:
+        raise HousingError(f"{file}: expected whole strings in the columns of {head.name}")
+    return row, length - 1, data[size:]
+
+
+def _numbers(data: bytes, dtype: "np.dtype[np.float64] | np.dtype[np.float32]", file: str) -> FloatArray:
+    if len(data) % dtype.itemsize:
+        raise HousingError(f"{file}: expected whole numbers in each column")
+    return np.frombuffer(data, dtype).astype(np.float64)
+
+
+# -------------------------------------------------------------------------------------------------------------- text
+
+_NUMBERS = re.compile(r"(\d+)[EDed](\d+)\.(\d+)")  # of the format of the numbers, such as 1P,3E23.16
+_REAL = re.compile(r" *[+-]?[0-9]*\.")
+_FIELD = 8
+
+
+def _of_text(content: bytes, file: str) -> Iterator[tuple[_Head, Strings]]:
+    """Yield the matrices of a file as text."""
+    lines = _Lines(content.decode("latin-1").splitlines(), file)
+    while lines.has_more:
+        line = lines.next()
+        columns, rows, _, kind = lines.integers(line, 4)
+        form = _NUMBERS.search(line[5 * _FIELD :])
+        if form is None:
+            raise HousingError(f"{file}, line {lines.number}: expected the format of the numbers, such as 1P,3E23.16")
+        name = line[4 * _FIELD : 5 * _FIELD].strip().upper()
+        head = _Head(name, columns, abs(rows), kind, rows < 0)
+        yield head, _text_columns(lines, head, int(form.group(2)))
+
+
+class _Lines:
+    """Lines of a file, one after another."""
+
+    def __init__(self, lines: list[str], file: str) -> None:
+        self._lines, self.file, self.number = lines, file, 0
+
+    @property
+    def has_more(self) -> bool:
+        """Whether a line that is not blank follows."""
+        while self.number < len(self._lines) and not self._lines[self.number].strip():
+            self.number += 1
+        return self.number < len(self._lines)
+
+    def next(self) -> str:
+        """Return the next line."""
+        if not self.has_more:
+            raise HousingError(f"{self.file}: expected the columns of its last matrix, complete to its end")
+        self.number += 1
+        return self._lines[self.number - 1]
+
+    def integers(self, line: str, count: int) -> list[int]:
+        """Integers in fields of eight characters."""
+        try:
+            return [int(line[_FIELD * place : _FIELD * (place + 1)]) for place in range(count)]
+        except ValueError:
+            raise HousingError(f"{self.file}, line {self.number}: expected {count} whole numbers") from None
+
+    def numbers(self, width: int) -> FloatArray:
+        """Real numbers of the lines that follow, up to a line of whole numbers."""
+        found: list[float] = []
+        while self.has_more and _REAL.match(self._lines[self.number]):
+            line = self.next().rstrip().upper().replace("D", "E")
+            try:
+                found += [float(line[at : at + width]) for at in range(0, len(line), width)]
+            except ValueError:
+                raise HousingError(f"{self.file}, line {self.number}: expected numbers {width} wide") from None
+        return np.array(found)
+
+
+def _text_columns(lines: _Lines, head: _Head, width: int) -> Strings:
+    """Yield column, first row and numbers of each string of a matrix up to its last record."""
+    words = _WORDS.get(head.type, 2)
+    while True:
+        column, row, left = lines.integers(lines.next(), 3)
+        if column > head.columns:
+            lines.numbers(width)
+            return
+        if row > 0:
+            yield column, row, lines.numbers(width)
+            continue
+        while left > 0:
+            line = lines.next()
+            if head.two_numbers:
+                length, row = lines.integers(line, 2)
+            else:
+                length, row = divmod(_whole(line, lines), _STRING)
+            numbers = lines.numbers(width)
+            if numbers.size * words != length - 1:
+                raise HousingError(
+                    f"{lines.file}, line {lines.number}: expected {(length - 1) // words} numbers in a string of "
+                    f"{head.name}; got {numbers.size}"
+                )
+            left -= length - 1 + (2 if head.two_numbers else 1)
+            yield column, row, numbers
+
+
+def _whole(line: str, lines: _Lines) -> int:
+    """Whole number of a line; it may be wider than a field."""
+    try:
+        return int(line)
+    except ValueError:
+        raise HousingError(f"{lines.file}, line {lines.number}: expected a whole number") from None

@@ -1,0 +1,167 @@
+"""OUTPUT4 files of Nastran: files of another program, files of a writer of our own, and damaged ones."""
+
+import base64
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from gearwhine.housing import HousingError
+from gearwhine.housing.reduced import read_matrix
+
+FloatArray = npt.NDArray[np.float64]
+
+STIFFNESS = np.array([[4.0, -1.0, 0.0, 0.0], [-1.0, 5.0, 0.0, 2.5], [0.0, 0.0, 3e-7, 0.0], [0.0, 2.5, 0.0, 1e9]])
+MASS = np.array([[1.0, 0.0, 0.0, 0.25], [0.0, 2.0, 0.0, 0.0], [0.0, 0.0, 3.0, 0.0], [0.25, 0.0, 0.0, 4.0]])
+
+# Both by pyyeti 1.4.7, `pyyeti.nastran.op4.write`: strings with two numbers in their heads, and with one.
+TEXT_OF_PYYETI = """\
+       4      -4       6       2KAA     1P,3E23.16
+       1       0       6
+       5       1
+ 4.0000000000000000E+00-1.0000000000000000E+00
+       2       0      10
+       5       1
+-1.0000000000000000E+00 5.0000000000000000E+00
+       3       4
+ 2.5000000000000000E+00
+       3       0       4
+       3       3
+ 2.9999999999999999E-07
+       4       0       8
+       3       2
+ 2.5000000000000000E+00
+       3       4
+ 1.0000000000000000E+09
+       5       1       1
+ 1.4142135623730951E+00
+"""
+RECORDS_OF_PYYETI = """
+GAAAAAQAAAAEAAAABgAAAAIAAABLQUEgICAgIBgAAAAgAAAAAQAAAAAAAAAFAAAAAQAFAAAAAAAAABBAAAAAAAAA8L8gAAAALAAA
+AAIAAAAAAAAACAAAAAEABQAAAAAAAADwvwAAAAAAABRABAADAAAAAAAAAARALAAAABgAAAADAAAAAAAAAAMAAAADAAMAdoMN9PUh
+lD4YAAAAJAAAAAQAAAAAAAAABgAAAAIAAwAAAAAAAAAEQAQAAwAAAAAAZc3NQSQAAAAUAAAABQAAAAEAAAACAAAAzTt/Zp6g9j8U
+AAAAGAAAAAQAAAAEAAAABgAAAAIAAABNQUEgICAgIBgAAAAkAAAAAQAAAAAAAAAGAAAAAQADAAAAAAAAAPA/BAADAAAAAAAAANA/
+JAAAABgAAAACAAAAAAAAAAMAAAACAAMAAAAAAAAAAEAYAAAAGAAAAAMAAAAAAAAAAwAAAAMAAwAAAAAAAAAIQBgAAAAkAAAABAAA
+AAAAAAAGAAAAAQADAAAAAAAAANA/BAADAAAAAAAAABBAJAAAABQAAAAFAAAAAQAAAAIAAADNO39mnqD2PxQAAAA=
+"""
+
+
+def test_files_of_another_program(tmp_path: Path) -> None:
+    text, records = tmp_path / "text.op4", tmp_path / "records.op4"
+    text.write_text(TEXT_OF_PYYETI)
+    records.write_bytes(base64.b64decode(RECORDS_OF_PYYETI))
+    np.testing.assert_array_equal(read_matrix(text).values, STIFFNESS)
+    np.testing.assert_array_equal(read_matrix(records, name="kaa").values, STIFFNESS)
+    np.testing.assert_array_equal(read_matrix(records, name="MAA").values, MASS)
+
+
+def strings(column: FloatArray) -> list[tuple[int, FloatArray]]:
+    """First row, from 1, and numbers of each run of a column that is not zero."""
+    filled = np.flatnonzero(column)
+    runs = np.split(filled, np.flatnonzero(np.diff(filled) > 1) + 1) if filled.size else []
+    return [(int(run[0]) + 1, column[run]) for run in runs]
+
+
+def binary(matrix: FloatArray, *, order: str = "<", single: bool = False, sparse: str = "") -> bytes:
+    def record(*parts: bytes) -> bytes:
+        content = b"".join(parts)
+        size = struct.pack(order + "i", len(content))
+        return size + content + size
+
+    def whole(*numbers: int) -> bytes:
+        return struct.pack(f"{order}{len(numbers)}i", *numbers)
+
+    words, kind = (1, "f4") if single else (2, "f8")
+    rows = -len(matrix) if sparse == "two" else len(matrix)
+    content = record(whole(len(matrix.T), rows, 2, 1 if single else 2), b"KGG     ")
+    for number, column in enumerate(matrix.T, start=1):
+        parts = strings(column)
+        if not sparse and parts:
+            first, last = parts[0][0], parts[-1][0] + len(parts[-1][1]) - 1
+            parts = [(first, column[first - 1 : last])]
+        data = b""
+        for first, numbers in parts:
+            length = words * len(numbers) + 1
+            head = {"": b"", "one": whole(first + 65536 * length), "two": whole(length, first)}[sparse]
+            data += head + numbers.astype(order + kind).tobytes()
+        if parts:
+            content += record(whole(number, 0 if sparse else parts[0][0], len(data) // 4), data)
+    return content + record(whole(len(matrix.T) + 1, 1, 1), np.array([1.0], order + kind).tobytes())
+
+
+@pytest.mark.parametrize("sparse", ["", "one", "two"])
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("single", [False, True])
+def test_binary_files_of_each_kind(tmp_path: Path, sparse: str, order: str, single: bool) -> None:
+    rng = np.random.default_rng(5)
+    matrix = np.where(rng.random((30, 30)) < 0.4, rng.normal(size=(30, 30)), 0.0).astype(
+        np.float32 if single else float
+    )
+    (tmp_path / "k.op4").write_bytes(binary(matrix.astype(float), order=order, single=single, sparse=sparse))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4", name="kgg").values, matrix)
+
+
+def test_text_without_strings_and_other_exponents(tmp_path: Path) -> None:
+    lines = ["       2       2       2       2KGG     1P,2D13.5"]
+    lines += ["       1       1       2", "  1.50000D+03 -2.50000D+00", "       2       2       1", "  4.00000D-01"]
+    (tmp_path / "k.op4").write_text("\n".join([*lines, "       3       1       1", "  1.00000D+00", ""]))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4").values, [[1500.0, 0.0], [-2.5, 0.4]])
+
+
+def text(*lines: str) -> Callable[[], bytes]:
+    return lambda: "\n".join([*lines, ""]).encode()
+
+
+HEAD = "       2       2       2       2KGG     1P,2E13.5"
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (lambda: b"", "expected an OUTPUT4 file"),
+        (lambda: b"not a matrix at all, but a sentence that goes on", "expected an OUTPUT4 file"),
+        (lambda: binary(STIFFNESS)[:-30], "expected whole records"),
+        (lambda: binary(STIFFNESS)[:100], "expected whole records"),
+        (lambda: binary(STIFFNESS[:, :3]), "is 4 x 3; expected a square matrix"),
+        (lambda: struct.pack("<i", 48) + bytes(60), "integers of 64 bits"),
+        (lambda: binary(np.where(STIFFNESS == 5.0, np.nan, STIFFNESS)), "not finite"),
+        (lambda: binary(STIFFNESS, sparse="one").replace(struct.pack("<i", 1 + 65536 * 5), bytes(4)), "whole strings"),
+        (
+            lambda: binary(STIFFNESS, sparse="two").replace(struct.pack("<2i", 5, 1), struct.pack("<2i", 5, 4)),
+            "rows 4 to 5 of column 1",
+        ),
+        (lambda: struct.pack("<6i", 24, 2, 2, 2, 4, 0) + struct.pack("<2i", 0, 24), "of type 4; expected 1 or 2"),
+        (lambda: struct.pack("<6i", 24, 90000, 90000, 2, 2, 0) + struct.pack("<2i", 0, 24), "order 1 to 3000"),
+        (text(HEAD, "       1       1       2", "  1.50000E+03"), "complete to its end"),
+        (text(HEAD, "       1       1       3", "  1.0 2.0 3.0"), "numbers 13 wide"),
+        (text(HEAD, "       1       1 many"), "expected 3 whole numbers"),
+        (text(HEAD.replace("1P,2E13.5", "free")), "expected the format of the numbers"),
+        (text(HEAD, "       1       0       3", "  196609", "  1.50000E+03  1.50000E+03"), "1 numbers in a string"),
+    ],
+)
+def test_damaged_files(tmp_path: Path, content: Callable[[], bytes], words: str) -> None:
+    (tmp_path / "k.op4").write_bytes(content())
+    with pytest.raises(HousingError, match=words):
+        read_matrix(tmp_path / "k.op4")
+
+
+def test_which_matrix_is_asked(tmp_path: Path) -> None:
+    (tmp_path / "k.op4").write_bytes(base64.b64decode(RECORDS_OF_PYYETI))
+    with pytest.raises(HousingError, match="expected the name of one of its matrices, such as KAA, MAA"):
+        read_matrix(tmp_path / "k.op4")
+    with pytest.raises(HousingError, match="expected a matrix 'kgg'; it has KAA, MAA"):
+        read_matrix(tmp_path / "k.op4", name="kgg")
+
+
+def test_cut_anywhere_a_file_is_refused_or_read(tmp_path: Path) -> None:
+    whole = base64.b64decode(RECORDS_OF_PYYETI)
+    for content in (whole, TEXT_OF_PYYETI.encode()):
+        for length in range(0, len(content), 3):
+            (tmp_path / "k.op4").write_bytes(content[:length])
+            try:
+                read_matrix(tmp_path / "k.op4", name="kaa")
+            except HousingError:
+                continue
