@@ -665,6 +665,27 @@ class CaseStudy(Study):
         document = export_rexs(self.case, Path(file), None if folder is None else Path(folder))
         return tuple(Note(**note) for note in document["rexs"]["notes"])
 
+    def export_reduced(self, file: str | os.PathLike[str]) -> dict[str, Any]:
+        """Write the housing as reduced matrices; see :func:`gearwhine.results_folder.export_reduced`.
+
+        Parameters
+        ----------
+        file : path
+            File to write, which ends in ``.npz``, ``.pch``, ``.op4`` or ``.mtx``.
+
+        Returns
+        -------
+        dict
+            ``files``, and ``reduced`` with the order and the nodes of seats and sensors.
+        """
+        from gearwhine.coupling.machine.components import component_of_housing
+        from gearwhine.results_folder import export_reduced, refuse_ending
+
+        refuse_ending(Path(file))
+        housing = self._required_housing("export --reduced")
+        component = component_of_housing(housing, participates=False, with_coarser=False)
+        return export_reduced(self.case, component, Path(file))
+
     # What the analyses of a machine ask of its study, as the case has it.
 
     @property

@@ -17,6 +17,7 @@ from gearwhine.output.quantity import add_warnings
 from gearwhine.output.sections import Column, Document, Section, table_of
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.machine.components import HousingComponent
     from gearwhine.output.export import Signals
 
 Format = Literal["csv", "uff", "wav"]
@@ -237,6 +238,82 @@ def case_in(folder: Path) -> Case:
     if case is None:
         raise CaseError([Problem("export --rexs", str(folder), "a case, or a folder with results of one")])
     return case
+
+
+def export_reduced(case: Case, housing: HousingComponent, target: Path) -> dict[str, Any]:
+    """Write the housing of a case as reduced matrices, and the tables by which another case takes them.
+
+    Parameters
+    ----------
+    case : Case
+    housing : HousingComponent
+        The solved housing of the case.
+    target : path
+        File to write, ``.npz``, ``.mtx``, ``.op4`` or ``.pch``; the tables stand beside it in a ``.toml`` of its name.
+
+    Returns
+    -------
+    dict
+        ``reduced`` with ``order``, ``seats``, ``sensors`` and ``left_out``.
+
+    Raises
+    ------
+    CaseError
+        Where the ending is another one, a file stands there already, or the housing has no seats.
+    """
+    from gearwhine.coupling.errors import CouplingError
+    from gearwhine.coupling.machine.reduced_component import interface_matrices
+    from gearwhine.from_case.reduced_housing import tables_of
+    from gearwhine.housing.reduced.writing import write_matrices
+
+    refuse_ending(target)
+    try:
+        # The rows of files without names are those of whole nodes.
+        named = target.suffix.lower() in (".npz", ".pch")
+        reduced = interface_matrices(housing, with_sensors=named)
+    except CouplingError as error:
+        raise CaseError([Problem("export --reduced", case.title or str(target), str(error))]) from error
+    with staging(target.parent, listed=False) as place:  # the files are the user's
+        files = write_matrices(place / target.name, reduced.matrices)
+        tables = place / f"{target.stem}.toml"
+        tables.write_text(tables_of(reduced, files, housing.complete_below), encoding="utf-8")
+        names = sorted({path.name for path in (*files.values(), tables)})
+        if standing := [name for name in names if (target.parent / name).exists()]:
+            expected = "a place where no file of that name stands yet"
+            raise CaseError([Problem("export --reduced", str(target.parent / standing[0]), expected)])
+    document: dict[str, Any] = {
+        "folder": str(target.parent),
+        "files": names,
+        "reduced": {
+            "order": reduced.matrices.size,
+            "seats": {seat.name: seat.node for seat in reduced.seats},
+            "sensors": {sensor.name: sensor.node for sensor in reduced.sensors},
+            "left_out": list(reduced.left_out),
+        },
+    }
+    add_warnings(document)
+    return document
+
+
+def refuse_ending(target: Path) -> None:
+    """Refuse a file of reduced matrices by its ending, before a housing is solved for it."""
+    from gearwhine.housing.reduced.writing import WRITTEN_ENDINGS
+
+    if target.suffix.lower() not in WRITTEN_ENDINGS:
+        expected = f"a file that ends in one of {', '.join(WRITTEN_ENDINGS)}"
+        raise CaseError([Problem("export --reduced", str(target), expected)])
+
+
+def reduced_sections(document: Document) -> tuple[Section, ...]:
+    """Return what the files of a reduced housing hold."""
+    reduced = document["reduced"]
+    nodes = [f"{name}: node {node}" for part in ("seats", "sensors") for name, node in reduced[part].items()]
+    left = []
+    if reduced["left_out"]:
+        why = "their directions are along no axis, other nodes move them, or the format has whole nodes alone"
+        left = [f"sensors {', '.join(reduced['left_out'])} are left out: {why}"]
+    note = f" mass, stiffness and damping of order {reduced['order']}, supports included, in SI"
+    return (Section("Exported", (*nodes, *left), note=note),)
 
 
 def rexs_sections(document: Document) -> tuple[Section, ...]:

@@ -161,21 +161,31 @@ def export(
             help="The case's gear unit as this REXS file (.rexs), with the operating point that `load` left in OUT.",
         ),
     ] = None,
+    reduced: Annotated[
+        Path | None,
+        Parameter(
+            name=["--reduced"],
+            help="The case's housing as reduced matrices (.npz, .pch, .op4, .mtx), and the tables of a case for them.",
+        ),
+    ] = None,
     common: Common = NONE_GIVEN,
 ) -> None:
     """Write the results in a folder in formats of other programs: of a folder, or of a case's OUT.
 
     OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all are written.
-    With --rexs it is the gear unit of the case that is written, and no results are needed.
+    With --rexs it is the gear unit of the case that is written, with --reduced its housing at seats and sensors; no
+    results are needed.
     """
     from gearwhine.case import CaseError, Problem
     from gearwhine.output.terminal import shown_by
     from gearwhine.results_folder import Format, export_results, export_sections
 
-    if rexs is not None:
-        if csv or uff or wav:
-            raise CaseError([Problem("--rexs", str(rexs), "none of --csv, --uff and --wav beside it")])
-        _export_rexs(results, rexs, common)
+    for option, target, write in (("--rexs", rexs, _export_rexs), ("--reduced", reduced, _export_reduced)):
+        if target is None:
+            continue
+        if csv or uff or wav or (rexs is not None and reduced is not None):
+            raise CaseError([Problem(option, str(target), "no other format beside it")])
+        write(results, target, common)
         return
     if common.settings:
         expected = "none: results are exported as they are, of the case that they were solved with"
@@ -187,6 +197,22 @@ def export(
         return export_results(folder, formats, signals="all" if all_signals else "sensors", seconds=seconds)
 
     _on_results(results, common, work, shown_by(export_sections))
+
+
+def _export_reduced(results: str, target: Path, common: Common) -> None:
+    from gearwhine.case import CaseError, Problem
+    from gearwhine.case_study import CaseStudy
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results_folder import reduced_sections
+
+    def work(folder: Path, loaded: "LoadedCase | None", progress: "Progress") -> dict[str, Any]:
+        if loaded is None:
+            expected = "a case, whose housing's modes are taken from its folder where they are there"
+            raise CaseError([Problem("export --reduced", str(folder), expected)])
+        study = CaseStudy(loaded, progress, folder=folder if folder.is_dir() else None)
+        return study.export_reduced(target)
+
+    _on_results(results, common, work, shown_by(reduced_sections))
 
 
 def _export_rexs(results: str, target: Path, common: Common) -> None:

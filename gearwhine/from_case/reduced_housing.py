@@ -1,5 +1,9 @@
 """Reduced housing of a case as the library's description, and as a component of its machine."""
 
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.fields import unit_vector
@@ -8,7 +12,7 @@ from gearwhine.case.input_files import ChangedFileError, InputFiles
 from gearwhine.case.reduced_housing import ReducedFiles
 from gearwhine.case.reduced_housing import ReducedHousing as ReducedTable
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.coupling.machine.reduced_component import component_of_reduced_housing
+from gearwhine.coupling.machine.reduced_component import InterfaceMatrices, component_of_reduced_housing
 from gearwhine.housing import HousingError
 from gearwhine.housing.reduced import (
     LabelledMatrix,
@@ -19,6 +23,7 @@ from gearwhine.housing.reduced import (
     read_matrix,
     reduced_matrices,
 )
+from gearwhine.housing.reduced.writing import NAMES
 
 _TWO_PI = 6.283185307179586
 _KEYS = {"limit": "housing.frequency_limit", "damping_ratio": "housing.damping_ratio"}
@@ -65,6 +70,41 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
         )
     except HousingError as error:
         raise CaseError(_problems(table, error)) from error
+
+
+def tables_of(reduced: InterfaceMatrices, files: Mapping[str, Path], limit: float | None) -> str:
+    """Tables of a case, as TOML, that take reduced matrices from files.
+
+    Parameters
+    ----------
+    reduced : InterfaceMatrices
+    files : mapping of str to path
+        Files of the matrices by kind.
+    limit : float or None
+        Frequency below which they are accurate [rad/s]; None where it is unknown.
+    """
+    frequency = f"{limit / _TWO_PI!r} Hz" if limit is not None else "… Hz"
+    lines = ["[housing]", f'frequency_limit = "{frequency}"', "damping_ratio   = 0.0    # the matrix has it", ""]
+    lines.append("[housing.reduced]")
+    for kind, path in files.items():
+        lines.append(f"{kind} = {json.dumps(path.name, ensure_ascii=False)}")
+        if path.suffix.lower() != ".mtx":
+            name = kind if path.suffix.lower() == ".npz" else NAMES[kind]
+            lines.append(f'{kind}_name = "{name}"')
+    if all(path.suffix.lower() in (".mtx", ".op4") for path in files.values()):
+        lines.append(f"nodes = {[seat.node for seat in reduced.seats]}")
+
+    def at(place: Sequence[float]) -> str:
+        return "[" + ", ".join(f'"{number!r} m"' for number in map(float, place)) + "]"
+
+    for seat in reduced.seats:
+        name = json.dumps(seat.name, ensure_ascii=False)
+        lines += ["", "[[housing.seat]]", f"name   = {name}", f"node   = {seat.node}", f"center = {at(seat.center)}"]
+    for sensor in reduced.sensors:
+        name = json.dumps(sensor.name, ensure_ascii=False)
+        lines += ["", "[[housing.sensor]]", f"name      = {name}", f"node      = {sensor.node}"]
+        lines += [f"position  = {at(sensor.position)}", f"direction = {[*map(float, sensor.direction)]}"]
+    return "\n".join([*lines, ""])
 
 
 def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:

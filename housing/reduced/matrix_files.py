@@ -14,7 +14,7 @@ from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.dmig import read_dmig
-from gearwhine.housing.reduced.matrices import MOST_COORDINATES, LabelledMatrix
+from gearwhine.housing.reduced.matrices import MOST_COORDINATES, Coordinate, LabelledMatrix
 from gearwhine.housing.reduced.op4 import read_op4
 
 FloatArray = npt.NDArray[np.float64]
@@ -52,7 +52,10 @@ def read_matrix(path: Path, *, name: str = "") -> LabelledMatrix:
         if ending == ".mtx":
             return LabelledMatrix(_matrix_market(path))
         if ending == ".npz":
-            return LabelledMatrix(_numpy_array(path, name))
+            values, coordinates = _numpy_array(path, name), _numpy_coordinates(path)
+            if coordinates is not None and len(coordinates) != len(values):
+                raise HousingError(f"{path.name}: nodes of {len(coordinates)} rows; expected {len(values)} of a matrix")
+            return LabelledMatrix(values, coordinates)
         if ending == ".op4":
             return LabelledMatrix(read_op4(path, name))
         if ending in ENDINGS:
@@ -87,11 +90,32 @@ def _matrix_market(path: Path) -> FloatArray:
     return np.asarray(read.toarray() if sparse.issparse(read) else read, dtype=np.float64)
 
 
+def _numpy_coordinates(path: Path) -> tuple[Coordinate, ...] | None:
+    """Coordinates by the arrays ``nodes`` and ``axes`` beside the matrices; None without these."""
+    with zipfile.ZipFile(path) as archive:
+        names = archive.namelist()
+        if not {"nodes.npy", "axes.npy"} <= set(names):
+            return None
+        found = []
+        for name in ("nodes.npy", "axes.npy"):
+            if archive.getinfo(name).file_size > 16 * MOST_COORDINATES:
+                raise HousingError(f"{path.name}: {name} is larger than {MOST_COORDINATES} numbers")
+            with archive.open(name) as file:
+                found.append(np.lib.format.read_array(file, allow_pickle=False))
+    nodes, axes = found
+    if nodes.shape != axes.shape or nodes.ndim != 1 or nodes.dtype.kind not in "iu" or axes.dtype.kind not in "iu":
+        raise HousingError(f"{path.name}: expected whole numbers in nodes and axes, one of each coordinate")
+    return tuple(zip(nodes.tolist(), axes.tolist(), strict=True))
+
+
 def _numpy_array(path: Path, name: str) -> FloatArray:
     """Read an array of real numbers from an archive of arrays, no objects."""
     try:
         with zipfile.ZipFile(path) as archive:
             arrays = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+            for label in ("nodes", "axes"):
+                if len(arrays) > 1:
+                    arrays.pop(label, None)
             if not name and len(arrays) == 1:
                 name = next(iter(arrays))
             if name not in arrays:
