@@ -56,6 +56,19 @@ def test_the_lines_stay_the_same(study: CaseStudy, tmp_path: Path, name: str, ha
         np.testing.assert_allclose(one.sensor_acceleration[sensor], line, rtol=0.0, atol=atol)
 
 
+def test_coordinates_are_those_of_craig_and_bampton(study: CaseStudy, tmp_path: Path) -> None:
+    """Nodes and modes with the nodes held have no stiffness between them, and these modes are orthogonal."""
+    study.export_reduced(tmp_path / "box.npz")
+    with np.load(tmp_path / "box.npz") as arrays:
+        stiffness, mass, internal = arrays["stiffness"], arrays["mass"], arrays["axes"] == 0
+    size = np.sqrt(np.diag(stiffness))
+    scaled = stiffness / size / size[:, None]
+    assert np.abs(scaled[internal][:, ~internal]).max() < 1e-6
+    among = np.ix_(internal, internal)
+    np.testing.assert_allclose(scaled[among], np.eye(internal.sum()), atol=1e-8)
+    np.testing.assert_allclose(mass[among], np.eye(internal.sum()), atol=1e-8)
+
+
 def test_matrix_market_has_a_file_for_each_matrix(study: CaseStudy, tmp_path: Path) -> None:
     files = study.export_reduced(tmp_path / "box.mtx")["files"]
     assert files == ["box-damping.mtx", "box-mass.mtx", "box-stiffness.mtx", "box.toml"]
