@@ -217,7 +217,8 @@ class Scratch(NamedTuple):
     bearing_work: FloatArray  # (8, 5): `gearwhine.coupling.connector_forces.bearing_kernels.evaluate_bearings`
     powers: FloatArray  # (5,): `gearwhine.coupling.time.newmark.evaluate_powers`
     powers_before: FloatArray  # (5,)
-    position_power: FloatArray  # (1,) [W]
+    position_force: FloatArray  # (n,) -P q at the last end of a step, and the coordinates at its start
+    q_before: FloatArray  # (n,)
     block: FloatArray  # (w,)
 
 

@@ -82,7 +82,7 @@ from gearwhine.coupling.connector_forces.turning_kernels import (
     turn_directions,
     turned_flexibility,
 )
-from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base, apply_block
+from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base
 from gearwhine.numerics.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
@@ -167,7 +167,7 @@ def evaluate_powers(
         for i in range(tv.size):
             for j in range(tv.size):
                 by_damping += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    by_rotation = scratch.bearing_work[BEARING_POWER] * speed + scratch.position_power[0]
+    by_rotation = scratch.bearing_work[BEARING_POWER] * speed
     for k in range(laws.shape[0]):
         by_rotation -= laws[k, FORCE] * scratch.slip[k]
         by_damping += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
@@ -422,9 +422,12 @@ def newmark_steps(
                 curved, size = _curvature(dynamics.resolved, scratch.before, scratch.a, scratch.a_end)
                 curvature += curved
                 acceleration += size
+            if positioned:
+                for i in range(q.size):
+                    scratch.q_before[i] = q[i]
             _correct(q, v, dynamics, h, scratch)
             if positioned:
-                _evaluate_position_power(q, v, dynamics, matrices, slot, scratch)
+                totals[ROTATION_WORK] += _position_work(q, dynamics, matrices, slot, scratch)
             stored = _accumulate(
                 v, dynamics, contacts, turning, bearings, matrices, slot, t, h, evaluated, nominal_time, speed, totals,
                 contact_totals, scratch,
@@ -466,10 +469,10 @@ def _start_segment(
         a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
     blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
     add_gyroscopic(blocks, first, size, -middle_speed, v, a, work)
-    scratch.position_power[0] = 0.0
     if positioned:
-        add_gyroscopic(matrices.position[slot], first, size, -1.0, q, a, work)
-        _evaluate_position_power(q, v, dynamics, matrices, slot, scratch)
+        _evaluate_position_force(q, dynamics, matrices, slot, scratch)
+        for i in range(a.size):
+            a[i] += scratch.position_force[i]
     _connector_forces(matrices, slot, scratch.tq, scratch.tv, scratch)
     add_rows(dynamics.connectors, scratch.connector_force, -1.0, a)
     pushed = push
@@ -527,19 +530,27 @@ def _deflections(
 
 
 @inner()
-def _evaluate_position_power(
-    q: FloatArray, v: FloatArray, dynamics: Dynamics, matrices: StepMatrices, slot: int, scratch: Scratch
+def _evaluate_position_force(
+    q: FloatArray, dynamics: Dynamics, matrices: StepMatrices, slot: int, scratch: Scratch
 ) -> None:
-    """Power -vᵀ P q of the rotation: of centrifugal and circulatory forces, and of the drive on a tilted shaft [W]."""
-    first, size, work = dynamics.block_start, dynamics.block_size, scratch.block
-    power = 0.0
-    for g in range(first.size):
-        among = slice(first[g], first[g] + size[g])
-        apply_block(matrices.position[slot, g], q[among], -1.0, work)
-        rates = v[among]
-        for i in range(rates.size):
-            power += rates[i] * work[i]
-    scratch.position_power[0] = power
+    """Evaluate -P q: centrifugal and circulatory forces, and that of a drive on a tilted shaft that accelerates."""
+    force = scratch.position_force
+    for i in range(force.size):
+        force[i] = 0.0
+    first, size = dynamics.block_start, dynamics.block_size
+    add_gyroscopic(matrices.position[slot], first, size, -1.0, q, force, scratch.block)
+
+
+@inner()
+def _position_work(q: FloatArray, dynamics: Dynamics, matrices: StepMatrices, slot: int, scratch: Scratch) -> float:
+    """Work of the forces -P q in a step [J], in the mean of both ends: it is exact for their symmetric part."""
+    before, work = scratch.q_before, 0.0
+    for i in range(q.size):
+        work += (q[i] - before[i]) * scratch.position_force[i]
+    _evaluate_position_force(q, dynamics, matrices, slot, scratch)
+    for i in range(q.size):
+        work += (q[i] - before[i]) * scratch.position_force[i]
+    return 0.5 * work
 
 
 @inner(forceinline=True)

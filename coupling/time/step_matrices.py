@@ -97,7 +97,6 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         "bearing_work": (8, 5),
         "powers": (5,),
         "powers_before": (5,),
-        "position_power": (1,),
         "block": (arrays.dynamics.gyroscopic.shape[2],),
         "mixed": (turned, m),
         "mixed_across": (m if e else 0, turned),
@@ -107,7 +106,20 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
     shapes |= dict.fromkeys(("mix", "mix_rate", "sample_mix", "sample_mix_rate"), (e,))
     shapes |= dict.fromkeys(("along_q", "along_v", "carried"), (turned,))
     shapes |= dict.fromkeys(
-        ("a", "before", "a_end", "q_predicted", "v_predicted", "load", "unbalanced", "x", "y"), (n,)
+        (
+            "a",
+            "before",
+            "a_end",
+            "q_predicted",
+            "v_predicted",
+            "load",
+            "unbalanced",
+            "x",
+            "y",
+            "position_force",
+            "q_before",
+        ),
+        (n,),
     )
     shapes |= dict.fromkeys(
         ("tq", "tv", "ta", "tq_predicted", "tv_predicted", "ta_end", "connector_force", "response", "correction"), (r,)

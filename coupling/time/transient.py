@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 ENERGY_BOUND = 1e-2
-_ENERGY_ROUNDING = 1e-9  # part of the stored energy that is rounding in a balance
+_ENERGY_ROUNDING = 1e-8  # part of the stored energy of which rounding over many steps may be a hundredth
 
 
 def fingerprint(*parts: object) -> str:
