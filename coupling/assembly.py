@@ -463,7 +463,12 @@ def _bearing(
     elif bearing.pedestal is not None:
         relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
     elif frames.of(rotor.name) != 0.0 and alike_all_round(mounted):
-        stiffness = stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
+        resting, stiffness = stiffness, stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
+        if speed_range[0] != speed_range[1] and np.any(damping):
+            # The dashpot's part is proportional to the speed of the frame.
+            ends = np.array(speed_range)
+            over_speed = resting + ends[:, None, None] * (stiffness - resting)
+            table = SpeedTable(ends, over_speed, np.stack([damping, damping]))
     nonlinear = None
     if mounted.law is not None:
         moving = axes[np.any(relative[axes] != 0.0, axis=1)]
