@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 _FRESH_MODES = "Solve the housing's modes again, even if OUT holds them."
 _FRESH_RUN = "Start again, even if OUT holds the housing's modes or an interrupted transient."
 _FRESH_POINTS = "Solve again the points and modes that OUT holds."
+_FRESH_SAMPLES = "Solve again the gearboxes and modes that OUT holds."
 _OUT = "Results go to OUT (default: ./<case>-results)."
 
 
@@ -100,6 +101,15 @@ STUDY_COMMANDS = (
     StudyCommand("sound", "sound.sections", without=("acoustics",), fresh=_FRESH_MODES),
     StudyCommand(
         "sweep", "sweep.sections", always_writes=True, without=("folder", "fresh"), fresh=_FRESH_POINTS, timed=True
+    ),
+    StudyCommand(
+        "vary",
+        "variation.sections",
+        always_writes=True,
+        without=("folder", "fresh"),
+        names={"samples": "n"},
+        fresh=_FRESH_SAMPLES,
+        timed=True,
     ),
     StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
     StudyCommand("survey", "survey.sections", always_writes=True, fresh=_FRESH_MODES),
@@ -208,6 +218,7 @@ def _sections(place: str) -> Callable[["Document"], Any]:
 
 def _require_whole(document: Mapping[str, Any]) -> None:
     """Refuse to end well where points of a sweep failed; what is there is shown and written before."""
-    if failed := document.get("failed"):
+    # A varied case goes without the gearboxes that cannot be, and says so.
+    if "points" in document and (failed := document["failed"]):
         total = len(document["points"])
         raise PartlyFailedError(f"{failed} of {total} points failed; they are tried again on the next run")

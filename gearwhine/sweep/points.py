@@ -15,8 +15,8 @@ from gearwhine.output import file_stems
 from gearwhine.output.files import PRESENTATION, ROOMS, with_contents
 from gearwhine.solve.housing_modes import given_housing, housing_key
 
-# Tables that no transient depends on.
-_WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
+WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "provenance"})
+"""Tables that no transient depends on."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 
 
@@ -119,7 +119,7 @@ def axis_name(key: str) -> str:
 
 
 def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str) -> Point:
-    document = {name: table for name, table in case_document(case).items() if name not in _WITHOUT_EFFECT}
+    document = {name: table for name, table in case_document(case).items() if name not in WITHOUT_EFFECT}
     key = content_key(
         {
             "case": with_contents(document, case.input_files.contents),
