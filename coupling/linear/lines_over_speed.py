@@ -50,9 +50,22 @@ class LinesOverSpeed:
 
     @property
     def levels(self) -> FloatArray:
-        """Level of all lines together at each sensor and speed, of the rms value [dB re 1 µm/s²], shape (o, s)."""
-        mean_square = 0.5 * np.nansum(self.amplitudes**2, axis=2)
-        return np.asarray(20.0 * np.log10(np.maximum(np.sqrt(mean_square), _SILENCE) / ACCELERATION_REFERENCE))
+        """Level of all lines together at each sensor and speed, of their rms value [dB re 1 µm/s²], shape (o, s)."""
+        return _level(self.amplitudes)
+
+
+def _level(amplitudes: FloatArray) -> FloatArray:
+    """Level of lines together, along the last axis, of their rms value [dB]."""
+    rms = np.sqrt(0.5 * np.nansum(amplitudes**2, axis=-1))
+    return np.asarray(20.0 * np.log10(np.maximum(rms, _SILENCE) / ACCELERATION_REFERENCE))
+
+
+def sensor_levels(machine: CoupledMachine, limit: float) -> FloatArray:
+    """Level at each sensor of all mesh harmonics, and their sidebands, up to a limit [rad/s] [dB re 1 µm/s²], (o,)."""
+    lines = MeshHarmonicModel(machine).responses(limit)
+    moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
+    rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
+    return _level(np.abs(rows @ moved.T))
 
 
 def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: float) -> LinesOverSpeed:

@@ -168,7 +168,7 @@ def _wanted(case: Case, variation: Variation) -> Wanted:
 
 
 def _require_distributions(varied: VariedCase, variation: Variation) -> None:
-    """Refuse a key whose median is none that the case takes; beyond it, each gearbox is refused by itself.
+    """Refuse a key that does not take its median; what the parts make together is refused with its gearbox.
 
     Raises
     ------
@@ -177,10 +177,11 @@ def _require_distributions(varied: VariedCase, variation: Variation) -> None:
     problems = dict[Problem, None]()
     for one in varied.inputs:
         try:
-            varied.source.changed(list(one.overrides(0.5)))
+            varied.source.changed(texts := list(one.overrides(0.5)))
         except CaseError as error:
-            place = f"variation.vary, {one.name}"
-            problems |= dict.fromkeys(replace(problem, source=place) for problem in error.problems)
+            sources = [f"--set {text}" for text in texts]
+            own = [problem for problem in error.problems if problem.source in sources]
+            problems |= dict.fromkeys(replace(problem, source=f"variation.vary, {one.name}") for problem in own)
     if problems:
         raise CaseError(problems)
 

@@ -163,12 +163,14 @@ def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
         if get_origin(kind) is Sequence:
             (item,) = get_args(kind)
             kind = list[item]  # type: ignore[valid-type]
-        name = f"--{entry.names.get(parameter.name, parameter.name).replace('_', '-')}"
+        name = entry.names.get(parameter.name, parameter.name).replace("_", "-")
+        # A name of one letter stands beside the parameter's own.
+        names = [f"--{name}"] if len(name) > 1 else [f"--{parameter.name.replace('_', '-')}", f"-{name}"]
         limits = [validators.Number(gte=rule.at_least, lte=rule.at_most) for rule in rules]
         # A flag that is off by default needs no option that puts it off.
         negative = None if parameter.default is True else ()
         text = texts[parameter.name]
-        marker = Parameter(name=[name], negative=negative, validator=limits, consume_multiple=False, help=text)
+        marker = Parameter(name=names, negative=negative, validator=limits, consume_multiple=False, help=text)
         default = [] if parameter.default == () else parameter.default
         yield parameter.replace(
             kind=inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, marker]

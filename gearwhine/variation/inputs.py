@@ -305,16 +305,17 @@ def _places(document: Mapping[str, Any], key: str) -> list[Location]:
     places = list[Location]()
     for entry in matching_places(document, steps[:after]):
         inside = look_up(document, entry)
-        found = list(matching_places(inside, steps[after:])) or _new_places(inside, steps[after:])
+        # A table that the case does not have at all is no place: its name may be wrong.
+        found = list(matching_places(inside, steps[after:])) or _new_places(inside, steps[after:], least=not entry)
         places += [(*entry, *place) for place in found]
     if not places:
         raise _CannotVaryError("a key path that leads to something in the case")
     return places
 
 
-def _new_places(inside: object, steps: Sequence[str]) -> list[Location]:
-    """Return the place of a key that nothing has yet, such as an error of a gear without any."""
-    for length in range(len(steps) - 1, -1, -1):
+def _new_places(inside: object, steps: Sequence[str], least: int) -> list[Location]:
+    """Return the place of a key that nothing has yet, such as an error of a gear, below at least some of its steps."""
+    for length in range(len(steps) - 1, least - 1, -1):
         for found in matching_places(inside, steps[:length]):
             return [(*found, *steps[length:])] if isinstance(look_up(inside, found), Mapping) else []
     return []

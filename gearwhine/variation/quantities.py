@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,7 +16,7 @@ from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transie
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.transmission_error import transmission_error_phasors
-from gearwhine.coupling.linear.lines_over_speed import lines_over_speed
+from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_levels
 from gearwhine.coupling.load_analysis.load_warnings import find_load
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
@@ -160,17 +160,25 @@ def _of_rotors(gearbox: _Gearbox) -> Named:
 
 
 def _of_lines(gearbox: _Gearbox) -> Named:
-    coupled = gearbox.loaded.coupled
-    housing = gearbox.machine.housing_component
+    machine, coupled = gearbox.machine, gearbox.loaded.coupled
+    housing = machine.housing_component
     limit = None if housing is None else housing.complete_below
     if limit is None:
         raise CouplingError("lines: expected a housing whose modes are complete up to a known frequency")
-    lines = lines_over_speed(coupled, gearbox.wanted.speeds or (coupled.speed,), limit)
-    for sensor, levels in zip(lines.sensors, lines.levels, strict=True):
+    speeds = gearbox.wanted.speeds or (coupled.speed,)
+    tables = any(one.bearing.speeds is not None for one in machine.bearings)
+    if coupled.system.turns or tables:
+        # Sidebands and tables over speed have a machine of their own at each speed.
+        point = None if gearbox.load is None else gearbox.load.point
+        at = [load_machine(replace(machine, speed=speed), point).coupled for speed in speeds]
+        over_speed = np.array([sensor_levels(one, limit) for one in at]).T
+    else:
+        over_speed = lines_over_speed(coupled, speeds, limit).levels
+    for sensor, levels in zip(coupled.sensor_rows, over_speed, strict=True):
         place = int(np.argmax(levels))
         yield f"sensor.{sensor}.level_db", float(levels[place])
         if len(levels) > 1:
-            yield f"sensor.{sensor}.loudest_speed_rpm", _RPM * abs(float(lines.speeds[place]))
+            yield f"sensor.{sensor}.loudest_speed_rpm", _RPM * abs(float(speeds[place]))
         yield f"sensor.{sensor}.level_db", levels
 
 
