@@ -208,7 +208,7 @@ class CaseStudy(Study):
         """
         study = CaseStudy(self._source.changed(_texts(changes)), self.progress, folder=self.folder, fresh=self.fresh)
         if self.case.housing is not None and study.case.housing is not None:
-            from gearwhine.solve.housing_modes import given_housing, housing_key
+            from gearwhine.from_case.given_housing import given_housing, housing_key
 
             given, changed = given_housing(self.case), given_housing(study.case)
             # The pictures of a housing stand upright by what is up, which no machine takes.

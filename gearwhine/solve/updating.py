@@ -586,7 +586,7 @@ def _raced(
     progress("solving the housing as it stands")
     each_has = threads if count == 1 else 1
     fine, coarse = replace(fine, threads=each_has), replace(coarse, threads=each_has)
-    same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
+    same = coarse.housing_at(coarse.start) == fine.housing_at(fine.start)
     with _sharing(threads, count) as each:
         tasks = [(fine, True)] if same else [(fine, False), (coarse, True)]
         solved: list[HousingAtParameters] = list(each(_as_it_stands, tasks))

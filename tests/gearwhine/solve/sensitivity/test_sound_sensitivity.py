@@ -11,6 +11,7 @@ from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.case.model import housing_table
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
@@ -21,6 +22,7 @@ from gearwhine.coupling.sound import solution
 from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
+from gearwhine.from_case.given_housing import given_housing
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
@@ -147,7 +149,7 @@ def way() -> tuple[float, FloatArray, list[Beside]]:
     case = sounding(CHAINS["erp"][0])
     mesh = mesh_of(case)
     fitted = fitted_case(case, parameters=PARAMETERS)
-    meshed = MeshedParameters(fitted, fitted.start, case, mesh)
+    meshed = MeshedParameters(fitted, fitted.start, given_housing(case), mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
     # So short that the curvature adds a part of 1e-6; modes to 1e-10 and better leave as much.
@@ -155,7 +157,7 @@ def way() -> tuple[float, FloatArray, list[Beside]]:
     cases = [Beside(case, solve_at_rest(case, mesh))]
     for size in (step, -step):
         there = fitted.at((values + size * way).tolist())
-        geometry = geometry_of(there)
+        geometry = geometry_of(housing_table(there, "update"))
         assert geometry is not None
         cases.append(Beside(there, solve_at_rest(there, meshed.morph.moved(geometry))))
     return step, way, cases
