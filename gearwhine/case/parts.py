@@ -335,6 +335,19 @@ class Parts:
         return pair.misalignment == "found"
 
     @property
+    def is_loaded(self) -> bool:
+        """Whether torque, force, weight or preload loads the machine, so that it has an operating point."""
+        operation = self.operation
+        if operation is None or not self.rotor or not self.bearing:
+            return False
+        rolling = [
+            bearing.stiffness.rolling for bearing in self.bearing if isinstance(bearing.stiffness, RollingStiffness)
+        ]
+        preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
+        preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
+        return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
+
+    @property
     def needs_operating_point(self) -> bool:
         """Whether there is no machine without its operating point: bearings or flanks are left to it explicitly.
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case import CaseError, Housing, Problem
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.measured import Measured
 from gearwhine.case.measured import Pairing as PairingTable
@@ -113,7 +113,7 @@ def refused_by_key() -> Iterator[None]:
         raise CaseError(problems) from error
 
 
-def require_comparable(case: Case) -> None:
+def require_comparable(measured: Measured | None, housing: Housing | None) -> None:
     """Refuse a housing whose modes will not be known as far as the measured ones are paired, before it is solved.
 
     Raises
@@ -121,7 +121,6 @@ def require_comparable(case: Case) -> None:
     CaseError
         Where `frequency_limit` or `modes` are too low; nothing where the measured modes are not known yet.
     """
-    measured, housing = case.measured, case.housing
     if measured is None or housing is None or (highest := _highest_measured_hz(measured)) is None:
         return
     count, expected = highest
