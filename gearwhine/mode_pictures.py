@@ -298,8 +298,7 @@ def draw_sensitivity(
     from gearwhine.figures.style import shortened
     from gearwhine.housing.pictures.drawn_shapes import DrawnShape, drawn_housing
 
-    assert solved.sensitivity is not None
-    if solved.sensitivity.density is None or solved.point.housing is None:
+    if solved.sensitivity is None or solved.sensitivity.density is None or solved.point.housing is None:
         return []
     surface = drawn_housing(housing.mesh, housing.up)
     motion = housing.modes.displacement(solved.point.housing, surface.nodes)

@@ -49,7 +49,7 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
-from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
+from gearwhine.housing.correlation.comparison import Comparison, ModePair, ShapeCorrelation
 from gearwhine.housing.measured import MeasuredGeometry
 from gearwhine.results.comparison import coordinate_names
 
@@ -104,7 +104,7 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
     plane.plot(ends, ends, color=GREY, lw=0.7, zorder=2, label="_equal")
     handles: list[Artist] = [Patch(color=PALE, label="±5 %")]
     if comparison.shapes is not None:
-        _draw_macs(plane, comparison, highest)
+        _draw_macs(plane, comparison.shapes, comparison.pairs, highest)
         handles.append(_dot("other MACs, by area", GREY, filled=False))
     sizes = [_AREA_OF_MAC_ONE * (1.0 if pair.mac is None else pair.mac) for pair in comparison.pairs]
     at = np.array([[pair.measured, pair.model] for pair in comparison.pairs]).reshape(-1, 2).T / HERTZ
@@ -142,11 +142,9 @@ def _note(comparison: Comparison) -> str:
     return f"paired by {comparison.rule}: largest error {largest:.2f} %, rms {rms:.2f} %"
 
 
-def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
-    shapes = comparison.shapes
-    assert shapes is not None
+def _draw_macs(axes: Axes, shapes: ShapeCorrelation, pairs: Iterable[ModePair], highest: float) -> None:
     values = shapes.mac.copy()
-    for pair in comparison.pairs:
+    for pair in pairs:
         values[pair.mode - 1, pair.measured_mode - 1] = 0.0
     i, j = np.nonzero((values >= _LEAST_DRAWN_MAC) & (shapes.model_frequencies[:, None] <= HERTZ * highest))
     axes.scatter(
@@ -347,10 +345,11 @@ def draw_comparison_figures(
     matplotlib.figure.Figure
     """
     yield "comparison", draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
-    if comparison.shapes is not None:
-        yield from _draw_matrices(title, comparison, comparison.shapes)
-        if comparison.shapes.comac is not None:
-            yield "comac", _draw_coordinates(title, comparison.shapes, geometry)
+    if (shapes := comparison.shapes) is not None:
+        yield from _draw_matrices(title, comparison, shapes)
+        if shapes.comac is not None and shapes.enhanced_comac is not None:
+            heading, names = f"Where shapes differ: {title}", coordinate_names(len(shapes.comac), geometry)
+            yield "comac", draw_coordinate_criteria(heading, shapes.comac, shapes.enhanced_comac, names)
 
 
 def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation) -> Iterator[tuple[str, Figure]]:
@@ -391,13 +390,6 @@ def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation)
             note=note,
         )
         yield "cross-orthogonality", figure
-
-
-def _draw_coordinates(title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> Figure:
-    assert shapes.comac is not None
-    assert shapes.enhanced_comac is not None
-    names = coordinate_names(len(shapes.comac), geometry)
-    return draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
 
 
 def _mode_names(modes: Iterable[int], hertz: FloatArray) -> list[str]:

@@ -151,8 +151,7 @@ def fitted_case(
         whose keys have different numbers and no factor.
     """
     if parameters is None:
-        assert case.update is not None
-        parameters = case.update.parameter
+        parameters = () if case.update is None else case.update.parameter
     document = case_document(case)
     box = document.get("housing", {}).get("box")
     if box is not None:

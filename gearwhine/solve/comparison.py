@@ -35,16 +35,17 @@ def read_measured(measured: Measured, progress: Progress = silent) -> MeasuredMo
     CaseError
         Where the responses hold no modes that are stable.
     """
-    if measured.survey is None:
-        assert measured.frequencies is not None
+    if measured.frequencies is not None:
         ratios = None if measured.damping_ratios is None else np.array(measured.damping_ratios)
         return MeasuredModes(_TWO_PI * np.array(measured.frequencies), ratios)
-    if measured.survey.modes is not None:
-        return measured.survey.modes
-    assert measured.survey.responses is not None
+    survey = measured.survey
+    if survey is not None and survey.modes is not None:
+        return survey.modes
+    responses = None if survey is None else survey.responses
+    assert responses is not None  # checked with the case
     progress("finding modes in the measured responses")
     try:
-        return identify_modes(measured.survey.responses).modes
+        return identify_modes(responses).modes
     except HousingError as error:
         raise CaseError([Problem("measured.file", UNSAID, f"responses with modes in them; {error}")]) from error
 
