@@ -11,6 +11,7 @@ from gearwhine.case import CaseError, Problem
 from gearwhine.case.errors import UNSAID
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.housing import HousingModes
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import file_stems
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.operating_shapes import RunLine
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6

@@ -12,7 +12,6 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.case.bearings import (
     Bearing,
@@ -40,14 +39,13 @@ from gearwhine.coupling.gears.geometry.pair import signed_distance
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair as BuiltPair
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
 from gearwhine.coupling.machine.loads import Torque
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding as PartFinding
 from gearwhine.rotors import Bearing as RotorBearing
 from gearwhine.rotors import EquilibriumError, Segment
 from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.rotors import rolling_bearings as rolling
 from gearwhine.rotors.analyses.solved_rotor import table_range
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 

@@ -51,16 +51,14 @@ from gearwhine.figures.style import (
 )
 from gearwhine.housing.correlation.comparison import Comparison, ModePair, ShapeCorrelation
 from gearwhine.housing.measured import MeasuredGeometry
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.results.comparison import coordinate_names
-
-FloatArray = npt.NDArray[np.float64]
 
 _BAND = 0.05  # error within which the source's model is (TM-104434, Table II)
 _PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the gap between them [mm of paper]
 _AREA_OF_MAC_ONE = 60.0  # area of the circle of MAC 1 [points²]
 _LEAST_DRAWN_MAC = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
-IntArray = npt.NDArray[np.int64]
 
 _COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
 _LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # widths of row names, gap, colour bar and its numbers [mm]

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.case import Case, CaseError, Housing, Problem, UpdateParameter, case_document, parse_case
@@ -38,11 +37,11 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from gearwhine.meshes.box.morph import MorphError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
 _SAME_NUMBER_DIFFERENCE = 1e-9  # relative difference of numbers written in different units
-FloatArray = npt.NDArray[np.float64]
 
 RATE_STEP = 1e-4
 """Step in z of the central differences by a parameter."""

@@ -24,7 +24,6 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import tomli_w
 from scipy import sparse
 
@@ -72,13 +71,12 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.solve.comparison import modal_test_of, refused_by_key
 
 _TWO_PI = 2.0 * np.pi
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _EXPLAINED_DEVIATIONS = 2.0  # standard deviations of a frequency that its noise explains
 _MARGIN = 1.0 / 3.0  # least gap of the two other measures, as a part of that of the measure that decides

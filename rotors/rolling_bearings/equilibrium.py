@@ -29,6 +29,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors.errors import EquilibriumError, require, require_count, require_finite
 from gearwhine.rotors.model.bearing import Bearing
@@ -40,8 +41,6 @@ from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
 from gearwhine.rotors.rolling_bearings.roller_slices import RollerSlices
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing
 from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow
-
-FloatArray = npt.NDArray[np.float64]
 
 COORDINATES = ("x", "y", "z", "rx", "ry")
 """The inner ring's displacement against the outer: along x, y, z, and rotations about x and y."""

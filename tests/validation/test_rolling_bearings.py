@@ -30,9 +30,9 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
@@ -52,7 +52,6 @@ from gearwhine.rotors.rolling_bearings import (
 )
 from gearwhine.rotors.rolling_bearings.life import reference_revolutions
 
-FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]
 
 ISO_BALLS = "ISO 16281 ball bearing, MASTA documentation"

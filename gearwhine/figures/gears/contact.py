@@ -29,8 +29,7 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SHARE, _PRESSURE, _SLIDING, _BETWEEN, _LETTERS = 40.0, 40.0, 36.0, 4.0, 5.0  # [mm of paper]
 _NAMES = "ABCDE"

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -38,12 +37,11 @@ from gearwhine.figures.style import (
     shortened,
 )
 from gearwhine.housing.acoustics.sound_levels import a_weighting, pressure_level
+from gearwhine.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
     from gearwhine.housing.acoustics.boundary_elements import SoundField
-
-FloatArray = npt.NDArray[np.float64]
 
 _POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound power, and gap between them [mm]
 _ABOVE = 2.0  # height above the panel for the leaders of the names [mm]

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from gearwhine.case import Case, RollingStiffness, Segment
@@ -26,13 +25,12 @@ from gearwhine.figures.rotors.responses import (
 )
 from gearwhine.figures.rotors.shaft import draw_shaft
 from gearwhine.figures.style import shortened
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
 from gearwhine.rotors import Bearing, Rotor
 from gearwhine.rotors import Segment as RotorSegment
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-
-FloatArray = npt.NDArray[np.float64]
 
 _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
 _MODES = 6  # modes drawn of each kind

@@ -6,7 +6,6 @@ Reference is the housing solved anew beside the design, its modes followed by fr
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.case import Case, case_document, load_case, parse_case
@@ -14,9 +13,8 @@ from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import HousingAtParameters, ParametricHousing, fitted_case
 from gearwhine.housing import HousingError, assemble, solve_modes
 from gearwhine.housing.updating import ModeCount, Target, measure
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solve.updating import update_housing
-
-FloatArray = npt.NDArray[np.float64]
 
 HERTZ, NOISE, MODES, RIGID = 2.0 * np.pi, 0.005, 20, 6
 WALLS = {"top": "9 mm", "left": "10 mm", "right": "11 mm", "bottom": "13 mm", "back": "12 mm", "front": "10.5 mm"}

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import materials_on, mesh_of
 from kept_mesh_stiffness import without_stiffness
@@ -39,13 +38,12 @@ from gearwhine.housing.material import element_constants
 from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import case_changes, housing_changes
-
-FloatArray = npt.NDArray[np.float64]
 
 LIMIT = 2.0 * np.pi * 5500.0
 PARAMETERS = [

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import mesh_of
 
@@ -30,8 +29,6 @@ from gearwhine.solve.sensitivity.housing_changes import (
     case_changes,
     housing_parameters,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 KEYS = ("misalignment_rad", "k_h_beta", "transmission_error_peak_to_peak_m")
 PARAMETERS = [

@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import mesh_of
 from kept_mesh_stiffness import without_stiffness
@@ -31,6 +30,7 @@ from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import shape_functions
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.sections import Table
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
@@ -38,8 +38,6 @@ from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import case_changes
-
-FloatArray = npt.NDArray[np.float64]
 
 PARAMETERS = [
     UpdateParameter(name="front wall", keys=("housing.box.wall.front",), range=("5 mm", "20 mm")),
