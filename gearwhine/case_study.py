@@ -209,7 +209,7 @@ class CaseStudy(Study):
         """
         study = CaseStudy(self._source.changed(_texts(changes)), self.progress, folder=self.folder, fresh=self.fresh)
         if self.case.housing is not None and study.case.housing is not None:
-            from gearwhine.solve.housing_modes import given_housing, housing_key
+            from gearwhine.from_case.given_housing import given_housing, housing_key
 
             given, changed = given_housing(self.case), given_housing(study.case)
             # The pictures of a housing stand upright by what is up, which no machine takes.
@@ -227,7 +227,7 @@ class CaseStudy(Study):
         """The housing of reduced matrices; None in a case without one."""
         from gearwhine.from_case.reduced_housing import reduced_component
 
-        return reduced_component(self.case)
+        return reduced_component(self.case.reduced_housing, self.case.input_files)
 
     @property
     def machine(self) -> "Machine":
@@ -255,7 +255,7 @@ class CaseStudy(Study):
         acoustics, in_run = None, None
         if case.acoustics is not None:
             acoustics, in_run = acoustics_of(case), case.acoustics.in_run
-        return Settings(case.title, plan, tracking_of(case), speeds, acoustics, in_run)
+        return Settings(case.title, plan, tracking_of(case.transient), speeds, acoustics, in_run)
 
     def check(self) -> "Result[CheckedCase]":
         """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing.
@@ -318,14 +318,13 @@ class CaseStudy(Study):
             Where the case has nothing measured, or its modes are not known as high as the measured ones.
         """
         from gearwhine.analyses.housing import compare_result
-        from gearwhine.case import require
+        from gearwhine.case.model import measured_table
         from gearwhine.solve.comparison import compare_measured, require_comparable
 
-        require(self.case, "housing", "measured", command="compare")
-        assert self.case.measured is not None
-        require_comparable(self.case)
+        measured = measured_table(self.case, "compare")
+        require_comparable(measured, self.case.housing)
         housing = self._required_housing("compare")
-        compared = compare_measured(self.case.measured, housing, self.progress, with_responses=True)
+        compared = compare_measured(measured, housing, self.progress, with_responses=True)
         return compare_result(housing, compared, self.origin)
 
     def survey(
@@ -411,16 +410,18 @@ class CaseStudy(Study):
         """
         from gearwhine.analyses import housing
         from gearwhine.case import CaseError, Problem
-        from gearwhine.mode_pictures import check_request
+        from gearwhine.case.model import measured_table
+        from gearwhine.mode_pictures import check_request, require_survey
         from gearwhine.solve.comparison import require_comparable
 
         if line and self.folder is None:
             expected = "the results folder of a run, such as `gearwhine.load(case, folder=...)`"
             raise CaseError([Problem("render: line", list(line), expected)])
         modes = modes or (None if line or measured else "dominant")
-        check_request(self.case, modes, mode_format, line, measured=measured)
         if measured:
-            require_comparable(self.case)
+            require_survey(measured_table(self.case, "render --measured"))
+            require_comparable(self.case.measured, self.case.housing)
+        check_request(modes, mode_format, line)
         return housing.render(
             self.case,
             self._required_housing("render"),
@@ -525,7 +526,7 @@ class CaseStudy(Study):
         case = self.case
         if case.housing is None or not case.rotor or case.operation is None:
             return None
-        if aims_at_sensor(case):
+        if aims_at_sensor(case.gear_pair):
             return self.housing
         takes_part = case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair)
         with self._kept.lock:
@@ -614,7 +615,7 @@ class CaseStudy(Study):
 
         keys = swept_keys(self.case, over)
         return solve_sweep(
-            self.case,
+            self.origin,
             self._source,
             keys,
             Path(folder),
@@ -742,7 +743,7 @@ class CaseStudy(Study):
         refuse_ending(Path(file))
         housing = self._required_housing("export --reduced")
         component = component_of_housing(housing, participates=False, with_coarser=False)
-        return export_reduced(self.case, component, Path(file))
+        return export_reduced(self.case.title, component, Path(file))
 
     # What the analyses of a machine ask of its study, as the case has it.
 
@@ -771,7 +772,6 @@ class CaseStudy(Study):
     def require(self, command: str) -> None:
         """Refuse a command that the case does not allow, before anything is solved."""
         from gearwhine.case import CaseError, Problem, require
-        from gearwhine.from_case.machine import require_machine
         from gearwhine.solve.comparison import require_comparable
 
         require(self.case, *_NEEDS.get(command, ()), command=command)
@@ -779,14 +779,14 @@ class CaseStudy(Study):
         if command == "run":
             if self.case.transient is not None:
                 require(self.case, "rotor", "operation", command="run")
-            require_comparable(self.case)
-        if command == "load" and not self.case.is_loaded:
+            require_comparable(self.case.measured, self.case.housing)
+        if command == "load" and not self.case.parts.is_loaded:
             expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
             raise CaseError([Problem("operation.torque", 0.0, expected)])
         if command == "steady" and operation is not None and operation.speed == 0.0:
             raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
         if command not in ("rotors", "gears"):
-            require_machine(self.case)
+            _ = self.case.parts.machine  # parts that do not make a machine are refused
 
     def solved_rotors(self, **settings: Any) -> "tuple[SolvedRotor, ...]":
         """Solve each rotor with the settings of `[rotor_analysis]`; none in a case without rotors."""
@@ -805,7 +805,7 @@ class CaseStudy(Study):
         from gearwhine.solve.acoustics import check_before_modes
         from gearwhine.solve.housing_modes import solve_housing
 
-        refuse = check_before_modes(self.case) if with_sound else None
+        refuse = check_before_modes(self.case.acoustics, self.case.housing) if with_sound else None
         with self._kept.lock:
             if self._kept.solved is None:
                 place = folder or self.folder
@@ -827,7 +827,7 @@ class CaseStudy(Study):
         """Find the operating point; where the case does not need one that is not found, a warning gives the reason."""
         from gearwhine.solve.machine import load_of_case
 
-        return load_of_case(self.case, self.machine, self.progress)
+        return load_of_case(self.case.parts, self.machine, self.progress)
 
     @property
     def aligned_by_default(self) -> "Sequence[str]":
@@ -861,7 +861,7 @@ class CaseStudy(Study):
                     housing,
                     changes,
                     acoustics=None if self.case.acoustics is None else acoustics,
-                    run=run_of(self.case),
+                    run=run_of(self.case.transient),
                     line=line,
                     note=note,
                     progress=self.progress,

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -29,18 +29,18 @@ _CAPTIONS = ("name", "title", "note", "quantity", "largest")
 
 
 @contextmanager
-def one_process() -> Iterator[None]:
+def one_process() -> Iterator["_DrawingProcess"]:
     """Draw all shapes of this block in one process, which takes longer to start than to draw a dozen shapes.
 
     It starts with the first, and ends with the block, whatever ends that.
     """
-    if _kept.get() is not None:
-        yield
+    if (kept := _kept.get()) is not None:
+        yield kept
         return
     with _DrawingProcess() as process:
         token = _kept.set(process)
         try:
-            yield
+            yield process
         finally:
             _kept.reset(token)
 
@@ -77,14 +77,12 @@ def draw_in_process(
         "sheet": sheet,
         "shapes": [{key: getattr(shape, key) for key in _CAPTIONS} for shape in shapes],
     }
-    with one_process(), tempfile.TemporaryDirectory() as task_folder:
+    with one_process() as process, tempfile.TemporaryDirectory() as task_folder:
         arrays: dict[str, Any] = {f"motion_{i}": shape.motion for i, shape in enumerate(shapes)}
         arrays |= {f"values_{i}": shape.values for i, shape in enumerate(shapes) if shape.values is not None}
         arrays |= {"rest": housing.rest, "triangles": housing.triangles, "up": housing.up}
         np.savez(Path(task_folder) / "arrays.npz", **arrays)
         (Path(task_folder) / "task.json").write_text(json.dumps(task), encoding="utf-8")
-        process = _kept.get()
-        assert process is not None
         answer = process.answer(task_folder, progress)
         if "reason" in answer:  # without a name of a file: the caller knows the folder, not the process's own ones
             raise OSError(answer["reason"], answer["message"])
@@ -98,8 +96,7 @@ class _DrawingProcess:
     """A process that starts when it is first asked, and is replaced where it has died; a context manager."""
 
     def __init__(self) -> None:
-        self._process: subprocess.Popen[str] | None = None
-        self._troubles: IO[str] | None = None
+        self._running: _Running | None = None
 
     def __enter__(self) -> Self:
         """Return the process itself, which need not run yet."""
@@ -117,49 +114,54 @@ class _DrawingProcess:
         RendererUnavailableError
             Where the process dies of it.
         """
-        if self._process is None:
-            self._start()
-        process, troubles = self._process, self._troubles
-        assert process is not None
-        assert troubles is not None
-        assert process.stdin is not None
-        assert process.stdout is not None
+        if self._running is None:
+            self._running = _start()
+        running = self._running
         with suppress(BrokenPipeError):  # of one that has died: it has no answer, and its last words are told
-            process.stdin.write(json.dumps(folder) + "\n")
-            process.stdin.flush()
-        reply = _follow(process.stdout, progress)
+            running.tasks.write(json.dumps(folder) + "\n")
+            running.tasks.flush()
+        reply = _follow(running.answers, progress)
         if not reply:
-            code = process.wait()
-            troubles.seek(0)
-            errors = troubles.read()
+            code = running.process.wait()
+            running.troubles.seek(0)
+            errors = running.troubles.read()
             self._end()
             raise RendererUnavailableError(_how_it_died(code, errors))
         return reply
 
-    def _start(self) -> None:
-        self._troubles = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115 - closed by _end
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "gearwhine.drawing_process"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._troubles,
-            text=True,
-            env=_environment(),
-        )
-
     def _end(self) -> None:
-        process, troubles = self._process, self._troubles
-        self._process = self._troubles = None
-        if process is not None:
+        running, self._running = self._running, None
+        if running is not None:
             # The process is killed: closing its window takes longer than drawing a shape.
-            process.kill()
-            process.wait()
-            for pipe in (process.stdin, process.stdout):
-                if pipe is not None:
-                    with suppress(BrokenPipeError):
-                        pipe.close()
-        if troubles is not None:
-            troubles.close()
+            running.process.kill()
+            running.process.wait()
+            for pipe in (running.tasks, running.answers, running.troubles):
+                with suppress(BrokenPipeError):
+                    pipe.close()
+
+
+class _Running(NamedTuple):
+    """A process that runs, with its pipes: names of folders go in, answers come out, troubles are kept in a file."""
+
+    process: subprocess.Popen[str]
+    tasks: IO[str]
+    answers: IO[str]
+    troubles: IO[str]
+
+
+def _start() -> _Running:
+    troubles = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115 - closed with the process
+    process = subprocess.Popen(
+        [sys.executable, "-m", "gearwhine.drawing_process"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=troubles,
+        text=True,
+        env=_environment(),
+    )
+    assert process.stdin is not None  # pipes, as asked for
+    assert process.stdout is not None
+    return _Running(process, process.stdin, process.stdout, troubles)
 
 
 _kept: ContextVar[_DrawingProcess | None] = ContextVar("_kept", default=None)

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case import CaseError, Problem
 from gearwhine.case.errors import UNSAID
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.housing import HousingModes
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import file_stems
@@ -19,6 +20,7 @@ from gearwhine.output.report import MovingShape
 from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
+    from gearwhine.case.measured import Measured
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound.solution import SolvedSound
@@ -28,8 +30,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.operating_shapes import RunLine
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
@@ -46,15 +46,13 @@ _BYTES, _BYTES_OF_TRIANGLE = 4e6, 20.0  # size of all their models, and of a tri
 _TRIANGLES = 1500, 10000  # least and largest number of triangles of a model
 
 
-def check_request(
-    case: Case, which: str | None, mode_format: ModeFormat, lines: Sequence[float], *, measured: bool
-) -> None:
+def check_request(which: str | None, mode_format: ModeFormat, lines: Sequence[float]) -> None:
     """Refuse requests that cannot be drawn, before anything is solved.
 
     Raises
     ------
     CaseError
-        For numbers of modes that are none, lines as models or below zero, or measured shapes without a survey.
+        For numbers of modes that are none, and lines as models or below zero.
     gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
         Where no renderer or encoder is available.
     """
@@ -67,14 +65,6 @@ def check_request(
     for line in lines:
         if not 0.0 < line < np.inf:
             raise CaseError([Problem("--line", line, "a frequency above zero [Hz]")])
-    if measured:
-        require(case, "housing", "measured", command="render --measured")
-        assert case.measured is not None
-        survey = case.measured.survey
-        if survey is None or survey.geometry is None:
-            raise CaseError(
-                [Problem("measured.file", UNSAID, "a survey with points and shapes, for render --measured")]
-            )
     if mode_format != "glb" and (which is not None or lines):
         from gearwhine.housing.pictures.scene import find_renderer
 
@@ -83,6 +73,18 @@ def check_request(
         from gearwhine.housing.pictures.images import find_encoder
 
         find_encoder()
+
+
+def require_survey(measured: "Measured") -> None:
+    """Refuse measured shapes without a survey.
+
+    Raises
+    ------
+    CaseError
+        Where the measured modes have no points.
+    """
+    if measured.survey is None or measured.survey.geometry is None:
+        raise CaseError([Problem("measured.file", UNSAID, "a survey with points and shapes, for render --measured")])
 
 
 def draw_modes(
@@ -295,8 +297,7 @@ def draw_sensitivity(
     from gearwhine.figures.style import shortened
     from gearwhine.housing.pictures.drawn_shapes import DrawnShape, drawn_housing
 
-    assert solved.sensitivity is not None
-    if solved.sensitivity.density is None or solved.point.housing is None:
+    if solved.sensitivity is None or solved.sensitivity.density is None or solved.point.housing is None:
         return []
     surface = drawn_housing(housing.mesh, housing.up)
     motion = housing.modes.displacement(solved.point.housing, surface.nodes)

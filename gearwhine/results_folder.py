@@ -240,12 +240,13 @@ def case_in(folder: Path) -> Case:
     return case
 
 
-def export_reduced(case: Case, housing: HousingComponent, target: Path) -> dict[str, Any]:
+def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[str, Any]:
     """Write the housing of a case as reduced matrices, and the tables by which another case takes them.
 
     Parameters
     ----------
-    case : Case
+    title : str
+        Title of the case, which a refusal names.
     housing : HousingComponent
         The solved housing of the case.
     target : path
@@ -272,7 +273,7 @@ def export_reduced(case: Case, housing: HousingComponent, target: Path) -> dict[
         named = target.suffix.lower() in (".npz", ".pch")
         reduced = interface_matrices(housing, with_sensors=named)
     except CouplingError as error:
-        raise CaseError([Problem("export --reduced", case.title or str(target), str(error))]) from error
+        raise CaseError([Problem("export --reduced", title or str(target), str(error))]) from error
     with staging(target.parent, listed=False) as place:  # the files are the user's
         files = write_matrices(place / target.name, reduced.matrices)
         tables = place / f"{target.stem}.toml"

@@ -72,6 +72,7 @@ from gearwhine.meshes import (
     with_bore,
 )
 from gearwhine.meshes.box.surface_points import point_off_box
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -85,8 +86,6 @@ from gearwhine.numerics.findings import (
 )
 from gearwhine.numerics.own_copies import keep_tuples
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
 
 DAMPING_RATIO = 0.01
 """Modal damping ratio of a housing without one of its own: between that of welded or bolted steel (EN 1991-1-4,

@@ -13,10 +13,9 @@ import numpy.typing as npt
 from gearwhine.housing.errors import HousingError
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import element_moments, quadrature, shape_functions
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, refuse
 from gearwhine.numerics.materials import material_findings
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

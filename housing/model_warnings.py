@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.material import Material
 from gearwhine.housing.model.fixtures import Fixture, LumpedMass
@@ -15,8 +14,6 @@ from gearwhine.meshes import Mesh, MeshDefect, resolution_defects
 from gearwhine.meshes.lengths import length_text
 from gearwhine.meshes.quality import WaveCarrier, resolving_size, wall_thickness
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _ORDER_AT_INNER_EDGES = 2.0 * 0.545

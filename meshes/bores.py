@@ -9,21 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from gearwhine.meshes.elements import (
-    Facets,
-    FloatArray,
-    IntArray,
-    facet_centers,
-    facet_corners,
-    facet_normals,
-    pick_facets,
-)
+from gearwhine.meshes.elements import Facets, facet_centers, facet_corners, facet_normals, pick_facets
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.mesh import Mesh
-
-BoolArray = npt.NDArray[np.bool_]
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
 LARGEST_COSINE_TO_AXIS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
 CIRCLE_TOLERANCE = 0.01  # corners of a bore may be off its circle by this part of its diameter

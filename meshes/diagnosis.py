@@ -12,11 +12,12 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from gearwhine.meshes.elements import FloatArray, IntArray, facet_corners, group_rows
+from gearwhine.meshes.elements import facet_corners, group_rows
 from gearwhine.meshes.lengths import UNITS, length_text, plausible
 from gearwhine.meshes.mesh import Mesh, MeshDefect, Severity, mesh_defect, place_text
 from gearwhine.meshes.quality import edge_lengths, shape_numbers
 from gearwhine.meshes.shape_functions import determinants, jacobians, quadrature, shape_functions
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _COINCIDENCE_DISTANCE = 1e-6  # part of a facet's longest side: nodes nearer than that coincide, or lie in its plane
 

@@ -16,9 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.meshes.errors import GeometryError
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

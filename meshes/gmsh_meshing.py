@@ -15,10 +15,10 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from gearwhine.meshes.elements import FloatArray, IntArray
 from gearwhine.meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from gearwhine.meshes.lengths import length_text
 from gearwhine.meshes.mesh import Mesh
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 # Libraries that gmsh's wheel links against but does not contain, as Debian and Ubuntu package names.
 SYSTEM_PACKAGES = (

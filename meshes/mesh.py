@@ -15,8 +15,6 @@ from gearwhine.meshes.elements import (
     ElementBlock,
     FaceTable,
     Facets,
-    FloatArray,
-    IntArray,
     count,
     face_table,
     faces_as_facets,
@@ -25,6 +23,7 @@ from gearwhine.meshes.elements import (
 )
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.shape_functions import volumes
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 Severity = Literal["error", "warning"]
 

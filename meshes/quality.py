@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwhine.meshes.elements import KINDS, ElementBlock, FloatArray
+from gearwhine.meshes.elements import KINDS, ElementBlock
 from gearwhine.meshes.lengths import length_text
 from gearwhine.meshes.mesh import Mesh, MeshDefect, mesh_defect
 from gearwhine.meshes.shape_functions import determinants, jacobians, shape_functions
+from gearwhine.numerics.arrays import FloatArray
 
 # Edges of a corner tetrahedron of the ideal element, as columns: of a regular tetrahedron, of a cube and of a
 # right prism on an equilateral triangle, all of unit edge. A mean ratio does not depend on their size.

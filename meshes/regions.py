@@ -7,9 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.meshes.bores import CylindricalBore, describe_bore, find_bores, fits_circle, joined_by_span, unit_vector
-from gearwhine.meshes.elements import Facets, FloatArray, facet_centers, facet_corners, facet_normals, pick_facets
+from gearwhine.meshes.elements import Facets, facet_centers, facet_corners, facet_normals, pick_facets
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.mesh import Mesh
+from gearwhine.numerics.arrays import FloatArray
 
 _PLANE_SLACK = 1e-4  # part of the mesh's diagonal
 _LEAST_NORMAL_COSINE = 0.99  # least cosine between a facet's normal and that of the plane it lies on

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from gearwhine.meshes.elements import KINDS, FloatArray, IntArray
+from gearwhine.meshes.elements import KINDS
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 def shape_functions(kind: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:

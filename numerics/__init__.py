@@ -1,1 +1,1 @@
-"""Ground floor of all rooms: compiled kernels, banded matrices, trust region, branches of modes; findings, copies."""
+"""Ground floor of all rooms: array types, kernels, banded matrices, trust region, branches of modes, findings."""

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import (
     GearPairGeometry,
@@ -40,9 +39,8 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
-
-FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 8
 _TWO_PI = 2.0 * np.pi

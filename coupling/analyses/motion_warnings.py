@@ -1,14 +1,12 @@
 """Warnings of a solved motion: free vibration that is left in the record, power above the limit, flanks that part."""
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.analyses.signature import SolvedSignature, TracedLine
 from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _UNWARNED_POWER_ABOVE_LIMIT = 0.5  # part of the power of an acceleration above the limit without a warning
 # Free vibration at the begin of a record, as a part of that at the start, without a warning.

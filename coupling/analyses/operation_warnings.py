@@ -7,16 +7,14 @@ solved. Loads that an analysis finds are compared with those that the bearings' 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.machine.base_motion import BaseHistory
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.machine_description import Machine
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _UNWARNED_DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, as a part of the larger one
 _LOAD_ROUNDING = 1e-6  # part of the load below which a component counts as zero

@@ -47,10 +47,10 @@ from gearwhine.coupling.signals.spectrum import (
 from gearwhine.coupling.time.histories import Histories, ModalRecord
 from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.coupling.time.settings import Method, TransientSettings
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Choice, Finding, Number, Rule, attribute_findings, refuse
 
 Arrays = Mapping[str, npt.NDArray[Any]]
-FloatArray = npt.NDArray[np.float64]
 Start = Literal["equilibrium", "unloaded"]
 
 _TWO_PI = 2.0 * math.pi

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling import signals as signature
 from gearwhine.coupling.analyses.transient import SolvedTransient
@@ -19,10 +18,9 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.signals import decibels, peak_of_rms
 from gearwhine.coupling.signals.spectrum import Window
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Number, attribute_findings, refuse
 from gearwhine.numerics.result_warnings import warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.1  # part of the highest speed below which samples are left out: a turn would take too many of them

@@ -13,9 +13,7 @@ from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.excitation_orders import in_carrier
 from gearwhine.coupling.signals.peaks import SpectralPeaks
 from gearwhine.coupling.signals.spectrum import Spectrum, Window, at_time_zero
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _TWO_PI = 2.0 * np.pi
 _HARMONICS = 3  # harmonics of each mesh whose sidebands are taken

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.analyses.recording import (
     RECORD_BYTES,
@@ -43,10 +42,9 @@ from gearwhine.coupling.time.transient import (
     transient_figures,
 )
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.source_digest import installed, source_digest
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _HARMONICS = 4.0  # mesh harmonics that count where no housing limits the model

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import GearTrain, Output
 from gearwhine.coupling.description.parts import Shaft
@@ -29,9 +28,8 @@ from gearwhine.coupling.machine.loads import (
 )
 from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
 from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile, SpeedRun, TorqueLine, free_speed
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 Run = SpeedRun | FreeRun
 

@@ -22,8 +22,8 @@ from scipy.fft import dct
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Function = Callable[[FloatArray], FloatArray]
 
 _FEWEST, _MOST = 32, 128

@@ -28,6 +28,7 @@ from gearwhine.coupling.linear.eigenpairs import refine_pair
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
 from gearwhine.coupling.linear.frozen_directions import frozen_warnings
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.numerics.branch_following import (
     BranchPoint,
     along_branches,
@@ -38,9 +39,6 @@ from gearwhine.numerics.branch_following import (
 )
 from gearwhine.numerics.result_warnings import ResultWarning
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 Point = BranchPoint[ComplexArray]
 
 _SURE_LIKENESS = 0.8  # likeness from which two modes are certainly the same
@@ -97,7 +95,7 @@ def matched(
     solve: Callable[[float], ModesAtSpeed],
     limit: float,
     halvings: int = _HALVINGS,
-) -> IntArray:
+) -> IndexArray:
     """Index of the same mode at the other speed for each mode, or -1, shape (m,).
 
     Parameters

@@ -26,16 +26,13 @@ The reduced problem, of order 2n - r - s, has no zero; its spectrum is the rest 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import ModesError
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _RANK = 1e-11  # singular values of a damping matrix below this part of its largest terms are rounding
 _ROUNDINGS_PER_ENTRY = 32.0  # roundings in an entry of a stiffness, one for each connector that adds to it
 _PRECISION = float(np.finfo(np.float64).eps)
-ComplexArray = npt.NDArray[np.complex128]
 
 _RESIDUAL = 1e-9  # largest residual of a pair, relative to the terms of its equation
 _REFINE = 1e-12  # pairs with a larger residual are refined

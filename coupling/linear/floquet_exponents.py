@@ -12,11 +12,9 @@ and c hardly meet the others. It is the mode's own where the machine turns slowl
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.linear.turning_response import TurningResponse
-
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray
 
 _FIRST_STEP = 1e-5  # first step of the secant method, relative
 _CONVERGED = 1e-6  # relative step from which the next one is rounding: the order of the secant method is 1.6

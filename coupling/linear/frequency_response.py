@@ -44,15 +44,12 @@ from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _EVEN_POINTS = 600  # evenly spaced points of a band, in addition to those of each resonance
 _FAINT_SIDEBAND = 1e-3  # part of a sensor's highest amplitude up to which a sideband of unbalance is left out
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
-
 
 _COARSE_EVEN_POINTS, _COARSELY_AROUND = 200, np.array([-1.0, 0.0, 1.0])  # the same of a coarse grid
 

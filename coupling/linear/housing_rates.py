@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 # Relative difference of eigenvalues below which they count as one in a divided difference.
 _EQUAL_EIGENVALUE_DIFFERENCE = 1e-6

@@ -44,9 +44,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 MECHANISMS = (
     "transmission_error",

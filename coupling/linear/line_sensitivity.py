@@ -41,7 +41,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.coupling.errors import CouplingError
@@ -56,10 +55,8 @@ from gearwhine.coupling.machine.connectors import LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint
 from gearwhine.coupling.statics.sensitivity import deflection_slope, rigid_slope, section_slope
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.rolling_bearings import rolling_state
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of transmission error and shuttling
 _STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch

@@ -12,9 +12,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import ModesError
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 SUM_RULE = 1e-6
 """Largest error of the modes' sum rule for a superposition."""

@@ -10,14 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from gearwhine.numerics.arrays import BoolArray, FloatArray
 
 _SET_SHARE = 0.5  # least part of the kinetic energy in a set for which a mode is one of it
 _STANDS = 1e-6  # part of a set's kinetic energy below which a motion of its central members is none

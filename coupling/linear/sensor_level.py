@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.coupling.errors import CouplingError
@@ -30,10 +29,8 @@ from gearwhine.coupling.gears import LoadedMesh, ToothContact
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
 from gearwhine.coupling.linear.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,17 +9,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.linear.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.line_sensitivity import Line
 from gearwhine.coupling.load_analysis.line_model import SolvedLines
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
-
-FloatArray = npt.NDArray[np.float64]
 
 _LEAST_RATIO = 1e-3  # least ratio of a line after a step to the line before it
 _LARGE_ERROR = 1.0  # large error of a level to first order [dB]

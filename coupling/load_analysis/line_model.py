@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.coupling.description.excitation import Run
@@ -32,15 +31,13 @@ from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.updating import modal_sensitivities
 from gearwhine.housing.updating.housing_change import HousingChange
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound, SidebandSound
     from gearwhine.housing.acoustics.radiation import HousingRadiation
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 LINES = 3
 """Number of lines of each sensor, the highest ones."""

@@ -15,15 +15,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.planetary import PlacedSet, SetMember
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
-
-FloatArray = npt.NDArray[np.float64]
 
 ANGLES = 24
 """Number of angles of the carrier over its turn, by default."""

@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import CouplingError
@@ -28,12 +27,11 @@ from gearwhine.housing import Housing, HousingModes
 from gearwhine.housing.updating.housing_change import HousingChange, by_changes, face_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 from gearwhine.meshes.box.morph import MorphError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
-
-FloatArray = npt.NDArray[np.float64]
 
 FACES_IN_PLACE_OF_WALLS = "the mesh of the box does not follow its walls, so that flat faces stand in their place"
 

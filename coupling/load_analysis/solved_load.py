@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
@@ -24,10 +23,9 @@ from gearwhine.coupling.load_analysis.planetary_load import (
 )
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
-
-FloatArray = npt.NDArray[np.float64]
 
 TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 """Parts of the torque of operation at which the equilibrium is found over torque."""

@@ -11,16 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import Component, HousingComponent, PedestalComponent, RotorComponent
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.findings import Finding, Number, Numbers, attribute_findings, kind_findings, refuse
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 Point = tuple[float, float, float]
 _VELOCITY_PIECES = 16  # number of chords that replace the velocity's parabola between two accelerations

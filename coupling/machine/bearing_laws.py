@@ -11,9 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import FourPointRow, RollerRow, RollingState
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,14 +25,13 @@ from gearwhine.coupling.machine.gear_bodies import GearBody, RimSpring
 from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.housing import HousingModes, ModeSet
 from gearwhine.housing.modes.housing_field import HousingField
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, refuse
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.rotors import ModalRotor, Pedestal
 from gearwhine.rotors.modes.lateral import LateralModes
 from gearwhine.rotors.modes.modal_rotor import gyroscopic_matrix
 from gearwhine.rotors.modes.torsional_and_axial import AxialModes
-
-FloatArray = npt.NDArray[np.float64]
 
 # Tolerance of a symmetric, positive semidefinite damping matrix, relative to its largest entry.
 _DAMPING_MATRIX_ROUNDING = 1e-10

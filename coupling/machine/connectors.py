@@ -19,8 +19,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _JUST_AFTER = 1e-9  # mesh periods
 

@@ -22,8 +22,7 @@ from gearwhine.coupling.machine.loads import (
     Unbalance,
 )
 from gearwhine.coupling.machine.rotating_inertia import circling, rotating_inertia
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass

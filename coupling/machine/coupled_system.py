@@ -11,9 +11,8 @@ import numpy.typing as npt
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 AnyConnector = ContactConnector | LinearConnector | NonlinearConnector
 
 _RIGID_MOTION_STIFFNESS = 1e-12  # stiffness below this part of the largest is a motion that nothing resists

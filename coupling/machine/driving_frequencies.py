@@ -17,8 +17,7 @@ import numpy.typing as npt
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _TWO_PI = 2.0 * np.pi
 _ALIKE_FREQUENCY_DIGITS = 12  # digits of the frequencies of rows that are alike

@@ -14,13 +14,11 @@ are taken less that in the middle of the face, for which nothing is missing, and
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.contact.face_slices import DEFAULT_SLICES, face_stations, mean_and_slope
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import ModalRotor, Rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

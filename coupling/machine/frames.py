@@ -22,7 +22,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import (
@@ -35,10 +34,7 @@ from gearwhine.coupling.machine.components import (
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 _SAME_SPEED = 1e-12  # part of the larger of two speeds by which they differ from rounding
 

@@ -41,13 +41,11 @@ from dataclasses import dataclass
 from math import inf, pi, sqrt
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.stiffness.rim_on_hub import RimShares
 from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode, wheel_modes, wheel_section
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 STATIC_BEYOND = 10.0
 """Frequency of the rim on a hub at rest, over the limit of the shaft's modes, above which its spring is static."""

@@ -30,8 +30,7 @@ from gearwhine.coupling.gears import GearError, GearPairGeometry, ToothContact, 
 from gearwhine.coupling.gears.contact.contact_law import places_on_line_of_action
 from gearwhine.coupling.gears.loaded.transmission_error import different_periods
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _POINTS = 128  # number of phases of a mesh period
 _PERIODS = 128  # largest number of mesh periods that are solved for the mean over the hunting period

@@ -13,10 +13,9 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.base_motion import BaseMotion
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse, table_findings
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,6 @@ their answer. a and K are those of the mean over a mesh period.
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import GearError, GearPairGeometry, ToothContact
 from gearwhine.coupling.gears.contact.face_slices import face_stations, mean_and_slope
@@ -45,8 +44,7 @@ from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.load_shuttling import shuttling_loads
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction
 from gearwhine.coupling.machine.mounted_parts import GearMesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from math import atan2
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry, ToothContact
@@ -14,12 +13,11 @@ from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.face_compliance import FaceCompliance
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

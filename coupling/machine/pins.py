@@ -18,15 +18,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Number, Numbers, Rule, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
 from gearwhine.rotors import Rotor, Segment, ShaftMaterial
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
-
-FloatArray = npt.NDArray[np.float64]
 
 _SAME_PLACE = 1e-6
 """Distance of a bearing from a wall below which it sits in it, and is moved off it by as much [m]."""

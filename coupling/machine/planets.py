@@ -8,7 +8,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.machine.base_motion import rotor_participation
 from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, pin_name
@@ -17,8 +16,7 @@ from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.frames import Frames, is_isotropic
 from gearwhine.coupling.machine.mesh_kinematics import FlankMotion
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SPEEDS_OF_A_RUN = 33  # number of speeds between which the square of the speed is taken as linear
 

@@ -3,12 +3,10 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.machine.base_motion import rotor_participation
 from gearwhine.coupling.machine.components import RotorComponent
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def circling(planet: RotorComponent, axis: Sequence[float]) -> FloatArray:

@@ -13,12 +13,10 @@ Dynamics of Rotating Systems, 2005, section 4.4).
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -26,10 +26,9 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError, TransientError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Number, attribute_findings, refuse, table_findings
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

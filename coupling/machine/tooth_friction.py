@@ -19,7 +19,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
@@ -28,8 +27,7 @@ from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction
 from gearwhine.coupling.machine.mounted_parts import MountedGear
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def sliding_flanks(

@@ -20,15 +20,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import make_interp_spline
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.signals.decimation import decimation
 from gearwhine.coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, cut_spectra
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _MOST_SAMPLES = 50_000_000  # largest number of samples by angle
 _DEGREE = 5

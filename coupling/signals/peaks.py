@@ -11,14 +11,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.signals.tones import hann_line, tone_offset, tone_weights
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 _LONE = 0.1  # largest deviation of a tone's four lines from those of one tone, over its height
 _EXACT_LINE_DISTANCE = 0.02  # distance that the frequency of an exact line is known within, over the spacing of lines

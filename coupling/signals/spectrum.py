@@ -19,12 +19,10 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 ACCELERATION_REFERENCE = 1e-6
 """Reference of vibratory acceleration levels [m/s²], ISO 1683."""
-ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
 _WHOLE_CYCLES_TOLERANCE = 1e-6  # tolerance of a whole number of cycles: a line leaks as large a part of its height

@@ -21,9 +21,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.signals.spectrum import Spectrum, line_height
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _PASSES = 4  # number of passes that subtract the leakage of other tones
 _ON_LINE = 1e-6  # distance from a line within which a tone is the line, in line spacings

@@ -28,9 +28,8 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, replace_linear
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
-
-FloatArray = npt.NDArray[np.float64]
 
 _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30

@@ -12,15 +12,13 @@ Linear analyses take the tooth contacts as mesh stiffness and damping about the 
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import GearError, ToothContact, loaded_transmission_error
 from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.static_equilibrium import load_balances, static_equilibrium, tangent_offset
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _POINTS = 200  # number of phases of a mesh period, in addition to its events
 _CONVERGED_FORCE_CHANGE = 1e-7  # change of the force in a step of the iteration, relative to the largest force

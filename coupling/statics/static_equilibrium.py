@@ -11,14 +11,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
 from gearwhine.coupling.errors import CouplingError, TransientError
 from gearwhine.coupling.machine.connectors import ContactConnector, NonlinearConnector
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LOAD_ROUNDING = 1e-12  # part of the loads that is rounding of the rigid-body motions
 _PUSHED = 1e-9  # part of a load below which its share in a rigid-body motion is rounding

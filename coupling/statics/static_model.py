@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import GearPairGeometry, tooth_contact
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
@@ -21,10 +20,9 @@ from gearwhine.coupling.machine.bearing_laws import GapLaw
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.pins import MountedPin
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.analyses.static_stiffness import StaticShaft
 from gearwhine.rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
-
-FloatArray = npt.NDArray[np.float64]
 
 _TRIAL_LOAD = 0.05  # load over the static rating at which a rolling bearing has its nominal stiffness
 

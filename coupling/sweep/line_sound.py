@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
 from gearwhine.coupling.sound.proofs import (
@@ -31,10 +30,8 @@ from gearwhine.housing.acoustics.radiation import (
     RadiatedSound,
 )
 from gearwhine.housing.acoustics.sound_levels import power_level
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _LARGEST_INTERPOLATION_ERROR = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 

@@ -14,14 +14,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.signals.spectrum import Spectrum, decibels, line_height, peak_of_rms
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, SOUND, Resonances
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _SAME_ORDER_DIFFERENCE = 1e-6  # relative difference of two orders that are one
 _LARGEST_LINE_DISTANCE = (

@@ -4,17 +4,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.signals.line_names import LineName
 from gearwhine.coupling.signals.spectrum import Window
 from gearwhine.coupling.sweep.resonances import Resonances, find_resonances
+from gearwhine.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 

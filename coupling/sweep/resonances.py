@@ -28,9 +28,7 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
 from gearwhine.coupling.linear.modal_superposition import superposed
 from gearwhine.coupling.signals.spectrum import decibels
 from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 SOUND = "sound"
 """Name of the output of the sound power, beside those of the sensors."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, CaseSource, SweptKey
+from gearwhine.case import CaseSource, SweptKey
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.sweep.missed_peaks import RadiatedLevel
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def solve_sweep(
-    case: Case,
+    origin: Origin,
     source: CaseSource,
     keys: Sequence[SweptKey],
     folder: Path,
@@ -43,7 +44,8 @@ def solve_sweep(
 
     Parameters
     ----------
-    case : Case
+    origin : Origin
+        Origin of the result, without a housing.
     source : CaseSource
         Content that the case is made of, from which the points are made, too.
     keys : sequence of SweptKey
@@ -76,7 +78,7 @@ def solve_sweep(
         sound_warnings, housing, radiated = add_sound(
             sounding, keys, swept, solve_housing(sounding, progress, folder=folder), progress
         )
-    origin = Origin(case.title, case=case, housing=housing)
+    origin = replace(origin, housing=housing)
     return _result(origin, keys, swept, start, radiated, sound_warnings, count if scheduler is None else None)
 
 

@@ -304,9 +304,8 @@ class _Mounted(Table):
         """All rows in their places, from one of them."""
         from gearwhine.rotors.rolling_bearings import paired, standing_rows
 
-        if self.arrangement == "single":
+        if self.arrangement == "single" or self.spacing is None:
             return standing_rows(self.kind, row, self.width)
-        assert self.spacing is not None
         return tuple(paired(row, self.arrangement, self.spacing).rows)
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:

@@ -16,7 +16,7 @@ import tomli_w
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_validator
 
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.case.bearings import Bearing, RollingStiffness
+from gearwhine.case.bearings import Bearing
 from gearwhine.case.box import Box
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table, wrong
@@ -160,19 +160,6 @@ class Case(Table):
         copied = super().model_copy(update=update, deep=deep)
         copied.__dict__.pop("parts", None)
         return copied
-
-    @property
-    def is_loaded(self) -> bool:
-        """Whether torque, force, weight or preload loads the machine of the case, so that it has an operating point."""
-        operation = self.operation
-        if operation is None or not self.rotor or not self.bearing:
-            return False
-        rolling = [
-            bearing.stiffness.rolling for bearing in self.bearing if isinstance(bearing.stiffness, RollingStiffness)
-        ]
-        preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
-        preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
-        return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
 
 def _with_form(document: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -380,9 +367,22 @@ def housing_table(case: Case, command: str) -> Housing:
     CaseError
         Where the case has no housing.
     """
-    require(case, "housing", command=command)
-    assert case.housing is not None
+    if case.housing is None:
+        raise lacking(case, "housing", command=command)
     return case.housing
+
+
+def measured_table(case: Case, command: str) -> Measured:
+    """Return the table of the modes that were measured of a case's housing, for a command that needs both.
+
+    Raises
+    ------
+    CaseError
+        Where the case lacks one of them.
+    """
+    if case.housing is None or case.measured is None:
+        raise lacking(case, "housing", "measured", command=command)
+    return case.measured
 
 
 def _lacking(table: str, command: str) -> Problem:

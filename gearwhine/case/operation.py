@@ -191,9 +191,8 @@ class Run(Table):
     @property
     def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Times [s] and speeds [rad/s] between which the speed is linear; of a free run its start alone."""
-        if self.times:
+        if self.times or self.start is None:
             return self.times, self.speeds
-        assert self.start is not None
         if self.to is None:
             return (0.0,), (self.start,)
         return (0.0, self.duration), (self.start, self.to)

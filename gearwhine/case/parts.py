@@ -12,7 +12,6 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.case.bearings import (
     Bearing,
@@ -40,14 +39,13 @@ from gearwhine.coupling.gears.geometry.pair import signed_distance
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair as BuiltPair
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
 from gearwhine.coupling.machine.loads import Torque
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding as PartFinding
 from gearwhine.rotors import Bearing as RotorBearing
 from gearwhine.rotors import EquilibriumError, Segment
 from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.rotors import rolling_bearings as rolling
 from gearwhine.rotors.analyses.solved_rotor import table_range
-
-FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 
@@ -333,6 +331,19 @@ class Parts:
             have_faces = all(gear.rotor is not None and gear.face_width is not None for gear in self._tables_of(pair))
             return loaded and have_faces and bool(self.bearing)
         return pair.misalignment == "found"
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether torque, force, weight or preload loads the machine, so that it has an operating point."""
+        operation = self.operation
+        if operation is None or not self.rotor or not self.bearing:
+            return False
+        rolling = [
+            bearing.stiffness.rolling for bearing in self.bearing if isinstance(bearing.stiffness, RollingStiffness)
+        ]
+        preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
+        preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
+        return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     @property
     def needs_operating_point(self) -> bool:

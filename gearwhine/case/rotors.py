@@ -309,6 +309,9 @@ class Bow(Table):
     """Angle from x when the rotor's mark points along x."""
 
 
+_PIN_FORMS = "'walls' and 'diameter', or 'at', 'stiffness' and 'tilt_stiffness'"
+
+
 class Pin(Table):
     """`pin` of a planet's `[[rotor]]`, on which its bearings sit: a beam in `walls` of the carrier, or its stiffness.
 
@@ -337,8 +340,7 @@ class Pin(Table):
         is_beam = self.walls is not None or self.diameter is not None
         for key in beam if is_beam else springs:
             if getattr(self, key) is None:
-                both = "'walls' and 'diameter', or 'at', 'stiffness' and 'tilt_stiffness'"
-                raise wrong(both if not is_beam and self.stiffness is None else f"'{key}' beside the others", key)
+                raise wrong(_PIN_FORMS if not is_beam and self.stiffness is None else f"'{key}' beside the others", key)
         for key in springs if is_beam else ("bore", "material"):
             if getattr(self, key):
                 raise wrong("nothing beside " + ("walls" if is_beam else "a stiffness"), key)
@@ -352,12 +354,12 @@ class Pin(Table):
         """Build the pin, of the rotor's material where it has none of its own."""
         from gearwhine.coupling.machine.pins import PinBeam, PinSprings
 
-        if self.walls is None or self.diameter is None:
-            assert self.at is not None
-            assert self.stiffness is not None
-            assert self.tilt_stiffness is not None
-            return PinSprings(self.at, self.stiffness, self.tilt_stiffness)
-        return PinBeam(self.walls, self.diameter, _shaft_material_named(self.material, rotor, materials), self.bore)
+        match self:
+            case Pin(walls=tuple(walls), diameter=float(diameter)):
+                return PinBeam(walls, diameter, _shaft_material_named(self.material, rotor, materials), self.bore)
+            case Pin(at=float(at), stiffness=float(radial), tilt_stiffness=float(tilt)):
+                return PinSprings(at, radial, tilt)
+        raise wrong(_PIN_FORMS)
 
 
 _OF_THE_SHAFT = ("segments", "shear_coefficient", "axial_force")

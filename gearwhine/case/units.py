@@ -342,9 +342,15 @@ def si_amount(value: object) -> float | None:
 
 
 def amount(value: str | float) -> float:
-    """Return in SI the value of a text that is known to be a quantity."""
-    number = si_amount(value)
-    assert number is not None, value
+    """Return in SI the value of a text that is a quantity.
+
+    Raises
+    ------
+    ValueError
+        Where it is none.
+    """
+    if (number := si_amount(value)) is None:
+        raise ValueError(f"{value!r} is no quantity")
     return number
 
 

@@ -49,18 +49,16 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
-from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
+from gearwhine.housing.correlation.comparison import Comparison, ModePair, ShapeCorrelation
 from gearwhine.housing.measured import MeasuredGeometry
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.results.comparison import coordinate_names
-
-FloatArray = npt.NDArray[np.float64]
 
 _BAND = 0.05  # error within which the source's model is (TM-104434, Table II)
 _PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the gap between them [mm of paper]
 _AREA_OF_MAC_ONE = 60.0  # area of the circle of MAC 1 [points²]
 _LEAST_DRAWN_MAC = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
-IntArray = npt.NDArray[np.int64]
 
 _COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
 _LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # widths of row names, gap, colour bar and its numbers [mm]
@@ -104,7 +102,7 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
     plane.plot(ends, ends, color=GREY, lw=0.7, zorder=2, label="_equal")
     handles: list[Artist] = [Patch(color=PALE, label="±5 %")]
     if comparison.shapes is not None:
-        _draw_macs(plane, comparison, highest)
+        _draw_macs(plane, comparison.shapes, comparison.pairs, highest)
         handles.append(_dot("other MACs, by area", GREY, filled=False))
     sizes = [_AREA_OF_MAC_ONE * (1.0 if pair.mac is None else pair.mac) for pair in comparison.pairs]
     at = np.array([[pair.measured, pair.model] for pair in comparison.pairs]).reshape(-1, 2).T / HERTZ
@@ -142,11 +140,9 @@ def _note(comparison: Comparison) -> str:
     return f"paired by {comparison.rule}: largest error {largest:.2f} %, rms {rms:.2f} %"
 
 
-def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
-    shapes = comparison.shapes
-    assert shapes is not None
+def _draw_macs(axes: Axes, shapes: ShapeCorrelation, pairs: Iterable[ModePair], highest: float) -> None:
     values = shapes.mac.copy()
-    for pair in comparison.pairs:
+    for pair in pairs:
         values[pair.mode - 1, pair.measured_mode - 1] = 0.0
     i, j = np.nonzero((values >= _LEAST_DRAWN_MAC) & (shapes.model_frequencies[:, None] <= HERTZ * highest))
     axes.scatter(
@@ -347,10 +343,11 @@ def draw_comparison_figures(
     matplotlib.figure.Figure
     """
     yield "comparison", draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
-    if comparison.shapes is not None:
-        yield from _draw_matrices(title, comparison, comparison.shapes)
-        if comparison.shapes.comac is not None:
-            yield "comac", _draw_coordinates(title, comparison.shapes, geometry)
+    if (shapes := comparison.shapes) is not None:
+        yield from _draw_matrices(title, comparison, shapes)
+        if shapes.comac is not None and shapes.enhanced_comac is not None:
+            heading, names = f"Where shapes differ: {title}", coordinate_names(len(shapes.comac), geometry)
+            yield "comac", draw_coordinate_criteria(heading, shapes.comac, shapes.enhanced_comac, names)
 
 
 def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation) -> Iterator[tuple[str, Figure]]:
@@ -391,13 +388,6 @@ def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation)
             note=note,
         )
         yield "cross-orthogonality", figure
-
-
-def _draw_coordinates(title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> Figure:
-    assert shapes.comac is not None
-    assert shapes.enhanced_comac is not None
-    names = coordinate_names(len(shapes.comac), geometry)
-    return draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
 
 
 def _mode_names(modes: Iterable[int], hertz: FloatArray) -> list[str]:

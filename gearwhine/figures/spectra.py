@@ -38,12 +38,11 @@ from gearwhine.figures.style import (
     plain,
     sheet,
 )
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 
 _MOST_LINES = 1 << 12
 _DENSEST = 2.5  # lines in a millimetre of paper up to which they are drawn one by one
 _DECADES = 5.0  # decades of the amplitude axis below its highest line
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 _ROW_DECADES = 4.0  # decades that a row shows below the highest line of all
 _ROW_HEIGHT_RATIO = 1.7  # height of a row over the distance to the next
@@ -247,7 +246,7 @@ def draw_level_map(
     return figure
 
 
-def _chosen_rows(values: FloatArray, heights: FloatArray) -> IntArray:
+def _chosen_rows(values: FloatArray, heights: FloatArray) -> IndexArray:
     """Return the spectra that are drawn, ascending in their value: at most `_MOST_ROWS` that are not all NaN.
 
     Raises

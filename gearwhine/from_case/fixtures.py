@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.case import CaseError, Housing, Joint, LumpedMass, Material, Mount, Problem, Support
 from gearwhine.case.errors import UNSAID
@@ -12,9 +11,8 @@ from gearwhine.housing import HousingError
 from gearwhine.housing.model.fixtures import Fixture
 from gearwhine.housing.model.seats import sensor_port
 from gearwhine.meshes import GeometryError, Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import one_of
-
-FloatArray = npt.NDArray[np.float64]
 
 _REACH = 0.05  # largest distance of a fixture or sensor from the surface, as a part of the housing's diagonal
 

@@ -18,17 +18,6 @@ from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
 
 
-def require_machine(case: Case) -> None:
-    """Refuse a case whose parts do not make a machine, before anything is solved.
-
-    Raises
-    ------
-    CaseError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
-        As :func:`describe_machine`; thrust that nothing carries is among the reasons.
-    """
-    _ = case.parts.machine
-
-
 def describe_machine(case: Case, housing: HousingModes | HousingComponent | None = None) -> Machine:
     """Return the machine of a case: its shafts, gears, bearings and gear pairs, in a housing or on rigid seats.
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.case import CaseError, Housing, Material, Problem
 from gearwhine.case.box import Box
@@ -24,10 +23,9 @@ from gearwhine.meshes import Mesh, MeshDefect, diagnose
 from gearwhine.meshes.gmsh_meshing import expected_elements
 from gearwhine.meshes.lengths import UNITS
 from gearwhine.meshes.quality import resolving_size
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
 _MANY_UNKNOWNS = 1.5e6

@@ -9,18 +9,17 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
-from gearwhine.case import Case, CaseError, Problem, UpdateParameter, case_document, parse_case
+from gearwhine.case import Case, CaseError, Housing, Problem, UpdateParameter, case_document, parse_case
 from gearwhine.case.box import wall_by_face
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import Location, key_of, look_up
 from gearwhine.case.input_files import InputFiles
-from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import amount, si_amount
 from gearwhine.from_case.fixtures import build_fixtures
+from gearwhine.from_case.given_housing import GivenHousing, given_housing
 from gearwhine.from_case.housing import build_seats, refused_by_key
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.housing import HousingError, assemble, attach_fixtures, solve_modes
@@ -38,11 +37,11 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from gearwhine.meshes.box.morph import MorphError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
 _SAME_NUMBER_DIFFERENCE = 1e-9  # relative difference of numbers written in different units
-FloatArray = npt.NDArray[np.float64]
 
 RATE_STEP = 1e-4
 """Step in z of the central differences by a parameter."""
@@ -123,6 +122,10 @@ class FittedCase:
         """
         return parse_case(self.document_at(values), source="update", files=self.files.copy())
 
+    def housing_at(self, values: Sequence[float]) -> GivenHousing:
+        """Return the housing of the case with these values in place; raises as :meth:`at`."""
+        return given_housing(self.at(values), _COMMAND)
+
     def document_at(self, values: Sequence[float]) -> dict[str, Any]:
         """Return the document of the case with these values, as tables and lists."""
         document = self.document
@@ -147,8 +150,7 @@ def fitted_case(
         whose keys have different numbers and no factor.
     """
     if parameters is None:
-        assert case.update is not None
-        parameters = case.update.parameter
+        parameters = () if case.update is None else case.update.parameter
     document = case_document(case)
     box = document.get("housing", {}).get("box")
     if box is not None:
@@ -239,26 +241,26 @@ class MeshedParameters:
     ----------
     fitted : FittedCase
     coordinates : ndarray, shape (n_parameters,)
-    case : Case
-        Case at the coordinates.
+    given : GivenHousing
+        Housing at the coordinates.
     mesh : Mesh
-        Mesh of its housing.
+        Its mesh.
     """
 
     fitted: FittedCase
     coordinates: FloatArray
-    case: Case
+    given: GivenHousing
     mesh: Mesh
 
-    def beside(self, number: int) -> tuple[Case, Case]:
-        """Return the cases `RATE_STEP` above and below in one coordinate."""
+    def beside(self, number: int) -> tuple[GivenHousing, GivenHousing]:
+        """Return the housings `RATE_STEP` above and below in one coordinate."""
         either = []
         for way in (1.0, -1.0):
             # The step is not limited by the range, at whose end the case's own value may stand.
             parameter = self.fitted.parameters[number]
             values = values_at(self.fitted.parameters, self.coordinates)
             values[number] += parameter.deviation(float(self.coordinates[number]), way * RATE_STEP)
-            either.append(self.fitted.at(values.tolist()))
+            either.append(self.fitted.housing_at(values.tolist()))
         return either[0], either[1]
 
     def rates(self) -> list[ModelSensitivity]:
@@ -272,36 +274,41 @@ class MeshedParameters:
             velocity, self._constants_rate(above, below), *self._attached_rates(above, below, velocity)
         )
 
-    def _velocity(self, above: Case, below: Case) -> FloatArray | None:
-        geometries = [geometry_of(case) for case in (above, below)]
-        if geometries[0] == geometries[1]:
+    def _velocity(self, above: GivenHousing, below: GivenHousing) -> FloatArray | None:
+        upper, lower = geometry_of(above.table), geometry_of(below.table)
+        if upper is None or lower is None or upper == lower:
             return None
-        assert geometries[0] is not None
-        assert geometries[1] is not None
-        apart = self.morph.displacement(geometries[0]) - self.morph.displacement(geometries[1])
+        apart = self.morph.displacement(upper) - self.morph.displacement(lower)
         return np.asarray(apart / (2.0 * RATE_STEP))
 
     @cached_property
     def morph(self) -> BoxMorph:
-        """Morphing of the mesh to other dimensions of its box."""
-        geometry = geometry_of(self.case)
-        assert geometry is not None
+        """Morphing of the mesh to other dimensions of its box.
+
+        Raises
+        ------
+        meshes.box.morph.MorphError
+            Where the housing is no box, or one whose mesh cannot follow.
+        """
+        geometry = geometry_of(self.given.table)
+        if geometry is None:
+            raise MorphError("the housing is no box: expected one, whose mesh follows its dimensions")
         return BoxMorph(self.mesh, geometry)
 
-    def _constants_rate(self, above: Case, below: Case) -> FloatArray | None:
-        if above.material == below.material:
+    def _constants_rate(self, above: GivenHousing, below: GivenHousing) -> FloatArray | None:
+        if above.materials == below.materials:
             return None
         constants = []
-        for case in (above, below):
-            parted, material, materials = materials_of(housing_table(case, _COMMAND), case.material, self.mesh)
+        for given in (above, below):
+            parted, material, materials = materials_of(given.table, given.materials, self.mesh)
             constants.append(element_constants(parted, material, materials))
         return np.asarray((constants[0] - constants[1]) / (2.0 * RATE_STEP))
 
     def _attached_rates(
-        self, above: Case, below: Case, velocity: FloatArray | None
+        self, above: GivenHousing, below: GivenHousing, velocity: FloatArray | None
     ) -> tuple[sparse.csr_array | None, sparse.csr_array | None]:
         # What is built is compared, not its tables: bolts of a cover depend on materials and on the box, too.
-        fixtures = [build_fixtures(housing_table(case, _COMMAND), case.material) for case in (above, below)]
+        fixtures = [build_fixtures(given.table, given.materials) for given in (above, below)]
         if velocity is None and fixtures[0] == fixtures[1]:
             return None, None
         matrices = []
@@ -316,9 +323,8 @@ class MeshedParameters:
         return sparse.csr_array(stiffness), sparse.csr_array(mass)
 
 
-def geometry_of(case: Case) -> BoxGeometry | None:
-    """Return the dimensions of a case's box; None for another housing."""
-    table = housing_table(case, _COMMAND)
+def geometry_of(table: Housing) -> BoxGeometry | None:
+    """Return the dimensions of the box that is a housing; None for another one."""
     return None if table.box is None else box_geometry(table.box, table.seat)
 
 
@@ -360,12 +366,12 @@ class ParametricHousing:
         """Coordinates z of the case as it stands."""
         return self.case.start
 
-    def case_at(self, coordinates: FloatArray) -> Case:
-        """Return the case at coordinates."""
+    def housing_at(self, coordinates: FloatArray) -> GivenHousing:
+        """Return the housing at coordinates."""
         values = values_at(self.parameters, coordinates).tolist()
         if self.as_written:
             values = [number.as_written(value) for number, value in zip(self.case.numbers, values, strict=True)]
-        return self.case.at(values)
+        return self.case.housing_at(values)
 
     def solve(self, coordinates: FloatArray, near: "HousingAtParameters | None" = None) -> "HousingAtParameters":
         """Solve at coordinates, on the mesh of a neighbour where that can follow, else on a new one.
@@ -376,25 +382,24 @@ class ParametricHousing:
             Where the values make no valid housing.
         """
         try:
-            case = self.case_at(coordinates)
-            followed = None if near is None else _followed(near, case)
+            given = self.housing_at(coordinates)
+            followed = None if near is None else _followed(near, given.table)
             if followed is not None:
                 try:
-                    return self._solved(coordinates, case, followed)
+                    return self._solved(coordinates, given, followed)
                 except HousingError:
                     pass  # the move may have folded an element, which a new mesh avoids
-            mesh = build_mesh(housing_table(case, _COMMAND), case.material, case.input_files)
-            return self._solved(coordinates, case, mesh)
+            return self._solved(coordinates, given, build_mesh(given.table, given.materials, given.files))
         except (CaseError, GeometryError) as error:
             raise HousingError(str(error)) from error
 
-    def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingAtParameters":
-        """Solve the modes of the case on a mesh of its housing."""
-        table = housing_table(case, _COMMAND)
-        parted, material, materials = materials_of(table, case.material, mesh)
+    def _solved(self, coordinates: FloatArray, given: GivenHousing, mesh: Mesh) -> "HousingAtParameters":
+        """Solve the modes of a housing on its mesh."""
+        table = given.table
+        parted, material, materials = materials_of(table, given.materials, mesh)
         free = assemble(parted, material, materials, threads=self.threads)
         with refused_by_key(table):
-            matrices = attach_fixtures(free, mesh, build_fixtures(table, case.material))
+            matrices = attach_fixtures(free, mesh, build_fixtures(table, given.materials))
         every = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
         n_rigid = int(np.count_nonzero(every.frequencies == 0.0))
         if n_rigid == len(every.frequencies):
@@ -411,7 +416,7 @@ class ParametricHousing:
         skin = survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))
         state = ModalState(solved.frequencies, seats, skin, measured, n_rigid)
-        return HousingAtParameters(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
+        return HousingAtParameters(self, np.asarray(coordinates), given, mesh, state, solved.shapes)
 
 
 @dataclass(frozen=True)
@@ -423,7 +428,7 @@ class HousingAtParameters:
     designs : ParametricHousing
         The parametric housing.
     coordinates : ndarray, shape (n_parameters,)
-    case : Case
+    given : GivenHousing
     mesh : Mesh
     state : gearwhine.housing.updating.ModalState
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
@@ -434,7 +439,7 @@ class HousingAtParameters:
 
     designs: ParametricHousing
     coordinates: FloatArray
-    case: Case
+    given: GivenHousing
     mesh: Mesh
     state: ModalState
     shapes: FloatArray | None
@@ -451,8 +456,7 @@ class HousingAtParameters:
     @cached_property
     def _surrogate(self) -> Surrogate:
         assert self.shapes is not None
-        table = housing_table(self.case, _COMMAND)
-        parted, material, materials = materials_of(table, self.case.material, self.mesh)
+        parted, material, materials = materials_of(self.given.table, self.given.materials, self.mesh)
         constants = element_constants(parted, material, materials)
         rates = modal_sensitivities(self.mesh, constants, self.shapes, self.rates())
         return Surrogate.about(self.coordinates, self.state, rates)
@@ -463,13 +467,13 @@ class HousingAtParameters:
 
     @cached_property
     def _meshed(self) -> MeshedParameters:
-        return MeshedParameters(self.designs.case, self.coordinates, self.case, self.mesh)
+        return MeshedParameters(self.designs.case, self.coordinates, self.given, self.mesh)
 
 
-def _followed(near: HousingAtParameters, case: Case) -> Mesh | None:
-    """Return the neighbour's mesh, moved to a case's geometry; None where it cannot or should not be."""
-    geometry, before = geometry_of(case), geometry_of(near.case)
-    if geometry is None or geometry == before:
+def _followed(near: HousingAtParameters, table: Housing) -> Mesh | None:
+    """Return the neighbour's mesh, moved to the geometry of a table; None where it cannot or should not be."""
+    geometry = geometry_of(table)
+    if geometry is None or geometry == geometry_of(near.given.table):
         return near.mesh
     try:
         mesh = near._meshed.morph.moved(geometry)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case import CaseError, Problem
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.fields import unit_vector
 from gearwhine.case.fixtures import amounts
@@ -29,18 +29,17 @@ _TWO_PI = 6.283185307179586
 _KEYS = {"limit": "housing.frequency_limit", "damping_ratio": "housing.damping_ratio"}
 
 
-def reduced_component(case: Case) -> HousingComponent | None:
-    """Return the reduced housing of a case as a component of its machine; None in a case without one.
+def reduced_component(table: ReducedTable | None, files: InputFiles) -> HousingComponent | None:
+    """Return a reduced housing as a component of its machine; None without one.
 
     Raises
     ------
     CaseError
         As :func:`build_reduced_housing`.
     """
-    table = case.reduced_housing
     if table is None:
         return None
-    housing = build_reduced_housing(table, case.input_files)
+    housing = build_reduced_housing(table, files)
     try:
         return component_of_reduced_housing(housing)
     except HousingError as error:

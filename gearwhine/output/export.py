@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.csv_cells import plain_cells
 from gearwhine.output.files import file_stems
 from gearwhine.output.manifest import opened_dataset
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
     from gearwhine.housing.measured.universal_writing import UniversalFunction
 
-FloatArray = npt.NDArray[np.float64]
 Chapters = Callable[[Document], Iterable[Section]]
 Signals = Literal["sensors", "all"]
 _Places = dict[tuple[str, str], tuple[int, int]]  # point and direction by kind and name

@@ -23,7 +23,7 @@ from gearwhine.solve.damping import damping_document, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
-    from gearwhine.case import Joint, Mount
+    from gearwhine.case import Bearing, Joint, Mount
     from gearwhine.case.rotors import Rotor as CaseRotor
     from gearwhine.coupling.machine.loads import Torque
     from gearwhine.housing import Joint as BuiltJoint
@@ -366,7 +366,7 @@ CHECK = (
         lambda checked: [_Analysis(checked.case, rotor) for rotor in checked.case.rotor] or ABSENT,
         ANALYSIS,
     ),
-    Quantity("bearings", lambda checked: _bearings(checked.case) or None, optional=True),
+    Quantity("bearings", lambda checked: _bearings(checked.case.bearing, checked.case.rotor) or None, optional=True),
     Rows(
         "axial_location",
         lambda checked: [location for location in checked.locations if location.bearings] or ABSENT,
@@ -388,12 +388,12 @@ CHECK = (
 """Quantities of a checked case."""
 
 
-def _bearings(case: Case) -> list[dict[str, Any]]:
+def _bearings(bearings: Sequence["Bearing"], rotors: Iterable["CaseRotor"]) -> list[dict[str, Any]]:
     """Return every bearing as a document; those of the rotors' own files are on the ground."""
-    in_case = {(bearing.rotor, bearing.name) for bearing in case.bearing}
-    return [document_of(BEARING, bearing) for bearing in case.bearing] + [
+    in_case = {(bearing.rotor, bearing.name) for bearing in bearings}
+    return [document_of(BEARING, bearing) for bearing in bearings] + [
         {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
-        for rotor in case.rotor
+        for rotor in rotors
         for bearing in (rotor.saved.bearings if rotor.saved else ())
         if (rotor.name, bearing.name) not in in_case
     ]
@@ -402,11 +402,6 @@ def _bearings(case: Case) -> list[dict[str, Any]]:
 def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
     """Return all quantities that follow from the case by arithmetic, and the contents of its geometry's file."""
     return document_of(CHECK, check_case(case, progress))
-
-
-def measured_document(case: Case) -> dict[str, Any]:
-    """Return the measured modes of a case, before anything is solved."""
-    return document_of(MEASURED, case.measured)
 
 
 _WIDTH = 12  # of the column with the names of parts

@@ -468,8 +468,12 @@ def write_comparison(folder: Path, comparison: "Comparison", geometry: "Measured
     files, shapes = ["comparison.csv"], comparison.shapes
     if shapes is not None:
         files.append(_write_mac(folder, shapes))
-        if shapes.comac is not None:
-            files.append(_write_coordinates(folder, shapes, geometry))
+        if shapes.comac is not None and shapes.enhanced_comac is not None:
+            names = coordinate_names(len(shapes.comac), geometry)
+            cells = [map(_cell, row) for row in zip(shapes.comac, shapes.enhanced_comac, strict=True)]
+            rows = [[name, *row] for name, row in zip(names, cells, strict=True)]
+            _write_table(folder / "comac.csv", ["degree_of_freedom", "comac", "enhanced_comac"], rows)
+            files.append("comac.csv")
     return files
 
 
@@ -503,10 +507,9 @@ def _pair_rows(comparison: "Comparison") -> list[list[object]]:
     rows: list[list[object]] = [[_cell(of[key](pair)) for key in _PAIR_COLUMNS] for pair in comparison.pairs]
     for mode in comparison.unpaired_measured or ():
         rows.append([mode.number, _cell(mode.frequency / HERTZ), *[""] * 6])
-    shapes = comparison.shapes
-    for number in () if shapes is None else shapes.unpaired_measured:
-        assert shapes is not None
-        rows.append([number, _cell(shapes.measured_frequencies[number - 1] / HERTZ), *[""] * 6])
+    if (shapes := comparison.shapes) is not None:
+        hertz = shapes.measured_frequencies / HERTZ
+        rows += [[number, _cell(hertz[number - 1]), *[""] * 6] for number in shapes.unpaired_measured]
     return sorted(rows, key=lambda row: int(str(row[0])))
 
 
@@ -516,18 +519,6 @@ def _write_mac(folder: Path, shapes: "ShapeCorrelation") -> str:
     table = [[mode + 1, _cell(model[mode]), *map(_cell, shapes.mac[mode])] for mode in range(len(model))]
     _write_table(folder / "mac.csv", heads, table)
     return "mac.csv"
-
-
-def _write_coordinates(folder: Path, shapes: "ShapeCorrelation", geometry: "MeasuredGeometry | None") -> str:
-    assert shapes.comac is not None
-    assert shapes.enhanced_comac is not None
-    names = coordinate_names(len(shapes.comac), geometry)
-    table = [
-        [name, _cell(plain), _cell(enhanced)]
-        for name, plain, enhanced in zip(names, shapes.comac, shapes.enhanced_comac, strict=True)
-    ]
-    _write_table(folder / "comac.csv", ["degree_of_freedom", "comac", "enhanced_comac"], table)
-    return "comac.csv"
 
 
 def coordinate_names(count: int, geometry: "MeasuredGeometry | None") -> list[str]:

@@ -1,10 +1,10 @@
 """First page of the report: the machine, its proofs, the highest and the loudest lines, and measured modes."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from gearwhine.case import Case
+from gearwhine.case import Bearing, Case, Operation
 from gearwhine.output.quantity import RPM
 from gearwhine.output.sections import (
     NOTHING,
@@ -38,6 +38,7 @@ from gearwhine.results.summaries import Summary
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.machine.loads import Torque
     from gearwhine.solve.case_summary import CheckedPair, CheckedRotor
 
 _MM = 1e3
@@ -135,9 +136,9 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
     summaries = [Summary(document) for document in documents]
     content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, summaries)]
     if case.operation is not None and case.rotor:
-        content.append(_operation(case))
+        content.append(_operation(case.operation, case.parts.torques))
     content += _under_load(summaries)
-    content += table_of(SHAFT_COLUMNS, [_shaft(case, rotor) for rotor in rotors], "Shafts")
+    content += table_of(SHAFT_COLUMNS, [_shaft(rotor, case.bearing) for rotor in rotors], "Shafts")
     content += table_of(PAIR_COLUMNS, [_pair(pair) for pair in pairs], "Gear pairs")
     return Section("Machine", tuple(content))
 
@@ -171,14 +172,12 @@ def _paragraph(
     return f"{inside}{kind}{of_size}{mass}, of {case.housing.material}{on}{sensors}."
 
 
-def _operation(case: Case) -> str:
-    assert case.operation is not None
-    torques = case.parts.torques
-    speed = f"{case.operation.speed * RPM:.5g} rpm of the first driver"
-    if not torques or not case.operation.torque:
+def _operation(operation: Operation, torques: Sequence["Torque"]) -> str:
+    speed = f"{operation.speed * RPM:.5g} rpm of the first driver"
+    if not torques or not operation.torque:
         return f"Operation: {speed}."
     # A torque drives in the sense of rotation, whichever that is; a negative one brakes.
-    power = abs(case.operation.speed) * case.operation.torque
+    power = abs(operation.speed) * operation.torque
     applied = ", ".join(f"{torque.value:+.4g} N·m on {torque.rotor}" for torque in torques)
     return f"Operation: {speed}, {applied}; {power / 1e3:.4g} kW."
 
@@ -222,13 +221,13 @@ PAIR_COLUMNS = (
 )
 
 
-def _shaft(case: Case, rotor: "CheckedRotor") -> Document:
+def _shaft(rotor: "CheckedRotor", bearings: Iterable[Bearing]) -> Document:
     return {
         "name": rotor.given.name,
         "speed_rpm": None if rotor.speed is None else rotor.speed * RPM,
         "length_mm": _MM * rotor.built.length,
         "mass_kg": float(rotor.built.mass),
-        "bearings": ", ".join(bearing.name for bearing in case.bearing if bearing.rotor == rotor.given.name),
+        "bearings": ", ".join(bearing.name for bearing in bearings if bearing.rotor == rotor.given.name),
     }
 
 

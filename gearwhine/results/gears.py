@@ -301,11 +301,12 @@ BACKLASH = (
 the working pitch circles; j_bn, the shortest distance of the flanks."""
 
 
-def _aim(pair: "PairAnalysis") -> dict[str, Any]:
-    """Return the aim of the relief search."""
-    optimum, sensor = pair.optimum, getattr(pair.aim, "sensor", None)
+def _aim(pair: "PairAnalysis") -> dict[str, Any] | None:
+    """Return the aim of the relief search; None without one."""
+    if (optimum := pair.optimum) is None:
+        return None
+    sensor = getattr(pair.aim, "sensor", None)
     weights: dict[int, float] | None = getattr(pair.aim, "weights", None)
-    assert optimum is not None
     return {
         "kind": "sensor" if sensor is not None else "peak-to-peak" if weights is None else "harmonics",
         "given": pair.aim_given,

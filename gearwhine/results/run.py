@@ -539,10 +539,9 @@ class _HousingLines(NamedTuple):
     record_start: float
 
 
-def _housing_lines(row: TracedTransient) -> _HousingLines | None:
-    assert row.signature is not None
-    lines = row.signature.housing_lines(row.transient.trusted_limit)
-    return None if lines is None else _HousingLines(*lines, row.signature.record_start)
+def _housing_lines(signature: "SolvedSignature", limit_hz: float) -> _HousingLines | None:
+    lines = signature.housing_lines(limit_hz)
+    return None if lines is None else _HousingLines(*lines, signature.record_start)
 
 
 HOUSING_LINES = (
@@ -607,7 +606,7 @@ TRANSIENT: Fields = (
             ),
             Part("", _modal_spectrum, MODAL),
             Part("", lambda row: row.signature.line_table(), LINES),
-            Part("", _housing_lines, HOUSING_LINES),
+            Part("", lambda row: _housing_lines(row.signature, row.transient.trusted_limit), HOUSING_LINES),
         ),
     ),
 )

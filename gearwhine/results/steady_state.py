@@ -94,17 +94,17 @@ PAIR = (
 """Quantities of a gear mesh."""
 
 
-def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[_Pair]:
-    """Gear meshes of one motion, or of all that are superposed."""
-    figures = solved.superposed if motion is None else motion.response
-    assert figures is not None
-    motions = solved.motions if motion is None else (motion,)
+def _pairs(
+    solved: "SolvedSteady", motions: "tuple[SteadyMotion, ...]", figures: "PeriodicResponse | SuperposedResponse"
+) -> list[_Pair]:
+    """Gear meshes of one motion with its response, or of all motions with what is superposed of them."""
+    superposed = solved.superposed if figures is solved.superposed else None
     rows = []
     for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
         name = solved.machine.system.contacts[number].name
         forces = [motion.histories.mesh_force[name] for motion in motions]
         lines = _lines(solved.machine, motions, forces, "amplitude_n")
-        rows.append(_Pair(MeshFigures(mesh, figures, number), lines, solved.superposed if motion is None else None))
+        rows.append(_Pair(MeshFigures(mesh, figures, number), lines, superposed))
     return rows
 
 
@@ -222,7 +222,7 @@ MOTION = (
     _bearing_load("force", slice(0, 3), "direction", "xyz", "N", "force of the shaft on its bearing"),
     _bearing_load("moment", slice(3, 5), "rotation", _TILTS, "N m", "moment of the shaft on its bearing"),
     Part("", "motion.response", PROOF),
-    Rows("gear_pairs", lambda row: _pairs(row.steady, row.motion), PAIR),
+    Rows("gear_pairs", lambda row: _pairs(row.steady, (row.motion,), row.motion.response), PAIR),
     Rows("bearings", lambda row: [NamedParts(*each) for each in row.steady.bearing_parts(row.motion)], BEARING),
     Quantity("sensors", lambda row: _sensors(row.steady, row.motion)),
 )
@@ -286,7 +286,7 @@ def _excitations(solved: "SolvedSteady") -> list[_Excitation]:
 SUPERPOSED = (
     Quantity("stable", "superposed.stable"),
     Rows("excitations", _excitations, EXCITATION, "excitation"),
-    Rows("gear_pairs", lambda solved: _pairs(solved, None), PAIR),
+    Rows("gear_pairs", lambda solved: _pairs(solved, solved.motions, solved.superposed), PAIR),
     Rows("bearings", lambda solved: [NamedParts(*each) for each in solved.bearing_parts()], BEARING),
     Quantity("sensors", lambda solved: _sensors(solved, None)),
 )

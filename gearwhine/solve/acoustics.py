@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case import Case, CaseError, Housing, Operation, Problem, Transient
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.errors import UNSAID, key_of
 from gearwhine.coupling.errors import AcousticsError
@@ -22,12 +22,12 @@ def acoustics_of(case: Case) -> AcousticsSettings:
     return (case.acoustics or Acoustics()).build()
 
 
-def check_before_modes(case: Case) -> Callable[[Mesh], None] | None:
-    """Return what refuses a case's `[acoustics]` on the mesh of its housing; None where it has none of the two."""
-    if case.acoustics is None or case.housing is None:
+def check_before_modes(acoustics: Acoustics | None, housing: Housing | None) -> Callable[[Mesh], None] | None:
+    """Return what refuses `[acoustics]` on the mesh of a housing; None without one of the two."""
+    if acoustics is None or housing is None:
         return None
-    bore = max((seat.diameter for seat in case.housing.seat), default=None)
-    return partial(_require_on_mesh, acoustics_of(case), bore, case.housing.frequency_limit)
+    bore = max((seat.diameter for seat in housing.seat), default=None)
+    return partial(_require_on_mesh, acoustics.build(), bore, housing.frequency_limit)
 
 
 def _require_on_mesh(acoustics: AcousticsSettings, bore: float | None, limit_hz: float | None, mesh: Mesh) -> None:
@@ -55,12 +55,12 @@ def _require_on_mesh(acoustics: AcousticsSettings, bore: float | None, limit_hz:
         require_acoustics(acoustics, mesh, bore, acoustics.highest_frequency or limit_hz)
 
 
-def sound_left_out(case: Case) -> list[ResultWarning]:
-    """Return the warning that the sound of the lines of a case's motion is left out; none where it is not."""
+def sound_left_out(operation: Operation | None, transient: Transient | None) -> list[ResultWarning]:
+    """Return the warning that the sound of the lines of a motion is left out; none where it is not."""
     from gearwhine.coupling.sound.motion_lines import left_out_warnings
 
-    base_moves = case.operation is not None and case.operation.base is not None
-    speed_changes = case.transient is not None and case.transient.run is not None
+    base_moves = operation is not None and operation.base is not None
+    speed_changes = transient is not None and transient.run is not None
     return left_out_warnings(base_moves=base_moves, speed_changes=speed_changes)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from gearwhine.case import Case, GearPair, Housing, Rotor
+from gearwhine.case import Case, GearPair, Rotor
 from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
@@ -168,7 +168,7 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
     """
     parts = case.parts
     machine = parts.machine
-    require_comparable(case)
+    require_comparable(case.measured, case.housing)
     _ = parts.bearings  # a load that a rolling bearing cannot carry is refused here as by the commands that solve it
     if case.update is not None:
         fitted_case(case)
@@ -178,10 +178,15 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case.material, name)
         mesh, warnings = mesh_health.preview_mesh(case.housing, case.material, case.input_files, progress)
-        warnings += _checked_acoustics(case, case.housing, mesh)
+        if (refuse := check_before_modes(case.acoustics, case.housing)) is not None:
+            from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
+
+            surface = mesh.mesh or build_mesh(case.housing, case.material, case.input_files, order=1)
+            refuse(surface)
+            warnings += acoustics_warnings(acoustics_of(case), surface.bounds, case.housing.frequency_limit)
     reduced = None if case.reduced_housing is None else build_reduced_housing(case.reduced_housing, case.input_files)
     if reduced is not None:
-        component = reduced_component(case)
+        component = reduced_component(case.reduced_housing, case.input_files)
         if machine is not None:
             describe_machine(case, component)
         warnings += reduced.warnings
@@ -200,23 +205,6 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     sets = tuple(checked_sets(parts))
     return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings, imported, reduced)
-
-
-def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:
-    """Return warnings about the acoustics of a case.
-
-    Raises
-    ------
-    CaseError
-        With everything that is wrong with its radiating surface and microphones.
-    """
-    if (refuse := check_before_modes(case)) is None:
-        return []
-    from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
-
-    mesh = preview.mesh or build_mesh(housing, case.material, case.input_files, order=1)
-    refuse(mesh)
-    return acoustics_warnings(acoustics_of(case), mesh.bounds, housing.frequency_limit)
 
 
 def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:

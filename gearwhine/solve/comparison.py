@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case import CaseError, Housing, Problem
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.measured import Measured
 from gearwhine.case.measured import Pairing as PairingTable
@@ -35,16 +35,17 @@ def read_measured(measured: Measured, progress: Progress = silent) -> MeasuredMo
     CaseError
         Where the responses hold no modes that are stable.
     """
-    if measured.survey is None:
-        assert measured.frequencies is not None
+    if measured.frequencies is not None:
         ratios = None if measured.damping_ratios is None else np.array(measured.damping_ratios)
         return MeasuredModes(_TWO_PI * np.array(measured.frequencies), ratios)
-    if measured.survey.modes is not None:
-        return measured.survey.modes
-    assert measured.survey.responses is not None
+    survey = measured.survey
+    if survey is not None and survey.modes is not None:
+        return survey.modes
+    responses = None if survey is None else survey.responses
+    assert responses is not None  # checked with the case
     progress("finding modes in the measured responses")
     try:
-        return identify_modes(measured.survey.responses).modes
+        return identify_modes(responses).modes
     except HousingError as error:
         raise CaseError([Problem("measured.file", UNSAID, f"responses with modes in them; {error}")]) from error
 
@@ -113,7 +114,7 @@ def refused_by_key() -> Iterator[None]:
         raise CaseError(problems) from error
 
 
-def require_comparable(case: Case) -> None:
+def require_comparable(measured: Measured | None, housing: Housing | None) -> None:
     """Refuse a housing whose modes will not be known as far as the measured ones are paired, before it is solved.
 
     Raises
@@ -121,7 +122,6 @@ def require_comparable(case: Case) -> None:
     CaseError
         Where `frequency_limit` or `modes` are too low; nothing where the measured modes are not known yet.
     """
-    measured, housing = case.measured, case.housing
     if measured is None or housing is None or (highest := _highest_measured_hz(measured)) is None:
         return
     count, expected = highest

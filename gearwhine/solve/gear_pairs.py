@@ -1,9 +1,9 @@
 """Gear pairs of a case: their analyses, and the objective of each one's best tip relief."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case import Case, CaseError, GearPair, Problem, require
 from gearwhine.case.errors import NOTHING
 from gearwhine.case.gears import ReliefAim as GivenAim
 from gearwhine.coupling.analyses.gear_pairs import (
@@ -66,7 +66,9 @@ def relief_aims(
         Where the machine's loads cannot balance, so that a pair has no mean force in it.
     """
     aims = [entry.relief_aim for entry in case.gear_pair]
-    if not aims_at_sensor(case) and (housing is None or not _may_aim_at_sensors(case)):
+    # The level at a sensor needs a machine that turns in a housing with sensors.
+    turns = case.operation is not None and case.operation.speed != 0.0 and bool(case.rotor)
+    if not aims_at_sensor(case.gear_pair) and not (turns and housing is not None and housing.sensors):
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = housing or solve_housing(case, progress)
@@ -101,15 +103,9 @@ def _aim_of(
     return level_at_sensors(model, number, pair, sensors, weights)
 
 
-def _may_aim_at_sensors(case: Case) -> bool:
-    """Whether a case has what the level at a sensor needs: a machine that turns in a housing with sensors."""
-    turns = case.operation is not None and case.operation.speed != 0.0 and bool(case.rotor)
-    return turns and case.housing is not None and bool(case.housing.sensor)
-
-
-def aims_at_sensor(case: Case) -> bool:
+def aims_at_sensor(pairs: Iterable[GearPair]) -> bool:
     """Whether the tip relief of a gear pair aims at a sensor, for which the housing is solved."""
-    return any(pair.relief_aim is not None and pair.relief_aim.sensor is not None for pair in case.gear_pair)
+    return any(pair.relief_aim is not None and pair.relief_aim.sensor is not None for pair in pairs)
 
 
 def _without_sensor(aim: GivenAim | None) -> ReliefAim:

@@ -5,18 +5,14 @@ from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.housing import HousingModes
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, in_order, silent
 from gearwhine.numerics.source_digest import source_digest
-
-FloatArray = npt.NDArray[np.float64]
 
 _NOTE = "radiation"
 _CODE = (

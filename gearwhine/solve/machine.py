@@ -2,7 +2,9 @@
 
 from dataclasses import replace
 
-from gearwhine.case import Case, require
+from gearwhine.case import Case, Transient
+from gearwhine.case.model import lacking
+from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.loaded_machine import point_of_flanks
 from gearwhine.coupling.analyses.recording import TransientPlan
@@ -27,16 +29,16 @@ def reduce_housing(case: Case, solved: HousingModes) -> HousingComponent:
 
 
 def load_of_case(
-    case: Case, machine: Machine, progress: Progress = silent
+    parts: Parts, machine: Machine, progress: Progress = silent
 ) -> tuple[SolvedLoad | None, list[ResultWarning]]:
     """Find the operating point of a case's machine beside another analysis, and its warnings.
 
     See :func:`gearwhine.coupling.load_analysis.load_warnings.find_load`; the point is None where nothing loads it, too.
     """
-    if not case.is_loaded:
+    if not parts.is_loaded:
         return None, []
     return find_load(
-        machine, progress, is_needed=case.parts.needs_operating_point, aligned_by_default=aligned_by_default(case.parts)
+        machine, progress, is_needed=parts.needs_operating_point, aligned_by_default=aligned_by_default(parts)
     )
 
 
@@ -70,18 +72,18 @@ def plan_of(case: Case) -> TransientPlan:
     CaseError
         Where the case has none.
     """
-    require(case, "transient", command="run")
-    assert case.transient is not None
+    if case.transient is None:
+        raise lacking(case, "transient", command="run")
     return case.transient.build()
 
 
-def tracking_of(case: Case) -> OrderTracking:
-    """Return the windows of the order cuts of a case's run."""
-    run = None if case.transient is None else case.transient.run
+def tracking_of(transient: Transient | None) -> OrderTracking:
+    """Return the windows of the order cuts of a transient's run."""
+    run = None if transient is None else transient.run
     return OrderTracking() if run is None else run.orders.build()
 
 
-def run_of(case: Case) -> Run | None:
-    """Return the run of a case's transient; None at constant speed."""
-    run = None if case.transient is None else case.transient.run
+def run_of(transient: Transient | None) -> Run | None:
+    """Return the run of a transient; None at constant speed."""
+    run = None if transient is None else transient.run
     return None if run is None else run.build()

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import KDTree
 
 from gearwhine.case import CaseError, Problem
@@ -18,14 +17,12 @@ from gearwhine.housing.modes.receptance import OperatingShape
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
 from gearwhine.housing.storage.mode_file import ModeRecord
 from gearwhine.housing.storage.netcdf import read_netcdf
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.output.manifest import opened_dataset, require_as_written
 from gearwhine.output.sections import arrowed
 
 if TYPE_CHECKING:
     from gearwhine.coupling.analyses.signature import SolvedSignature
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 RESULTS_FILE = "results.nc"
 _TWO_PI = 2.0 * np.pi

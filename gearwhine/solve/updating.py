@@ -24,15 +24,14 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import tomli_w
 from scipy import sparse
 
-from gearwhine.case import Case, CaseError, Problem, UpdateParameter, require
+from gearwhine.case import Case, CaseError, Problem, UpdateParameter
 from gearwhine.case.checks.whole_case import without_changed
 from gearwhine.case.errors import UNSAID, Location, key_of
 from gearwhine.case.measured import Measured, Update
-from gearwhine.case.model import housing_table
+from gearwhine.case.model import lacking
 from gearwhine.case.units import si_unit
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import (
@@ -45,7 +44,7 @@ from gearwhine.from_case.parametric_housing import (
     with_entry,
 )
 from gearwhine.housing.correlation import dominance_band, real_shapes
-from gearwhine.housing.measured import map_survey
+from gearwhine.housing.measured import MeasuredGeometry, map_survey
 from gearwhine.housing.modal_test import ModalTest
 from gearwhine.housing.updating import (
     UNPAIRED,
@@ -72,12 +71,12 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.solve.comparison import modal_test_of, refused_by_key
 
 _TWO_PI = 2.0 * np.pi
-FloatArray = npt.NDArray[np.float64]
 
 _EXPLAINED_DEVIATIONS = 2.0  # standard deviations of a frequency that its noise explains
 _MARGIN = 1.0 / 3.0  # least gap of the two other measures, as a part of that of the measure that decides
@@ -136,20 +135,25 @@ def measurement_of(
         margin=_MARGIN * table.gap if table.gap and by_dominance else -np.inf,
         count=None if mode_count is None else ModeCount(_TWO_PI * mode_count.below, mode_count.least, mode_count.most),
     )
-    if pairing == "shapes":
-        return _with_shapes(test, table, mesh, target)
-    return Measurement(replace(target, pairing=pairing))
+    if pairing != "shapes":
+        return Measurement(replace(target, pairing=pairing))
+    if modes.shapes is None or modes.geometry is None:
+        raise CaseError([Problem("measured.file", UNSAID, "shapes at points, by which modes are paired")])
+    return _with_shapes(test, modes.shapes, modes.geometry, table, mesh, target)
 
 
-def _with_shapes(test: ModalTest, table: Update, mesh: Callable[[], Mesh], target: Target) -> Measurement:
-    measured, tolerance = test.modes, test.tolerance
-    geometry = measured.geometry
-    assert measured.shapes is not None
-    assert geometry is not None
-    shared = np.flatnonzero(~np.isnan(measured.shapes).any(axis=0))
-    if len(shared) <= len(measured.shapes):
+def _with_shapes(
+    test: ModalTest,
+    shapes: ComplexArray,
+    geometry: MeasuredGeometry,
+    table: Update,
+    mesh: Callable[[], Mesh],
+    target: Target,
+) -> Measurement:
+    shared = np.flatnonzero(~np.isnan(shapes).any(axis=0))
+    if len(shared) <= len(shapes):
         expected = (
-            f"shapes that share more than {len(measured.shapes)} degrees of freedom, as many as there are modes; "
+            f"shapes that share more than {len(shapes)} degrees of freedom, as many as there are modes; "
             f"{len(shared)} were measured in all of them"
         )
         raise CaseError([Problem("measured.file", UNSAID, expected)])
@@ -158,18 +162,18 @@ def _with_shapes(test: ModalTest, table: Update, mesh: Callable[[], Mesh], targe
         alignment = test.mapped(mesh(), geometry).alignment
 
     def observer(mesh: Mesh) -> sparse.csr_array:
-        mapped = map_survey(mesh, geometry, alignment=alignment, tolerance=tolerance)
+        mapped = map_survey(mesh, geometry, alignment=alignment, tolerance=test.tolerance)
         return sparse.csr_array(mapped.matrix[shared])
 
     with_shapes = Target(
         frequencies=target.frequencies,
         noise=target.noise,
         band=target.band,
-        shapes=real_shapes(measured.shapes[:, shared]),
+        shapes=real_shapes(shapes[:, shared]),
         shape_noise=table.shape_noise,
         count=target.count,
     )
-    return Measurement(with_shapes, observer, measured.shapes.shape[1] - len(shared))
+    return Measurement(with_shapes, observer, shapes.shape[1] - len(shared))
 
 
 _CLEAR_DOMINANCE_GAP = 0.1  # gap of dominance from which the choice of modes is a clear one
@@ -510,15 +514,14 @@ def update_housing(
     gearwhine.housing.HousingError
         Where the model cannot be solved as it stands.
     """
-    require(case, "housing", "measured", "update", command="update")
-    table, housing = case.update, housing_table(case, "update")
-    assert table is not None
-    assert case.measured is not None
+    table, housing, given = case.update, case.housing, case.measured
+    if table is None or housing is None or given is None:
+        raise lacking(case, "housing", "measured", "update", command="update")
     if housing.accuracy is not None:
         expected = "a mesh_size in its place: designs are compared on elements of one size (`gearwhine modes` finds it)"
         raise CaseError([Problem("housing.accuracy", f"{100 * housing.accuracy:g} %", expected)])
     mesh = partial(build_mesh, housing, case.material, case.input_files)
-    measured = measurement_of(case.measured, table, mesh, progress)
+    measured = measurement_of(given, table, mesh, progress)
     target = measured.target
     if null and target.shapes is not None:
         expected = "0 where shapes were measured: random frequencies have none"
@@ -586,7 +589,7 @@ def _raced(
     progress("solving the housing as it stands")
     each_has = threads if count == 1 else 1
     fine, coarse = replace(fine, threads=each_has), replace(coarse, threads=each_has)
-    same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
+    same = coarse.housing_at(coarse.start) == fine.housing_at(fine.start)
     with _sharing(threads, count) as each:
         tasks = [(fine, True)] if same else [(fine, False), (coarse, True)]
         solved: list[HousingAtParameters] = list(each(_as_it_stands, tasks))

@@ -9,11 +9,11 @@ from itertools import product
 
 import gearwhine
 from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
+from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.source_digest import installed, source_digest
 from gearwhine.output import file_stems
 from gearwhine.output.files import PRESENTATION, ROOMS, with_contents
-from gearwhine.solve.housing_modes import given_housing, housing_key
 
 WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "provenance"})
 """Tables that no transient depends on."""

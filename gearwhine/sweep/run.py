@@ -131,7 +131,7 @@ def _shared_housings(
             command="sweep",
             folder=folder,
             fresh=fresh and not housings,
-            before=check_before_modes(point.case),
+            before=check_before_modes(point.case.acoustics, point.case.housing),
         )
         housings[point.housing_key] = reduce_housing(point.case, solved)
     return housings, solved

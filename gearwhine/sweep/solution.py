@@ -100,8 +100,8 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        described = describe_machine(case, housing or reduced_component(case))
-        load, warnings_of_load = load_of_case(case, described)
+        described = describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+        load, warnings_of_load = load_of_case(case.parts, described)
         acoustics = None if case.acoustics is None else acoustics_of(case)
         return solve_motion_of_point(described, load, warnings_of_load, plan_of(case), begin, acoustics)
     except Exception as error:

@@ -187,7 +187,7 @@ def _without_lines(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> tup
 
     reasons: dict[str, list[Point]] = {}
     for swept_point in swept:
-        for entry in sound_left_out(swept_point.point.case):
+        for entry in sound_left_out(swept_point.point.case.operation, swept_point.point.case.transient):
             reasons.setdefault(str(entry["message"]), []).append(swept_point.point)
     warnings = []
     for message, points in reasons.items():

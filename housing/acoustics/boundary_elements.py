@@ -48,9 +48,7 @@ from gearwhine.housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE
 from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.errors import HousingError, TriangleSizeError
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _TWO_PI = 2.0 * np.pi
 _INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10

@@ -21,13 +21,9 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 # Barycentric coordinates and weights of Dunavant's rules of degree 2, 4 and 6.
 _DEGREE_2 = np.array([[2 / 3, 1 / 6, 1 / 6, 1 / 3], [1 / 6, 2 / 3, 1 / 6, 1 / 3], [1 / 6, 1 / 6, 2 / 3, 1 / 3]])

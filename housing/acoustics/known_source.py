@@ -29,9 +29,7 @@ import numpy.typing as npt
 from gearwhine.housing.acoustics.boundary_integrals import linear_projection
 from gearwhine.housing.acoustics.medium import HardPlane
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 SOURCE_DEPTH = 1.0
 """Longest edges from the centre of every triangle that a source has to stand away from.

@@ -16,16 +16,13 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from gearwhine.housing.acoustics.boundary_elements import surface_product
 from gearwhine.housing.acoustics.radiation import EquivalentField, HousingRadiation
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.storage.netcdf import LabelledArray
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 
 class SolvedAt(NamedTuple):

@@ -31,13 +31,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.acoustics.boundary_elements import SoundField, surface_load
 from gearwhine.housing.acoustics.radiation import EquivalentField, Field, HousingRadiation, RadiatedSound
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _TWO_PI = 2.0 * np.pi
 

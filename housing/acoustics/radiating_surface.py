@@ -8,9 +8,7 @@ import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.nearest_point import closest_on_triangles
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

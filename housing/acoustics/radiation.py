@@ -26,9 +26,7 @@ from gearwhine.housing.acoustics.wrapping import wrap
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.surface import FlatFace
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 Method = Literal["boundary-elements", "rayleigh", "erp"]
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from gearwhine.housing.errors import HousingError
@@ -16,10 +15,7 @@ from gearwhine.housing.fem.nearest_point import closest_on_triangles
 from gearwhine.housing.fem.outer_facets import triangle_middles
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import KINDS, Facets
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 # Local nodes of the plane triangles that a facet of a kind is split into.
 SPLITS: dict[str, tuple[tuple[int, int, int], ...]] = {

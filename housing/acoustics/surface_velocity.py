@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 from scipy.spatial import cKDTree
 
@@ -23,10 +22,7 @@ from gearwhine.housing.fem.surface import boundary_members, flat_face_names, fla
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import Facets, facet_centers, facet_normals
 from gearwhine.meshes.shape_functions import quadrature, shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
 _RULE_POINTS, _RULE_WEIGHTS = quadrature("triangle", 4)
 _SHARES = np.stack([1.0 - _RULE_POINTS.sum(axis=0), *_RULE_POINTS], axis=1)  # shape functions at the six points

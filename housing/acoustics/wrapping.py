@@ -17,7 +17,6 @@ from functools import cache, cached_property
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage, sparse
 from scipy.spatial import cKDTree
 
@@ -25,10 +24,7 @@ from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.skin import skin_of
 from gearwhine.housing.errors import HousingError, TriangleSizeError
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
 _FINE_CELLS_PER_CELL = 3  # fine cells along a cell of the wrap
 _MOST_CELLS = 3e7  # cells of the fine grid: about 2 GB

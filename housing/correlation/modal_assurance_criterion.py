@@ -162,11 +162,6 @@ def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> Compl
     return np.asarray((a.conj() * b).sum(axis=1) / np.where(norm > 0.0, norm, 1.0), dtype=np.complex128)
 
 
-def _largest_energy(shapes: ShapeArray, poles: ComplexArray) -> FloatArray:
-    hermitian, plain = (np.abs(shapes) ** 2).sum(axis=1), np.abs((shapes**2).sum(axis=1))
-    return np.asarray(hermitian / (2.0 * np.abs(poles.real)) + plain / (2.0 * np.abs(poles)))
-
-
 def largest_off_diagonal(matrix: FloatArray) -> float:
     """Largest off-diagonal entry of a square matrix without NaN; 0 where there is none."""
     others = matrix[~np.eye(len(matrix), dtype=bool)]

@@ -30,9 +30,7 @@ from gearwhine.housing.material import Material, element_constants
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import ElementKind
 from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _WORKING_SET = 2**20  # numbers in the gradient products of one chunk: 8 MB
 # Rounding of a middle node's distance from the middle of its edge, as a part of the element.

@@ -17,14 +17,12 @@ from queue import SimpleQueue
 from typing import Any, Literal, Protocol
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from gearwhine.housing.errors import FactorizationError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def available_memory(*, system: Path = Path("/")) -> float:

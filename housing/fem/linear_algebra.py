@@ -13,11 +13,10 @@ from itertools import pairwise
 from typing import Protocol, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
+
 T = TypeVar("T")
 
 _WORTH_A_THREAD = 2**22  # multiplications of one triangle: fewer are done sooner than a thread starts

@@ -16,9 +16,8 @@ from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix, at_once
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 Int32Array = npt.NDArray[np.int32]
 
 

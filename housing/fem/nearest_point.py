@@ -4,15 +4,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import ElementKind, Facets
 from gearwhine.meshes.shape_functions import shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
 _STEPS = 20

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import Facets, facet_centers, facet_normals, pick_facets
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _CELLS = 80  # cells of a view along the housing's diagonal
 _DIRECTIONS = 60  # directions of view

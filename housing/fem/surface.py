@@ -4,16 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import Facets, facet_centers, facet_normals, pick_facets
 from gearwhine.meshes.shape_functions import quadrature, shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
@@ -11,10 +10,10 @@ from gearwhine.housing.fem.matrices import Additions
 from gearwhine.housing.model.fixtures import port_fixture_matrices
 from gearwhine.housing.model.patches import Patch, Point, patch_matrix
 from gearwhine.meshes import Mesh
-from gearwhine.meshes.elements import IntArray, facet_nodes
+from gearwhine.meshes.elements import facet_nodes
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.numerics.own_copies import keep_tuples
 
-FloatArray = npt.NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]
 Axes = tuple[Point, Point, Point]
 

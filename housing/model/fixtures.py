@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
@@ -19,10 +18,9 @@ from gearwhine.housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlo
 from gearwhine.housing.fem.nearest_point import SurfacePoint, surface_point
 from gearwhine.housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
 from gearwhine.meshes import GeometryError, Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 MOST_PATCH_NODES = 2000
 """Largest number of nodes of one fixture. Each pair of them joins the matrices: 2000 nodes are 36 million entries."""

@@ -7,18 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import NOTHING, Matrices, NodeBlocks
 from gearwhine.housing.fem.nearest_point import SurfacePoint
-from gearwhine.housing.fem.surface import IntArray, SurfaceQuadrature, surface_quadrature
+from gearwhine.housing.fem.surface import SurfaceQuadrature, surface_quadrature
 from gearwhine.meshes import Mesh, box_facets, circle_facets, plane_facets
 from gearwhine.meshes.elements import Facets
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def rigid_motions(points: FloatArray, center: FloatArray) -> FloatArray:

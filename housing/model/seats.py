@@ -9,17 +9,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.nearest_point import surface_point
 from gearwhine.housing.model.patches import patch_matrix, point_matrix, ring_matrix
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

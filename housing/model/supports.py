@@ -7,19 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import NOTHING, Additions
-from gearwhine.housing.fem.surface import IntArray
 from gearwhine.housing.model.bushings import Mount
 from gearwhine.housing.model.patches import Patch, rigid_motions, spread
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import Facets, facet_nodes
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.numerics.findings import Flags, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

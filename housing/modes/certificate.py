@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.housing.errors import FactorizationError, HousingError, IncompleteModesError
@@ -21,8 +20,7 @@ from gearwhine.housing.fem.factorization import Factorization, Factorizer
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.housing.fem.matrices import FreeSystem
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8

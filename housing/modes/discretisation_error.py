@@ -28,9 +28,7 @@ from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import ElementBlock, facet_centers, facet_normals
 from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 SAFETY = 1.5
 """Factor of safety s of the estimate.

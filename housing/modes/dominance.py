@@ -13,10 +13,8 @@ divided by ω), and mean absolute values in place of the root-mean-squares.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

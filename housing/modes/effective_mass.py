@@ -15,16 +15,13 @@ elastic modes are M-orthogonal to R and carry none. The last term is the mass of
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import linalg
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import FreeMass, Matrices
 from gearwhine.housing.model.patches import rigid_body, rigid_motions
 from gearwhine.housing.modes.natural_modes import ModeSet
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray
 
 _TOLERANCE = 1e-12  # relative residual of M_ff x = (M R)_f
 _ITERATIONS = 2000  # far more than the well conditioned mass takes

@@ -26,13 +26,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from gearwhine.housing.errors import IncompleteModesError
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 TOLERANCE = 1e-9
 """Tolerance of a Ritz pair's residual, as a part of ν."""

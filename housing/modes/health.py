@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HealthError
@@ -21,8 +20,7 @@ from gearwhine.housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.housing.modes.residual_modes import STATIC_BOUND
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 MASS_BOUND = 1e-6  # error of mass, and of the centre over the diagonal: curved elements are not integrated exactly
 REGULAR_BOUND = 1e-9

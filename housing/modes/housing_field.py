@@ -6,12 +6,10 @@ A machine takes of its housing only motions at seats and sensors; sound and pict
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

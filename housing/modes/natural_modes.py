@@ -24,9 +24,7 @@ from gearwhine.housing.modes.residual_modes import (
     port_motions,
     residual_attachment_modes,
 )
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LARGEST_ENTRY_TOLERANCE = 1e-6  # part of the largest entry by which another may be smaller and count as large
 

@@ -15,15 +15,11 @@ An operating deflection shape is the motion of the housing at one line of its sp
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.modes.natural_modes import ModeSet
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 _EVEN_POINTS = 400  # frequencies across a band, beside those around each resonance
 _CHUNK = 1024  # frequencies at a time: bounds the working memory

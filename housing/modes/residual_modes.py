@@ -68,15 +68,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg, sparse
 
 from gearwhine.housing.errors import HousingError, ReductionError
 from gearwhine.housing.fem.linear_algebra import Operator
 from gearwhine.housing.modes.certificate import RESIDUAL_BOUND
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 Solve = Callable[[FloatArray], FloatArray]
 
 STATIC_BOUND = 1e-10

@@ -9,17 +9,13 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import KDTree
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.measured.survey_data import MeasuredGeometry
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 DRAWN_SCALE = 0.07
 """Largest displacement drawn, as a part of the housing's diagonal."""

@@ -28,8 +28,7 @@ from gearwhine.housing.pictures.drawn_shapes import (
 )
 from gearwhine.housing.storage.atomic_file import atomic_file
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _MAGIC, _VERSION, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
 _FLOAT, _UNSIGNED_INT = 5126, 5125

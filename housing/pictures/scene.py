@@ -24,8 +24,7 @@ from gearwhine.housing.pictures.views import (
     view_of_most_motion,
     viewing_direction,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LIBRARIES = (
     ("libEGL.so.1", "vtkEGLRenderWindow"),

@@ -3,12 +3,10 @@
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 AUTO = "auto"
 """The corner from which most of a shape's motion is seen."""

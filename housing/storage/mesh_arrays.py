@@ -3,13 +3,11 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.storage.netcdf import LabelledArray, digest
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import Facets
-
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import IntArray
 
 
 def mesh_arrays(mesh: Mesh) -> dict[str, LabelledArray]:

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError, ModeFileError
 from gearwhine.housing.model.seats import Seat, Sensor, SensorPort
@@ -34,8 +33,7 @@ from gearwhine.housing.storage.netcdf import (
     write_netcdf,
 )
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _ONE = ("attachment",)
 _PORTS = ("loaded_motion", "moved_motion")

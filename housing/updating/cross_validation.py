@@ -10,14 +10,12 @@ from dataclasses import dataclass, replace
 from typing import Generic
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
 from gearwhine.housing.updating.multistart import Each, Meshes, multistart_search, polish, serial_map
 from gearwhine.housing.updating.parameters import Parameter, Posterior, posterior
 from gearwhine.housing.updating.trust_region import AnyDesign, Effort, Solve
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 # Least relative distance of two random frequencies, which a survey could still separate.
 _LEAST_FREQUENCY_DISTANCE = 0.01

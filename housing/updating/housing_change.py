@@ -5,15 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.fem.surface import flat_faces
 from gearwhine.housing.updating.sensitivities import ModelSensitivity
 from gearwhine.housing.updating.static_sensitivity import PortRates, StaticSensitivity
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.box.morph import with_middles
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is a parameter
 

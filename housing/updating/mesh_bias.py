@@ -17,15 +17,13 @@ from functools import cached_property
 from typing import Generic
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 from scipy.optimize import linear_sum_assignment
 
 from gearwhine.housing.correlation import modal_assurance_criterion
 from gearwhine.housing.updating.surrogate import ModalState, Surrogate
 from gearwhine.housing.updating.trust_region import AnyDesign, Solve
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LEAST_MAC = 0.5  # below it two modes of the two meshes are no pair
 # Part of the strongest combination of the known modes below which one is not observable at seats and skin.

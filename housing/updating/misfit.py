@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from gearwhine.housing.correlation import modal_assurance_criterion
@@ -26,9 +25,7 @@ from gearwhine.housing.correlation.pairing import nearest_in_order
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.updating.mode_choice import ChoiceShortfall, choice_shortfall, choose_modes
 from gearwhine.housing.updating.surrogate import ModalState, Neighbour
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 UNPAIRED = -1
 """Stands for the partner of a measured mode that has none."""

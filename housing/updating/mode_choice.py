@@ -20,13 +20,10 @@ from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.modes.dominance import Dominance
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 _Shortfalls: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 
 GAP_SCALE = 0.02

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.updating.mesh_bias import Debiased, MeshBias, debiased
@@ -21,8 +20,7 @@ from gearwhine.housing.updating.misfit import Misfit, Target, is_met, measure
 from gearwhine.housing.updating.parameters import Parameter, coordinate_bounds
 from gearwhine.housing.updating.surrogate import ModalState, Surrogate
 from gearwhine.housing.updating.trust_region import AnyDesign, Effort, SearchResult, Solve, Step, descend, search
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _DRAWN = 8  # draws from the prior for each start that is solved
 _DESCENT = 25  # steps of each draw on the surrogate

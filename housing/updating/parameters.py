@@ -18,13 +18,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.updating.misfit import Misfit, Target, residuals
 from gearwhine.housing.updating.surrogate import Neighbour
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _CONFOUNDED = 0.7  # correlation from which the data determine a combination of two parameters only
 

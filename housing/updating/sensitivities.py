@@ -19,7 +19,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
@@ -27,10 +26,7 @@ from gearwhine.housing.fem.assembly import stiffness_degree, straight_elements
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import ElementKind
 from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
 _WORKING_SET = 2**19  # numbers in the modes' gradients of one chunk: 4 MB, that a core keeps at hand
 _EQUAL_VELOCITY_SHARE = 1e-10  # part of the largest velocity: nodes of an element that differ by less move as one

@@ -23,15 +23,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.updating.sensitivities import ModelSensitivity, modal_sensitivities
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, shape_functions
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 PortRates = Mapping[str, sparse.csr_array]
 """dS of each port that a parameter moves: its motions from the nodes', shape (r, 3 n_nodes)."""

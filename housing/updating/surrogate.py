@@ -22,14 +22,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.modes.dominance import Dominance, dominance
 from gearwhine.housing.updating.sensitivities import ModalSensitivities
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _TOGETHER = 1e-9  # difference of ln λ below which two modes are one
 _SMALLEST_MOTION = 1e-300  # motion of seats and skin at rest

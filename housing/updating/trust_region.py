@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
 from gearwhine.housing.updating.parameters import Parameter, coordinate_bounds
 from gearwhine.housing.updating.surrogate import ModalState, Neighbour, Surrogate
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _STEPS = 8  # Gauss-Newton steps from each start
 _LEAST_PREDICTED_DECREASE = 0.02  # least predicted decrease for a full solution, as a part of the misfit

@@ -14,10 +14,10 @@ from gearwhine.meshes.box import layout
 from gearwhine.meshes.box.geometry import BoxGeometry
 from gearwhine.meshes.box.layout import Block
 from gearwhine.meshes.box.parts import FACES, Cover
-from gearwhine.meshes.elements import FloatArray
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.gmsh_meshing import check_mesh_request, check_mesh_size, collect, gmsh_session, mesh_solids
 from gearwhine.meshes.mesh import Mesh
+from gearwhine.numerics.arrays import FloatArray
 
 Entities = list[tuple[int, int]]
 

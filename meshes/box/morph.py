@@ -20,9 +20,10 @@ from scipy.sparse.linalg import splu
 from gearwhine.meshes.box import layout
 from gearwhine.meshes.box.geometry import BoxGeometry
 from gearwhine.meshes.box.layout import Block
-from gearwhine.meshes.elements import FloatArray, IntArray, facet_centers, facet_normals
+from gearwhine.meshes.elements import facet_centers, facet_normals
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.mesh import Mesh
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 class MorphError(GeometryError):

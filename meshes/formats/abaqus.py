@@ -13,10 +13,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from gearwhine.meshes.elements import KINDS, NO_NODE, ElementBlock, IntArray, count
+from gearwhine.meshes.elements import KINDS, NO_NODE, ElementBlock, count
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.formats.content import MeshContent, corner_rows, find_faces
 from gearwhine.meshes.mesh import Mesh
+from gearwhine.numerics.arrays import IntArray
 
 _DEPTH = 20  # levels of files that include files
 _INCLUDE, _INPUT = "INCLUDE", "INPUT"

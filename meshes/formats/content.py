@@ -5,18 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearwhine.meshes.elements import (
-    NO_NODE,
-    ElementBlock,
-    FloatArray,
-    IntArray,
-    faces_as_facets,
-    group_rows,
-    pick_facets,
-)
+from gearwhine.meshes.elements import NO_NODE, ElementBlock, faces_as_facets, group_rows, pick_facets
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.mesh import Mesh
 from gearwhine.meshes.shape_functions import volumes
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ from urllib.parse import quote, unquote
 
 import numpy as np
 
-from gearwhine.meshes.elements import FACETS, NO_NODE, SOLIDS, ElementBlock, IntArray, count, merged, outside_nodes
+from gearwhine.meshes.elements import FACETS, NO_NODE, SOLIDS, ElementBlock, count, merged, outside_nodes
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.formats.content import MeshContent, corner_rows, find_faces
 from gearwhine.meshes.mesh import Mesh
+from gearwhine.numerics.arrays import IntArray
 
 # Cell arrays of numbers that stand for regions, and how a region without a name is called.
 _TAGS = {

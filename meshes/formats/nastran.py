@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwhine.meshes.elements import NO_NODE, ElementBlock, FloatArray, IntArray
+from gearwhine.meshes.elements import NO_NODE, ElementBlock
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.formats.content import MeshContent
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 ENDINGS = (".bdf", ".fem", ".nas")
 """Endings of the files that are bulk data of Nastran."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from gearwhine.numerics.branch_following import (
     BranchPoint,
     along_branches,
@@ -46,11 +47,6 @@ from gearwhine.rotors.whirl.modal_projection import ModalProjection
 from gearwhine.rotors.whirl.motion import ShaftMotion
 from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT
 from gearwhine.rotors.whirl.whirl_modes import NEUTRAL, START_REACH, ComplexFrequencies, WhirlSolver
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
-BoolArray = npt.NDArray[np.bool_]
 
 # Relative jump of an eigenvalue that costs as much as zero likeness, and the largest cost of a jump in such jumps.
 JUMP_SCALE = 0.1
@@ -141,7 +137,7 @@ def _characters_of_all(equations: WhirlEquations, roots: Sequence[ExactRoots], s
     return np.split(every, np.cumsum(sizes)[:-1])
 
 
-def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray) -> ComplexArray:
+def _continued(roots: Sequence[ExactRoots], table: IndexArray, speeds: FloatArray) -> ComplexArray:
     """Linear continuation of the last speed's roots to the next speed, along the branches of a table, (w,).
 
     ``roots`` are the roots of the last two speeds, or of the first speed; ``speeds`` are their speeds and the next one.

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.analyses.campbell import campbell
 from gearwhine.rotors.certificate import ACCEPTED, ModeCertificate
 from gearwhine.rotors.errors import RotorError, require, require_count
@@ -27,8 +28,6 @@ from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSo
 # Number of speeds at which bearing tables are searched, and the factor beyond them up to which branches are followed.
 TABLE_SPEEDS = 60
 TABLE_REACH = 1.2
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.errors import require, require_finite
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.model.loads import HarmonicForce
@@ -18,8 +19,6 @@ from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCU
 from gearwhine.rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_equations, whirl_reach
 from gearwhine.rotors.whirl.motion import ShaftMotion
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 # Circular loads over r+, β+, r−, β−, z at some places and frequencies, (b, places, 5), N and N·m.
 Loads = ComplexArray
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.certificate import ModeCertificate, combined_certificate
 from gearwhine.rotors.errors import require, require_count, require_finite
 from gearwhine.rotors.model.bearing import Bearing, undamped
@@ -18,8 +18,6 @@ from gearwhine.rotors.transfer_matrix.wittrick_williams import lowest_natural_fr
 from gearwhine.rotors.whirl.modal_projection import slowest
 from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT
 from gearwhine.rotors.whirl.whirl_modes import solve_whirl
-
-FloatArray = npt.NDArray[np.float64]
 
 # Number of bisections after which roots of both planes that are not separated count as one.
 MOST_HALVINGS = 50

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.findings import (
     Choice,
     Instance,
@@ -48,9 +49,6 @@ from gearwhine.rotors.modes.torsional_and_axial import TorsionalModes, solve_axi
 from gearwhine.rotors.rolling_bearings import RollingState
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlModes, WhirlSolver
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _DEFLECTION_PLACES = 201  # places along a rotor at which its static deflection is given
 

@@ -24,6 +24,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.rotors.analyses.statics import TINY
 from gearwhine.rotors.errors import RotorError, require
 from gearwhine.rotors.model.profile import (
@@ -38,9 +39,6 @@ from gearwhine.rotors.model.shaft import Rotor, station_index, station_inertias
 from gearwhine.rotors.transfer_matrix.discretised_shaft import ELEMENT_MARGIN
 from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
 from gearwhine.rotors.transfer_matrix.timoshenko import ShaftElements
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 # Node displacements of each motion, in the order of `StaticShaft.motions`, and their signs. The slope in x is the
 # rotation about y, the slope in y minus that about x.
@@ -227,7 +225,7 @@ class _Motion:
     nodes: FloatArray
     elements: ShaftElements
     units: FloatArray
-    span: IntArray
+    span: IndexArray
     starts: FloatArray
     spans: FloatArray
     stiffness: FloatArray
@@ -252,7 +250,7 @@ class _Motion:
         return _apply(_with_weight(inside, self.units), states)[..., :-1]
 
 
-def _motion(nodes: FloatArray, coefficients: FloatArray, node_mass: FloatArray, station: IntArray) -> _Motion:
+def _motion(nodes: FloatArray, coefficients: FloatArray, node_mass: FloatArray, station: IndexArray) -> _Motion:
     """One motion of elements with coefficients (p, 6 or 2, j) in SI and masses (p + 1,) at nodes, between stations."""
     n, length = (2 if coefficients.shape[1] == 6 else 1), float(nodes[-1])
     # The compliance of the middle of each element, 1/EI of a beam, stands for it in the unit of force.

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.analyses.harmonic_response import bearing_forces
 from gearwhine.rotors.errors import RotorError, require, require_finite
 from gearwhine.rotors.model.bearing import Bearing
@@ -24,9 +25,6 @@ from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
 from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
 from gearwhine.rotors.whirl.equations import WhirlEquations, whirl_equations, whirl_reach
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 STANDARD_GRAVITY = (0.0, -9.80665, 0.0)
 # Imaginary step of ω² in the derivative: no difference is taken, so that it may be arbitrarily small.

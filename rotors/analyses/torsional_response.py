@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.banded import BandPattern
 from gearwhine.rotors.analyses.harmonic_response import finite_values
 from gearwhine.rotors.errors import require, require_finite
@@ -21,9 +22,6 @@ from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
 from gearwhine.rotors.transfer_matrix.rotor_shafts import rod_shaft
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

@@ -17,15 +17,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray
 from gearwhine.rotors.analyses.harmonic_response import HarmonicResponse, finite_values, solve_harmonic
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.model.loads import Bow, Unbalance
 from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shaft
 from gearwhine.rotors.whirl.modal_projection import slowest
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

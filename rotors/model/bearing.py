@@ -13,10 +13,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Instance, Number, Part, Text, attribute_findings, refuse
 from gearwhine.rotors.errors import RotorError, require, require_finite
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

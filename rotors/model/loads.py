@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Number, attribute_findings, refuse
 from gearwhine.rotors.errors import RotorError, require, require_finite
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.rotors.errors import RotorError, require, require_finite
 from gearwhine.rotors.model.segment import Coupling, Segment
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 _DEGREE = 16  # degree of the interpolants along a cone
 _TAIL = 2e-15  # last coefficients of an interpolant that is exact, relative to the largest
@@ -131,7 +129,7 @@ class Profile:
 
     edges: FloatArray
     lengths: FloatArray
-    section_of_span: IntArray
+    section_of_span: IndexArray
     coefficients: FloatArray
     bounds: FloatArray
     uniform: npt.NDArray[np.bool_]
@@ -141,7 +139,7 @@ class Profile:
         """Geometric mean of the spans' least EI, N·m²."""
         return float(np.exp(np.log(self.bounds[self.section_of_span, 1]).mean()))
 
-    def spans(self, nodes: FloatArray) -> IntArray:
+    def spans(self, nodes: FloatArray) -> IndexArray:
         """Span that holds each interval between nodes (p + 1,), which hold the edges; (p,)."""
         middles = 0.5 * (nodes[1:] + nodes[:-1])
         return np.clip(np.searchsorted(self.edges, middles) - 1, 0, self.section_of_span.size - 1)

@@ -5,13 +5,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Number, Rule, attribute_findings, refuse
 from gearwhine.rotors.errors import RotorError
 from gearwhine.rotors.model.material import ElasticMaterial, Section, ShearFormula
-
-FloatArray = npt.NDArray[np.float64]
 
 DAMPINGS = ("lateral_damping", "tilt_damping", "torsional_damping", "axial_damping")
 

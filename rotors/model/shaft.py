@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -29,9 +29,6 @@ from gearwhine.rotors.model.profile import (
     shaft_profile,
 )
 from gearwhine.rotors.model.segment import Coupling, Segment
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 _LARGEST_STRAIN = 0.1
 
@@ -274,7 +271,7 @@ class ShaftSpans:
     """
 
     nodes: FloatArray
-    kind: IntArray
+    kind: IndexArray
     start: FloatArray
     end: FloatArray
     lengths: FloatArray

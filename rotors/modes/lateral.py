@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.certificate import ModeCertificate
 from gearwhine.rotors.errors import require
 from gearwhine.rotors.model.bearing import RadialSupport
@@ -28,7 +29,6 @@ MOST_DOUBLINGS = 100
 LEAST_FACTOR = 1e-9
 # Deviation from a unit motion of the whole shaft at a support below which the modes follow it.
 FOLLOWED = 1e-6
-FloatArray = npt.NDArray[np.float64]
 
 
 def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> float:

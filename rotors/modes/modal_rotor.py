@@ -26,8 +26,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import require, require_finite
 from gearwhine.rotors.model.bearing import Bearing, RadialSupport
 from gearwhine.rotors.model.segment import Segment, gauss_rule
@@ -42,8 +42,6 @@ from gearwhine.rotors.modes.torsional_and_axial import (
 )
 from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
 from gearwhine.rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
-
-FloatArray = npt.NDArray[np.float64]
 
 _FRACTIONS, _WEIGHTS = gauss_rule(10)  # for intervals no longer than the shaft is thick
 

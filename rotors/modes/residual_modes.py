@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.modes.lateral import LateralModes, lateral_modes
 from gearwhine.rotors.modes.torsional_and_axial import Modes, RodModes, rod_modes
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
@@ -15,8 +15,6 @@ from gearwhine.rotors.transfer_matrix.mode_shapes import (
     responses,
     ritz_vectors,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 # Part of the static response below which a residual is rounding.
 NOTHING_LEFT = 1e-7

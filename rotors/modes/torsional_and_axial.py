@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.certificate import ModeCertificate
 from gearwhine.rotors.errors import require
 from gearwhine.rotors.model.bearing import AxisSpring
@@ -17,8 +18,6 @@ from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.transfer_matrix.discretised_shaft import ContinuousShaft
 from gearwhine.rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, find_modes, require_positions
 from gearwhine.rotors.transfer_matrix.rotor_shafts import rod_shaft
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors.errors import EquilibriumError
 from gearwhine.rotors.rolling_bearings.element_contacts import (
@@ -38,8 +38,6 @@ from gearwhine.rotors.rolling_bearings.element_contacts import (
     row_energy,
 )
 from gearwhine.rotors.rolling_bearings.rows import BallRow
-
-FloatArray = npt.NDArray[np.float64]
 
 # Closure error of the contacts, as a part of the distance between the grooves' centres: target and largest accepted.
 # The largest accepted error also limits the force error, relative to the larger of static and centrifugal force.

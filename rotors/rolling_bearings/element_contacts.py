@@ -25,11 +25,9 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings.rows import BallRow
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

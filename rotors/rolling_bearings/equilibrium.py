@@ -29,8 +29,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
-from gearwhine.rotors.errors import EquilibriumError, require, require_count, require_finite
+from gearwhine.rotors.errors import EquilibriumError, require, require_finite
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
@@ -40,8 +41,6 @@ from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
 from gearwhine.rotors.rolling_bearings.roller_slices import RollerSlices
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing
 from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow
-
-FloatArray = npt.NDArray[np.float64]
 
 COORDINATES = ("x", "y", "z", "rx", "ry")
 """The inner ring's displacement against the outer: along x, y, z, and rotations about x and y."""
@@ -461,25 +460,3 @@ def linearised_bearing(state: RollingState, name: str, at: float, *, damping: np
         )
     damped = np.zeros((2, 2)) if damping is None else np.asarray(damping, dtype=np.float64)
     return Bearing(name, at, state.stiffness, damped)
-
-
-def kramer_ball_stiffness(count: int, ball_diameter: float, load: float, contact_angle: float = 0.0) -> float:
-    """Radial stiffness [N/m] in the direction of a radial load [N] by Krämer's formula, for a first estimate.
-
-    k = 13e6 Z^{2/3} d^{1/3} F^{1/3} cos^{5/3} α in N and m (Krämer 1993, after Friswell et al. 2010, chapter 5): no
-    clearance, grooves as usual.
-    """
-    _require_formula("balls", count, ball_diameter, load)
-    return float(13e6 * (count**2 * ball_diameter * load) ** (1 / 3) * math.cos(contact_angle) ** (5 / 3))
-
-
-def kramer_roller_stiffness(count: int, length: float, load: float, contact_angle: float = 0.0) -> float:
-    """Return Krämer's stiffness of a roller bearing, k = 1.0e9 Z^{0.9} l^{0.8} F^{0.1} cos^{1.9} α, in N and m."""
-    _require_formula("rollers", count, length, load)
-    return float(1.0e9 * count**0.9 * length**0.8 * load**0.1 * math.cos(contact_angle) ** 1.9)
-
-
-def _require_formula(label: str, count: int, size: float, load: float) -> None:
-    require_count(f"count of {label}", count)
-    require_finite(f"size of {label}", size, positive=True)
-    require_finite(f"load on {label}", load, minimum=0.0)

@@ -20,14 +20,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors.errors import EquilibriumError
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy, ball_kinematics
 from gearwhine.rotors.rolling_bearings.rows import FourPointRow
-
-FloatArray = npt.NDArray[np.float64]
 
 # Force out of balance on a ball, relative to its loads: where Newton's method on all balls at once ends, and the
 # largest accepted.

@@ -33,16 +33,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import require_finite
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads
 from gearwhine.rotors.rolling_bearings.equilibrium import RollingState
 from gearwhine.rotors.rolling_bearings.ratings import Row, contact_ratings, dynamic_rating
 from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
 from gearwhine.rotors.rolling_bearings.rows import FourPointRow
-
-FloatArray = npt.NDArray[np.float64]
 
 _MILLION = 1e6
 # ISO 281:2007, table 3: relative axial load F_a / (i Z D²) [Pa] of the columns, and for each contact angle [degrees]:

@@ -44,19 +44,16 @@ from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import require, require_count, require_finite
 from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity
 from gearwhine.rotors.rolling_bearings.rows import RIGHT_ANGLE, require_space
 
-FloatArray = npt.NDArray[np.float64]
-
 Profile = Literal["straight", "logarithmic"]
 # ISO 16281's line contact of both raceways in series: q = 35 948 L^{8/9} δ^{10/9} in N and mm.
 _PALMGREN_STEEL = 35948.0 * 1000.0 ** (8.0 / 9.0) * 1000.0 ** (10.0 / 9.0)
-
 
 _MOST_SLENDER = 15.0  # length of a roller over its diameter: needles have up to 10
 

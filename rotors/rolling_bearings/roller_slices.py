@@ -17,12 +17,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy
 from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, TaperedRollerRow
-
-FloatArray = npt.NDArray[np.float64]
 
 _POWER = 10.0 / 9.0
 # Newton's steps of a slice with centrifugal force: its error squares in each, from at most a half.

@@ -25,14 +25,13 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.rotors.errors import RotorError
 from gearwhine.rotors.model.profile import merged_positions, restricted
 from gearwhine.rotors.model.segment import gauss_rule
 from gearwhine.rotors.model.shaft import station_index
 from gearwhine.rotors.transfer_matrix.timoshenko import NumberArray, ShaftElements
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 
@@ -83,7 +82,7 @@ class DiscretisedShaft:
 
     nodes: FloatArray
     table: ShaftElements
-    element: IntArray
+    element: IndexArray
     node_inertia: FloatArray
     node_stiffness: FloatArray
     node_polar: FloatArray
@@ -128,7 +127,7 @@ class DiscretisedShaft:
         along = self.table.coefficients_along(SQUARE_FRACTIONS)[:, :, 2:4]
         return np.asarray(along * (self.table.lengths[:, None] * SQUARE_WEIGHTS)[:, :, None])
 
-    def coefficients_at(self, number: IntArray, fraction: FloatArray) -> FloatArray:
+    def coefficients_at(self, number: IndexArray, fraction: FloatArray) -> FloatArray:
         """Coefficients of the table at fractions (z,) of elements (z,) by number, (z, 6) or (z, 2)."""
         return self.table.coefficients_at(self.element[number], fraction)
 
@@ -146,7 +145,7 @@ class DiscretisedShaft:
 
     def transfer_matrices_to(
         self,
-        number: IntArray,
+        number: IndexArray,
         fraction: FloatArray,
         translation: npt.ArrayLike,
         rotation: npt.ArrayLike | None = None,
@@ -154,7 +153,7 @@ class DiscretisedShaft:
         """Transfer matrices from the left ends of elements (z,) by number to fractions (z,) of them, (z, b, 2n, 2n)."""
         return self.table.transfer_matrices_to(self.element[number], fraction, translation, rotation)
 
-    def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
+    def places(self, positions: FloatArray) -> tuple[IndexArray, FloatArray]:
         """Find the number of the element at each position (z,) in m, and the fraction of it to the left, both (z,)."""
         number = self.nodes.searchsorted(positions, side="right") - 1
         number = np.minimum(np.maximum(number, 0), self.element.size - 1)
@@ -225,7 +224,7 @@ class DiscretisedShaft:
         return np.zeros((0, place.size, 2))
 
 
-def spread(size: int, index: IntArray, values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
+def spread(size: int, index: IndexArray, values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
     """Spread values at the nodes of ascending ``index`` to ``size`` nodes; zero at the others."""
     if size == index.size:
         return values
@@ -270,7 +269,7 @@ class ContinuousShaft:
     label: str
     nodes: FloatArray
     stations: FloatArray
-    kind: IntArray
+    kind: IndexArray
     start: FloatArray
     end: FloatArray
     lengths: FloatArray
@@ -334,7 +333,7 @@ class ContinuousShaft:
             )
         return self.in_elements(counts.astype(np.intp), highest)
 
-    def in_elements(self, counts: IntArray, highest: float) -> DiscretisedShaft:
+    def in_elements(self, counts: IndexArray, highest: float) -> DiscretisedShaft:
         """Discretise every span into ``counts`` (s,) equal elements, valid up to ``highest`` rad/s."""
         from gearwhine.rotors.transfer_matrix.timoshenko_kernels import cut_spans
 

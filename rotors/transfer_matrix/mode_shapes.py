@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.certificate import ModeCertificate, certify
 from gearwhine.rotors.errors import IncompleteModesError, RotorError, require, require_count, require_finite
 from gearwhine.rotors.model.profile import STATION_TOLERANCE
@@ -30,8 +31,6 @@ from gearwhine.rotors.transfer_matrix.wittrick_williams import (
     shaft_arrays,
     wittrick_williams_count,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

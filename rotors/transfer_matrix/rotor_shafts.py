@@ -5,14 +5,13 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.model.bearing import AxisSpring, RadialSupport
 from gearwhine.rotors.model.profile import AXIAL, BENDING, TORSION
 from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft
 
-FloatArray = npt.NDArray[np.float64]
 RodMotion = Literal["torsion", "axial"]
 
 

@@ -42,8 +42,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
+from gearwhine.numerics.arrays import FloatArray, IndexArray
+
 NumberArray = npt.NDArray[Any]
 
 WHOLE = np.ones(1)
@@ -99,7 +99,7 @@ class ShaftElements:
 
     def transfer_matrices_to(
         self,
-        element: IntArray,
+        element: IndexArray,
         fractions: FloatArray,
         translation: npt.ArrayLike,
         rotation: npt.ArrayLike | None = None,
@@ -129,7 +129,7 @@ class ShaftElements:
         powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(order)
         return np.asarray(np.einsum("efj,kj->ekf", self.coefficients, powers))
 
-    def coefficients_at(self, element: IntArray, fractions: FloatArray) -> FloatArray:
+    def coefficients_at(self, element: IndexArray, fractions: FloatArray) -> FloatArray:
         """Coefficients at fractions (z,) of some elements (z,), (z, 6) or (z, 2)."""
         selected = self.coefficients[element]
         if selected.shape[2] == 1:

@@ -32,19 +32,16 @@ the count's parity as its sign. Where the count shows one root between two frequ
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.rotors.errors import IncompleteModesError
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 # Part of the limit above which all motions but the rigid ones must lie.
 LOWEST = 1e-16
 
 
-def shaft_arrays(shaft: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
+def shaft_arrays(shaft: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IndexArray, FloatArray, FloatArray]:
     """Return the arrays of a discretised shaft in the order of compiled functions."""
     table = shaft.table
     return table.lengths, table.coefficients, shaft.element, shaft.node_stiffness, shaft.node_inertia

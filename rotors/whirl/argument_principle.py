@@ -36,12 +36,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.errors import IncompleteModesError
 from gearwhine.rotors.whirl.eigenvalues import Speed
 from gearwhine.rotors.whirl.equations import WhirlEquations
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 NONE = np.zeros(0, dtype=np.complex128)
 

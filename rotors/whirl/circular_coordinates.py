@@ -13,12 +13,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.model.bearing import Bearing
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 # Rows r+, β+, r−, β−, z; columns x, y, z and the rotations about x and about y, as in `gearwhine.rotors.Bearing`.
 CIRCULAR = np.array(

@@ -28,8 +28,8 @@ count exceeds the roots found, the missing ones are searched for again.
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.rotors.certificate import ModeCertificate
 from gearwhine.rotors.errors import IncompleteModesError
 from gearwhine.rotors.model.bearing import Bearing
@@ -37,10 +37,6 @@ from gearwhine.rotors.whirl.argument_principle import NONE, RootOnContourError, 
 from gearwhine.rotors.whirl.circular_coordinates import NodeBearing
 from gearwhine.rotors.whirl.eigenvalues import ExactRoots, Speed, distinct, refine_roots, with_circle
 from gearwhine.rotors.whirl.equations import WhirlEquations
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 # Part of a bearing's largest eigenvalue by which its smallest may lie below zero from rounding.
 ROUNDING = 1e-12
@@ -68,7 +64,7 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
     return True
 
 
-def negative_count(equations: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IntArray:
+def negative_count(equations: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IndexArray:
     """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω [rad/s], (b,)."""
     eigenvalues = (1j * frequencies).astype(np.complex128)
     # One unit of force for all frequencies: with that of a frequency near zero every bearing would seem rigid.
@@ -92,7 +88,7 @@ def negative_count(equations: WhirlEquations, frequencies: FloatArray, speed: Sp
 
 def _node_matrices(
     equations: WhirlEquations, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
-) -> tuple[ComplexArray, IntArray]:
+) -> tuple[ComplexArray, IndexArray]:
     """Dynamic stiffness at every node, (b, p + 1, n, n), and the pedestals' own negative eigenvalues, (b,)."""
     terms = equations.node_terms(eigenvalues, speeds) / scale[:, None, None]
     nodes = terms[..., None] * np.eye(equations.size)
@@ -104,7 +100,7 @@ def _node_matrices(
     return nodes, negatives
 
 
-def _reduced(node_bearing: NodeBearing, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
+def _reduced(node_bearing: NodeBearing, eigenvalues: ComplexArray) -> tuple[ComplexArray, IndexArray]:
     bearing, ground = node_bearing.dynamic_stiffness(eigenvalues)
     turned = node_bearing.frame.conj().T
     if not node_bearing.foot:
@@ -115,7 +111,7 @@ def _reduced(node_bearing: NodeBearing, eigenvalues: ComplexArray) -> tuple[Comp
     return turned @ reduced @ node_bearing.frame, _negatives(whole)
 
 
-def _negatives(matrices: ComplexArray) -> IntArray:
+def _negatives(matrices: ComplexArray) -> IndexArray:
     hermitian = 0.5 * (matrices + _adjoint(matrices))
     return np.asarray((np.linalg.eigvalsh(hermitian) < 0.0).sum(axis=-1))
 

@@ -31,12 +31,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
 from gearwhine.rotors.whirl.equations import WhirlEquations
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 # Relative distance below which starting values are refined together first: their errors may be as large.
 NEAR = 1e-3

@@ -42,8 +42,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.numerics.banded import BandPattern
 from gearwhine.rotors.model.bearing import Bearing, RadialSupport
 from gearwhine.rotors.model.shaft import Rotor
@@ -51,10 +51,6 @@ from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from gearwhine.rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
 from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, bearing_at_node
 from gearwhine.rotors.whirl.shooting_matrix import Layout, ShootingMatrix, shooting_matrix
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 # Least unit of force of a response, as a part of the stiffest bearing's force per unit displacement.
 STATIC_FORCE = 1e-6
@@ -86,7 +82,7 @@ class WhirlEquations:
     bending: DiscretisedShaft
     blocks: tuple[int, ...]
     node_bearings: tuple[NodeBearing, ...]
-    kept: IntArray
+    kept: IndexArray
 
     @property
     def size(self) -> int:
@@ -191,7 +187,7 @@ class WhirlEquations:
         return states
 
     @cached_property
-    def _state_places(self) -> list[IntArray]:
+    def _state_places(self) -> list[IndexArray]:
         """Unknown of every state of every block at the kept nodes, (r + 1, 2 or 4); −1 where there is none."""
         first, places, layout = 0, [], self.layout
         forces = np.concatenate([layout.forces, np.full((1, self.size), -1)])

@@ -34,6 +34,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from gearwhine.numerics.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.modes.modal_rotor import gyroscopic_matrix, section_motions
@@ -44,10 +45,6 @@ from gearwhine.rotors.whirl.planar_basis import (
     PlanarBasis,
 )
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
-
 # Largest squared coupling of modes by damping, relative to their distance: starting values then err by a thousandth of
 # the distance. Checked for the lower half: above are responses to loads, which stand for all higher modes and start no
 # root.
@@ -56,7 +53,6 @@ MOST_MIXED = 0.01
 LEAST_SQUARED = 1e-10
 # Largest asymmetry of a stiffness over its size that is rounding.
 ROUNDING = 1e-12
-IntArray = npt.NDArray[np.intp]
 NumberArray = npt.NDArray[Any]
 
 AXIAL_MODES = 8
@@ -228,7 +224,7 @@ class ModalProjection:
 
     def _bearing_terms(
         self, bearings: Sequence[Bearing], shaft: int
-    ) -> tuple[NumberArray, NumberArray, NumberArray, list[tuple[Bearing, IntArray, list[int]]]]:
+    ) -> tuple[NumberArray, NumberArray, NumberArray, list[tuple[Bearing, IndexArray, list[int]]]]:
         """Motions of every bearing, its stiffness and damping, and the coordinates of its pedestal.
 
         The motions are those of the shaft less the pedestal's, (bearings, n, N), along x, y, z and the rotations about
@@ -244,7 +240,7 @@ class ModalProjection:
         if alone:
             turn = CIRCULAR[list(BLOCK_COORDINATES[self.blocks[0]])]
             matrices = turn @ spatial @ turn.conj().T
-        feet: list[tuple[int, IntArray, list[int]]] = []
+        feet: list[tuple[int, IndexArray, list[int]]] = []
         order = shaft
         for k, bearing in enumerate(bearings):
             if bearing.pedestal is None:

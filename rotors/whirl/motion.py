@@ -21,6 +21,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.model.profile import merged_positions
 from gearwhine.rotors.transfer_matrix.discretised_shaft import (
@@ -33,10 +34,6 @@ from gearwhine.rotors.transfer_matrix.discretised_shaft import (
 from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
 from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES
 from gearwhine.rotors.whirl.equations import WhirlEquations, squared_frequencies
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -215,7 +212,7 @@ class ShaftMotion:
             return np.zeros((len(self.axial), np.size(z)), dtype=np.complex128)
         return np.asarray(self.axial_at(z)[:, :, 0] * self.rod.displacement_unit[0])
 
-    def _inside(self, block: int, states: ComplexArray, numbers: IntArray, fractions: FloatArray) -> ComplexArray:
+    def _inside(self, block: int, states: ComplexArray, numbers: IndexArray, fractions: FloatArray) -> ComplexArray:
         transfer_matrices = self.shaft.transfer_matrices_to(numbers, fractions, *self._squared(block))
         return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, states[:, numbers]))
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import require, require_count, require_finite
 from gearwhine.rotors.model.bearing import Bearing, RadialSupport
 from gearwhine.rotors.model.shaft import Rotor
@@ -30,8 +30,6 @@ from gearwhine.rotors.transfer_matrix.wittrick_williams import (
     shaft_arrays,
     wittrick_williams_count,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_COUNT = 12
 LEAST_MODES = 6

@@ -22,15 +22,12 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.numerics.banded import BandPattern
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing
 
-IntArray = npt.NDArray[np.intp]
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-
-Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
+Runs = tuple[FloatArray, FloatArray, IndexArray, IndexArray, IndexArray]
 UNIT_DENOMINATOR = np.array([0.0, 1.0])  # entries that are polynomials of λ
 FORCE_DENOMINATOR = np.array([1.0, 0.0])  # entries over the unit of force
 NO_PLACES = np.zeros(0, dtype=np.intp)
@@ -41,10 +38,10 @@ NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NO_PLACES, np.zeros(1, dtype=np.int
 class BearingPlaces:
     """Columns of a bearing's forces (m,) and of its pedestal's displacements (f,), and the rows of both."""
 
-    forces: IntArray
-    feet: IntArray
-    force_rows: IntArray
-    foot_rows: IntArray
+    forces: IndexArray
+    feet: IndexArray
+    force_rows: IndexArray
+    foot_rows: IndexArray
 
 
 @dataclass(frozen=True)
@@ -64,14 +61,14 @@ class Layout:
     """
 
     order: int
-    displacements: IntArray
-    forces: IntArray
-    continuity: IntArray
-    balances: IntArray
+    displacements: IndexArray
+    forces: IndexArray
+    continuity: IndexArray
+    balances: IndexArray
     bearings: tuple[BearingPlaces, ...]
 
     @classmethod
-    def of(cls, blocks: tuple[int, ...], nodes: IntArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
+    def of(cls, blocks: tuple[int, ...], nodes: IndexArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
         """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
         widths = np.array([len(BLOCK_COORDINATES[block]) for block in blocks])
         n, width = int(widths.sum()), np.repeat(widths, widths)
@@ -127,7 +124,7 @@ class ShootingMatrix:
     """
 
     pattern: BandPattern
-    blocks: IntArray
+    blocks: IndexArray
     beams: Runs
     rods: Runs
     numerators: ComplexArray
@@ -149,7 +146,7 @@ class ShootingMatrix:
         return np.asarray(determinants(eigenvalues, speeds, scale, self.arrays, self.pattern.arrays))
 
     @property
-    def arrays(self) -> tuple[IntArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]:
+    def arrays(self) -> tuple[IndexArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]:
         """The table as compiled functions take it."""
         return self.blocks, self.beams, self.rods, self.numerators, self.denominators, self.constants
 
@@ -159,7 +156,7 @@ def shooting_matrix(
     axial: DiscretisedShaft | None,
     blocks: tuple[int, ...],
     node_bearings: Sequence[NodeBearing],
-    nodes: IntArray,
+    nodes: IndexArray,
     layout: Layout,
 ) -> ShootingMatrix:
     """Assemble the shooting matrix with unknowns at ``nodes``, (r + 1,), in the given layout."""
@@ -191,14 +188,14 @@ def shooting_matrix(
     )
 
 
-def _runs(shaft: DiscretisedShaft, nodes: IntArray) -> Runs:
+def _runs(shaft: DiscretisedShaft, nodes: IndexArray) -> Runs:
     first: dict[bytes, int] = {}
     elements = [shaft.element[left:right].tobytes() for left, right in pairwise(nodes.tolist())]
     like = [first.setdefault(same, run) for run, same in enumerate(elements)]
     return shaft.table.lengths, shaft.table.coefficients, shaft.element, nodes, np.array(like, dtype=np.intp)
 
 
-def _inertias(shaft: DiscretisedShaft, nodes: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+def _inertias(shaft: DiscretisedShaft, nodes: IndexArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
     """Terms −M and the gyroscopic term of λΩ, (r + 1, n) both, of the inertias at nodes."""
     inertia, polar = shaft.node_inertia[nodes], shaft.node_polar[nodes]
     squared, turning = [], []
@@ -209,7 +206,7 @@ def _inertias(shaft: DiscretisedShaft, nodes: IntArray, blocks: tuple[int, ...])
 
 
 def _add_node_bearing(
-    terms: "_Terms", node_bearing: NodeBearing, balance: IntArray, node: IntArray, places: BearingPlaces
+    terms: "_Terms", node_bearing: NodeBearing, balance: IndexArray, node: IndexArray, places: BearingPlaces
 ) -> None:
     """Add the entries of a bearing's forces g and its pedestal's displacements p at a node."""
     shared = list(node_bearing.foot)
@@ -242,14 +239,14 @@ class _Terms:
     """Entries of the matrix, collected block by block."""
 
     def __init__(self) -> None:
-        self.places: list[IntArray] = []
+        self.places: list[IndexArray] = []
         self.numerators: list[ComplexArray] = []
         self.denominators: list[FloatArray] = []
 
     def add(
         self,
-        rows: IntArray,
-        columns: IntArray,
+        rows: IndexArray,
+        columns: IndexArray,
         numerator: Sequence[npt.ArrayLike],
         denominator: FloatArray = UNIT_DENOMINATOR,
     ) -> None:
@@ -265,7 +262,7 @@ class _Terms:
         self.numerators.append(top.reshape(-1, 5))
         self.denominators.append(bottom.reshape(-1, 2))
 
-    def parted(self) -> tuple[list[IntArray], ComplexArray, FloatArray, ComplexArray]:
+    def parted(self) -> tuple[list[IndexArray], ComplexArray, FloatArray, ComplexArray]:
         """Rows and columns of varying and of constant entries, terms of the varying, values of the constant ones."""
         places = np.concatenate(self.places, axis=1)
         top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)

@@ -17,6 +17,7 @@ from typing import TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.certificate import ModeCertificate, combined_certificate
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.model.shaft import Rotor
@@ -27,8 +28,6 @@ from gearwhine.rotors.whirl.modal_projection import Pencil, pencils
 from gearwhine.rotors.whirl.motion import ShaftMotion, StrainShares, strain_shares
 from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT, PlanarBasis, planar_basis
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 Made = TypeVar("Made")
 
 # Multiple of the limit up to which starting values are refined: those of the projection lie above the roots.

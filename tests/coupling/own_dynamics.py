@@ -9,15 +9,12 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from own_statics import SLICES, OwnStatics
 
 from gearwhine.coupling import Machine
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.machine.components import HousingComponent
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 ELEMENT = 4e-3  # longest element of a beam [m]
 

@@ -17,9 +17,8 @@ from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftGear
 from gearwhine.coupling.gears import ConstantStiffness, Gear
 from gearwhine.coupling.gears.geometry.toothed_section import toothed_section
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial
-
-FloatArray = npt.NDArray[np.float64]
 
 SLICES, STATIONS = 61, 5
 

@@ -1,7 +1,6 @@
 """A base that moves, and gravity: participation, a hand-integrated motion, exact deflections, a spin that is tilted."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
@@ -20,8 +19,6 @@ from gearwhine.coupling import (
 from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory, participations
 from gearwhine.coupling.machine.components import rotor_component
 from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, static_deflection
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 SHAFT = Rotor(

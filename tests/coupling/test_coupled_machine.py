@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import linalg
 
@@ -24,6 +23,7 @@ from gearwhine.coupling import (
 from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
 from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, rotor_component
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import (
     Bearing,
     Disc,
@@ -36,8 +36,6 @@ from gearwhine.rotors import (
     solve_torsional_modes,
 )
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 PRESSURE_ANGLE = np.radians(20.0)

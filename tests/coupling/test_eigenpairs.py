@@ -9,7 +9,6 @@ from gearwhine.coupling import CoupledSystem, CouplingError, ModesError, coupled
 from gearwhine.coupling.linear.eigenpairs import pair_residuals, quadratic_eigenpairs, refine_pair
 from gearwhine.coupling.machine.components import Component
 
-FloatArray = npt.NDArray[np.float64]
 HALVES = (slice(0, 2), slice(2, 4))
 
 

@@ -5,8 +5,7 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling.collocation.linear_part import corrected_eigenvectors
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def machine(speed: float, size: int = 12, overdamped: float = 0.0) -> FloatArray:

@@ -5,7 +5,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -29,8 +28,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
 from gearwhine.coupling.time.exponential_collocation import integration_method
 from gearwhine.coupling.time.transient import TransientResult, integrate_blocks
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 SIZE = 4
 DIRECTION = np.array([0.6, -0.3, 0.5, 0.2])

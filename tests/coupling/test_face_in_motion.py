@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from own_dynamics import OwnDynamics
 from own_statics import STEEL, distance, toothed
@@ -15,9 +14,8 @@ from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact, mean_equilibrium
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Rotor, Segment
-
-FloatArray = npt.NDArray[np.float64]
 
 WIDTH = 40e-3
 FREQUENCIES = np.array([120.0, 250.0, 400.0, 610.0, 800.0, 1000.0, 1230.0, 1500.0, 1900.0, 2400.0])

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
@@ -16,11 +15,9 @@ from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from tests.machines.plane_planetary_set import STEEL, TEETH, equal_angles, plane_set
 from tests.machines.turning_set import turning_machine
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 def _directions(at_start: FloatArray, parts: tuple[TurningPart, ...], time: float) -> tuple[FloatArray, FloatArray]:

@@ -6,7 +6,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import linalg
 
@@ -16,9 +15,8 @@ from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_compliance, shift_shares
 from gearwhine.coupling.machine.components import _kinds, rotor_component
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
-
-FloatArray = npt.NDArray[np.float64]
 
 E, NU, DENSITY = 207e9, 0.3, 7850.0
 G = E / (2.0 * (1.0 + NU))

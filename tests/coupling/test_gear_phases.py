@@ -4,7 +4,6 @@ import itertools
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,8 +13,7 @@ from gearwhine.coupling import CouplingError
 from gearwhine.coupling.description.gear_train import mesh_phases
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.geometry.profile import pair_outlines
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def gear(name: str, teeth: int, profile_shift: float = 0.0) -> Gear:

@@ -9,7 +9,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from own_statics import FULL
 from plane_planetary_set import STEEL, equal_angles, plane_set
@@ -24,10 +23,9 @@ from gearwhine.coupling.machine.components import HousingComponent, RotorCompone
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import simulate
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
-
-FloatArray = npt.NDArray[np.float64]
 
 SUPPORT = 2e6  # N m/rad, of the carrier
 SPEED, TORQUE = 300.0, 80.0

@@ -25,8 +25,7 @@ from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.model.seats import sensor_port
 from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 BEARING = np.array([[2e8, 1e7], [1e7, 3e8]])
 PULL = np.array([120.0, -70.0])

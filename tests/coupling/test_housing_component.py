@@ -1,14 +1,13 @@
 """The housing as a component: its own damping and what dashpots on it add."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CouplingError, assemble_machine, coupled_modes
 from gearwhine.coupling.machine.components import HousingComponent, housing_component
 from gearwhine.housing import Certificate, ModeSet
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 OMEGA = np.array([100.0, 180.0])
 RATIOS = np.array([0.01, 0.02])
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from helical_pairs import couple_pairs
 from test_teeth_friction import machine as with_friction
@@ -11,8 +10,7 @@ from test_teeth_friction import machine as with_friction
 from gearwhine.coupling import CoupledMachine, Torque, static_equilibrium
 from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms, LineParts
-
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray
 
 SAMPLES = {1: 240, 36: 720}
 """By the number of mesh periods."""

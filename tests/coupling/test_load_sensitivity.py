@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from own_statics import FULL, STEEL, TEETH, linear_bearing, one_stage, toothed
 from planetary_machines import set_parts
@@ -20,10 +19,10 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
 from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Pedestal, Rotor, Segment
 from gearwhine.rotors.rolling_bearings import BallRow, paired
 
-FloatArray = npt.NDArray[np.float64]
 GRAVITY = (1.0, -9.81, 0.3)
 JOURNAL = np.pad([[2.0e7, 3.5e7], [-1.2e7, 6.0e7]], (0, 3)) + np.diag([0.0, 0.0, 1e7, 0.0, 0.0])
 

@@ -19,8 +19,6 @@ from gearwhine.coupling.statics.mean_mesh import (
     unloaded_contact,
 )
 
-FloatArray = npt.NDArray[np.float64]
-
 
 def mass(name: str, n: int = 1, kind: str = "rotor") -> Component:
     """Free, n unit masses."""

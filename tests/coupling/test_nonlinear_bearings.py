@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import (
@@ -31,6 +30,7 @@ from gearwhine.coupling.machine.loads import Unbalance
 from gearwhine.coupling.signals import line_names
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.transient import TransientResult
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
@@ -45,8 +45,6 @@ from gearwhine.rotors.rolling_bearings import (
     rolling_equilibrium,
     rolling_state,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 DEEP = RollingBearing([BallRow(9, 12e-3, 60e-3, clearance=10e-6)])
 FLOATING = replace(DEEP, floating=True)

@@ -21,11 +21,10 @@ from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
 from gearwhine.coupling.machine.components import HousingComponent, PedestalComponent
 from gearwhine.coupling.statics.operating_point import CAUSES
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import EquilibriumError, Pedestal, Rotor, Segment
 from gearwhine.rotors.model.profile import StiffnessDiameter
 from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
-
-FloatArray = npt.NDArray[np.float64]
 
 RADIAL = 1e8 * np.eye(2)
 ISOTROPIC = np.diag([2e8, 2e8, 5e7, 3e4, 3e4])

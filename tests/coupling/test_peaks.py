@@ -1,15 +1,13 @@
 """Peaks of spectra: lines of whole periods, tones between lines under Hann's window, and what is no lone tone."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum, averaged_spectrum
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _INTERVAL, _COUNT = 1e-3, 2000  # 2 s, lines 0.5 Hz apart
 _TIMES = _INTERVAL * np.arange(_COUNT)

@@ -33,6 +33,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.periodic import PeriodicResponse, common_period, periodic_response
 from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import (
     Bearing,
     Disc,
@@ -45,7 +46,6 @@ from gearwhine.rotors import (
 )
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
-FloatArray = npt.NDArray[np.float64]
 Errors = Sequence[tuple[float, float, float]]
 
 SIZE = 4

@@ -5,7 +5,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
@@ -24,8 +23,7 @@ from gearwhine.coupling.gears import (
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.time.transient import TransientResult
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 TEETH = (12, 18)
 PERIOD = 36

@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from planetary_machines import AXIS, MODULE, gear, planets, set_parts, shaft, spring
 
@@ -21,8 +20,6 @@ from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import TransientResult, simulate
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.rolling_bearings import catalogue_bearing
-
-FloatArray = npt.NDArray[np.float64]
 
 SUN, PLANET, RING, COUNT = 24, 30, 84, 3
 HELIX = np.radians(12.0)

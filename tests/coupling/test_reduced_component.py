@@ -9,7 +9,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import full_component
 from coupled_cases import coupled
@@ -22,8 +21,8 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.reduced_component import component_of_reduced_housing
 from gearwhine.housing.reduced import NodeSeat, NodeSensor, ReducedHousing, ReducedMatrices, read_matrix
 from gearwhine.housing.reduced import reduced_matrices as matrices_of
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 LIMIT = 2.0 * np.pi * 3000.0
 NUMBERS = {"input-back": 11, "input-front": 12, "output-back": 21, "output-front": 22}
 SENSORS = {"top": (31, 2), "right wall": (32, 1)}

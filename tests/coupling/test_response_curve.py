@@ -4,7 +4,6 @@ import gc
 import weakref
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
@@ -17,9 +16,8 @@ from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.periodic import periodic_response, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.quantity import RPM
-
-FloatArray = npt.NDArray[np.float64]
 
 ROW = np.ones((1, 1))
 

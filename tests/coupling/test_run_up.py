@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import (
@@ -26,8 +25,6 @@ from gearwhine.coupling.machine.loads import Drive, TorqueHistory, TorqueRipple,
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.transient import TransientResult
 from gearwhine.rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, modal_rotor
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 PAIR = GearPairGeometry(

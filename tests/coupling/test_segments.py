@@ -1,7 +1,6 @@
 """Periods marched in segments: their condensed corrections, and unstable motions that one shot would lose."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledSystem, CouplingError, PeriodicError
@@ -13,8 +12,7 @@ from gearwhine.coupling.periodic import periodic_response, response_curve
 from gearwhine.coupling.periodic.branch import Branch, interpolation
 from gearwhine.coupling.periodic.orbit import bordered_correction, correction, integrate_period, product
 from gearwhine.coupling.periodic.shooting import problem
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 WAVING = ToothContact(
     1.0,

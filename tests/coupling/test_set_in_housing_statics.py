@@ -10,7 +10,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from plane_planetary_set import (
     BEARING_STIFFNESS,
@@ -28,8 +27,7 @@ from gearwhine.coupling import Machine
 from gearwhine.coupling.description.planetary import PlanetarySet
 from gearwhine.coupling.load_analysis.planetary_load import planetary_load
 from gearwhine.coupling.machine.components import HousingComponent
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 SEATS = {"sun": 0.02, "carrier": 0.06, "ring": 0.05}
 """z of the centre of the seat of each member [m]."""

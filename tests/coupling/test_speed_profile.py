@@ -4,7 +4,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -25,8 +24,7 @@ from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, SpeedTable
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
 from gearwhine.coupling.time.transient import TransientResult
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def drawn(rates: list[float], gaps: list[float], begin: float) -> SpeedProfile:

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import (
@@ -33,8 +32,6 @@ from gearwhine.rotors import (
     solve_torsional_modes,
 )
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 # Friswell, Penny, Garvey & Lees, example 5.9.1.

@@ -6,7 +6,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -49,9 +48,8 @@ from gearwhine.coupling.machine.components import Component, rotor_component
 from gearwhine.coupling.machine.connectors import ContactConnector, Sliding
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.transient import TransientResult
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 RELIEF = TipRelief(0.02e-3, length=3e-3)

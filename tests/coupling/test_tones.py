@@ -1,7 +1,6 @@
 """Tones between the lines of a record, against the tones that it was made of."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,8 +8,7 @@ from hypothesis import strategies as st
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.signals.tones import hann_tones, tones_at
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _INTERVAL, _COUNT = 1e-4, 8192  # 0.82 s, lines 1.22 Hz apart
 

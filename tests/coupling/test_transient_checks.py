@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -27,8 +26,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnec
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
 from gearwhine.coupling.time.integration import Checkpoint
 from gearwhine.coupling.time.transient import TransientResult, integrate_blocks
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def pair_contact(ratio: float, damping: float = 0.0) -> ToothContact:

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
@@ -30,8 +29,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnec
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.transient import EnergyBalance, TransientResult
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 SIZE = 4
 STEPS = 100_000

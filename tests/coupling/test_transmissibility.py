@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import (
@@ -45,8 +44,6 @@ from gearwhine.rotors import (
 from gearwhine.rotors import Unbalance as RotorUnbalance
 from gearwhine.rotors import unbalance_response as rotor_unbalance_response
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 NO_ERRORS = np.empty((0, 3))

@@ -1,7 +1,6 @@
 """A turning rotor without gears: unbalance, gyroscopic whirl, and bearings that drive it unstable."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import (
@@ -17,6 +16,7 @@ from gearwhine.coupling import (
     simulate,
 )
 from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import (
     Bearing,
     Disc,
@@ -29,8 +29,6 @@ from gearwhine.rotors import (
     solve_whirl,
 )
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 # Friswell, Penny, Garvey & Lees, example 5.9.1.

@@ -32,8 +32,6 @@ from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor
 from gearwhine.rotors.analyses.harmonic_response import frequency_response
 
-FloatArray = npt.NDArray[np.float64]
-
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 SHAFTS = ("one", "two", "three")
 TEETH = {"one": 24, "two": 31, "three": 24}

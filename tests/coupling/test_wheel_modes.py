@@ -21,9 +21,8 @@ from gearwhine.coupling.gears.stiffness.wheel_modes import WheelSection, wheel_m
 from gearwhine.coupling.machine.components import rotor_component
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.statics.mean_mesh import mean_equilibrium, mean_meshes
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
-
-FloatArray = npt.NDArray[np.float64]
 
 E, NU, DENSITY = 207e9, 0.3, 7850.0
 STEEL = ShaftMaterial.from_poisson_ratio(E, NU, DENSITY)

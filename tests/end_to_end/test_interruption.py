@@ -58,7 +58,7 @@ def write_whole(file: Path) -> set[str]:
     rotors, housing = solve_rotors(case), solve_housing(case)
     part = reduce_housing(case, housing)
     described = describe_machine(case, part)
-    load, _ = load_of_case(case, described)
+    load, _ = load_of_case(case.parts, described)
     assert load is not None
     standing = load_machine(described, load.point)
     pairs, machine = standing.pairs, standing.coupled

@@ -1,17 +1,16 @@
 """The gear noise rig on its modal basis, beside the same machine with the housing's modes to twice the limit."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from coupled_cases import coupled, loaded
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 
-FloatArray = npt.NDArray[np.float64]
 Motions = dict[str, FloatArray]
 
 LIMIT_HZ = 3200.0

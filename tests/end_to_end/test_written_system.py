@@ -4,7 +4,6 @@ import json
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import xarray as xr
 from lopsided_case import (
@@ -25,8 +24,6 @@ from lopsided_case import (
 from gearwhine.cli import run_command
 
 pytestmark = pytest.mark.slow
-
-ComplexArray = npt.NDArray[np.complex128]
 
 SWEPT = (2000.0, 3000.0, 4000.0)
 CONTACTS = [" -> ".join(pair) for pair in PAIRS]

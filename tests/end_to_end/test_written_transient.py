@@ -33,10 +33,9 @@ from scipy.io import wavfile
 
 from gearwhine.case import load_case
 from gearwhine.cli import run_command
+from gearwhine.numerics.arrays import ComplexArray
 
 pytestmark = pytest.mark.slow
-
-ComplexArray = npt.NDArray[np.complex128]
 
 TURNS, DISCARDED = 50, 20
 TURN = 0.02

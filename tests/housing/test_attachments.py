@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.housing import (
@@ -24,8 +23,8 @@ from gearwhine.housing.model.bushings import Axial, axes_along
 from gearwhine.housing.model.fixtures import MOST_PATCH_NODES, port_fixture_matrices
 from gearwhine.housing.model.patches import rigid_motions
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 SIDES = (0.10, 0.08, 0.06)
 BASE, LID = Patch(surface="bottom"), Patch(surface="top")
 

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.housing import Housing, LumpedMass, Material, Support, assemble, solve_modes
@@ -14,9 +13,9 @@ from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
 from gearwhine.meshes.box import WallThickness
 from gearwhine.meshes.elements import SOLIDS, facet_nodes
+from gearwhine.numerics.arrays import FloatArray
 
 STEEL = Material(207e9, 0.3, 7850.0)
-FloatArray = npt.NDArray[np.float64]
 BlockOf = Callable[..., Mesh]
 
 

@@ -12,8 +12,7 @@ from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.modes.residual_modes import leading_residual_modes
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 LIMIT = 2.0 * np.pi * 6000.0
 

@@ -12,8 +12,7 @@ from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.model.patches import rigid_body, rigid_motions
 from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 LENGTH, WIDTH, DEPTH = 0.6, 0.02, 0.024
 

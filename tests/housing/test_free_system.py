@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -18,8 +17,6 @@ from gearwhine.housing.fem import linear_algebra as symmetric
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 from gearwhine.housing.fem.matrices import FreeMass, FreeSystem, Matrices
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @pytest.fixture(scope="module", params=["bare", "with a mass"])

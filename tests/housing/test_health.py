@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.housing import (
@@ -25,8 +24,6 @@ from gearwhine.housing.model.seats import seat_matrix
 from gearwhine.housing.model.supports import grounding
 from gearwhine.housing.modes.health import HealthLine
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
 
 FEET = tuple(Support(f"foot {number}", surface=f"foot-{number}", stiffness=(2e8, 8e8, 3e8)) for number in (1, 2, 3, 4))
 DENSITY = 7850.0

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
@@ -12,7 +11,6 @@ from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.model.patches import RigidBody, rigid_body
 from gearwhine.meshes import Mesh
 
-FloatArray = npt.NDArray[np.float64]
 INERTIA = ((0.020, 0.003, -0.001), (0.003, 0.030, 0.002), (-0.001, 0.002, 0.025))
 SLACK = Material(youngs_modulus=210e9, poisson_ratio=0.0, density=7800.0)
 

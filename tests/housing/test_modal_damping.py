@@ -20,8 +20,7 @@ from gearwhine.housing import (
 )
 from gearwhine.housing.modes.effective_mass import damping_ratios
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def _eigenvalues(modes: ModeSet, damping: FloatArray) -> npt.NDArray[np.complex128]:

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import linalg
 
@@ -13,8 +12,7 @@ from gearwhine.housing.material import element_constants
 from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.housing.updating import ModelSensitivity, modal_sensitivities
 from gearwhine.meshes import BoxGeometry, BoxMorph, Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 STEP = 1e-4
 

@@ -25,8 +25,8 @@ from gearwhine.housing.modes import eigensolver
 from gearwhine.housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.gmsh_meshing import collect, gmsh_session, mesh_solids
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Blocks = Callable[..., Mesh]
 
 RUNS = 25  # of either shape

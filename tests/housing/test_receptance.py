@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
@@ -14,8 +13,7 @@ from gearwhine.housing.model.seats import seat_matrix, sensor_port
 from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.housing.modes.receptance import residues, select_modes
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 LIMIT = 2 * np.pi * 9000.0
 

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -25,9 +24,7 @@ from gearwhine.housing.model.seats import seat_matrix
 from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.housing.modes.residual_modes import residual_attachment_modes
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 LIMIT = 2 * np.pi * 6000.0
 

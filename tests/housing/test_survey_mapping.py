@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,8 +15,8 @@ from gearwhine.housing.measured.alignment import fit_points
 from gearwhine.housing.measured.survey_planning import Survey, survey_grid
 from gearwhine.meshes import BoxGeometry, Mesh
 from gearwhine.meshes.elements import facet_centers, facet_normals
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 BOX = np.array([[-0.10, 0.0, -0.12], [0.10, 0.16, 0.12]])
 TURN = Rotation.from_euler("xyz", [20, -35, 100], degrees=True).as_matrix()
 SHIFT = np.array([0.3, -0.2, 0.5])

@@ -3,7 +3,6 @@
 from itertools import combinations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,8 +12,7 @@ from gearwhine.housing.modes.dominance import Dominance
 from gearwhine.housing.updating import Target, measure
 from gearwhine.housing.updating.mode_choice import GAP_SCALE, choice_shortfall, choose_modes
 from gearwhine.housing.updating.surrogate import ModalState
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 BAND = (90.0, 1000.0)
 WIDE = (1.0, 1e9)  # so wide that no mode is left for being near its end

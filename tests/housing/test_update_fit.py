@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -30,8 +29,7 @@ from gearwhine.housing.updating.cross_validation import random_frequencies
 from gearwhine.housing.updating.misfit import is_met
 from gearwhine.housing.updating.parameters import coordinate_bounds
 from gearwhine.housing.updating.trust_region import Design
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 # Three uncoupled oscillators, ω_i = ω0_i exp(½ z_i): the surrogate is exact, and so is every answer.
 OWN = np.array([100.0, 200.0, 300.0])

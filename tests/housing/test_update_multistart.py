@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.housing import HousingError
@@ -25,8 +24,7 @@ from gearwhine.housing.updating import (
 from gearwhine.housing.updating.mesh_bias import Debiased, debiased
 from gearwhine.housing.updating.sensitivities import ModalSensitivities
 from gearwhine.housing.updating.trust_region import Design
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 OWN = np.array([100.0, 130.0, 170.0, 230.0])
 N = len(OWN)

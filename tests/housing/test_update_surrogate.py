@@ -1,7 +1,6 @@
 """The surrogate against spring-mass systems solved anew, and its slopes against differences."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,8 +9,7 @@ from scipy import linalg
 from gearwhine.housing import HousingError
 from gearwhine.housing.updating import ModalState, Surrogate
 from gearwhine.housing.updating.sensitivities import ModalSensitivities
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 N, P = 9, 3
 SPAN = np.random.default_rng(11)

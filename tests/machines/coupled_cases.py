@@ -14,7 +14,7 @@ def loaded(case: Case, housing: HousingModes | HousingComponent | None = None) -
     part = reduce_housing(case, housing) if isinstance(housing, HousingModes) else housing
     machine = describe_machine(case, part).with_flanks_of(None)
     point = machine.operating_point() if machine.needs_operating_point else None
-    return load_machine(machine, point, run_of(case))
+    return load_machine(machine, point, run_of(case.transient))
 
 
 def coupled(case: Case, housing: HousingModes | HousingComponent | None = None) -> CoupledMachine:
@@ -27,4 +27,4 @@ def about_operating_point(case: Case, housing: HousingModes | HousingComponent |
     part = reduce_housing(case, housing) if isinstance(housing, HousingModes) else housing
     machine = describe_machine(case, part)
     point = machine.operating_point() if machine.needs_operating_point else None
-    return load_machine(machine, point, run_of(case))
+    return load_machine(machine, point, run_of(case.transient))

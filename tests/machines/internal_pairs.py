@@ -9,8 +9,8 @@ from scipy.spatial import cKDTree
 
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.geometry.profile import gear_outline, meshing_rotations
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 ALPHA = math.radians(20.0)
 
 

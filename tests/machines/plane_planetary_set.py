@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import Output
 from gearwhine.coupling.description.parts import Shaft, ShaftGear, TorqueSupport
@@ -16,10 +15,8 @@ from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.models import ConstantStiffness
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 MASS = {"carrier": 5.43, "ring": 2.35, "sun": 0.4, "planet": 0.66}  # kg
 INERTIA = {"carrier": 6.29, "ring": 3.00, "sun": 0.39, "planet": 0.61}  # I / r², r the base radius or the distance, kg

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 YOUNGS_MODULUS, SHEAR_MODULUS = 2.1e11, 8.0e10
 LENGTH, AREA, SECOND_MOMENT, TORSION_CONSTANT = 0.4, 1.2e-3, 4.0e-7, 6.0e-7

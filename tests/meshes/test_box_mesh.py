@@ -6,14 +6,11 @@ may be wrong by that much times its length, and n is counted in the mesh.
 """
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box, mesh_quality
 from gearwhine.meshes.elements import facet_nodes
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
 

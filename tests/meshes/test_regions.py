@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.meshes import (
@@ -23,8 +22,6 @@ from gearwhine.meshes import (
     with_bore,
 )
 from gearwhine.meshes.elements import Facets, facet_nodes
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def _ring(

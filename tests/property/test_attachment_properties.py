@@ -4,7 +4,6 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -25,8 +24,8 @@ from gearwhine.housing import (
 from gearwhine.housing.model.fixtures import Fixture
 from gearwhine.housing.model.patches import rigid_body
 from gearwhine.meshes import BoxGeometry, Feet, Mesh, WallThickness, mesh_box
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 STEEL = Material(207e9, 0.3, 7850.0)
 few = settings(max_examples=8, deadline=None)
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -23,8 +22,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnec
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
 from gearwhine.coupling.time.transient import EnergyBalance, TransientResult
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 patient = settings(deadline=None, max_examples=15)
 

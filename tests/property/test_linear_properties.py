@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -14,8 +13,7 @@ from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
 from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 patient = settings(deadline=None, max_examples=25)
 FREQUENCIES = np.array([0.3, 1.1, 7.0])

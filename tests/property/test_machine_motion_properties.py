@@ -7,7 +7,6 @@ Two geared rotors with gyroscopic discs on unsymmetric bearings in a free rigid 
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,6 +26,7 @@ from gearwhine.coupling import (
 from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
 from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, rotor_component
 from gearwhine.coupling.time.histories import Histories, histories, transient_outputs
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import (
     Bearing,
     Disc,
@@ -38,8 +38,6 @@ from gearwhine.rotors import (
     solve_torsional_modes,
 )
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 few = settings(deadline=None, max_examples=6)
 angles = st.floats(-3.1, 3.1)

@@ -7,7 +7,6 @@ machines of rotors and gears are held to the same laws in ``test_machine_motion_
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -18,8 +17,7 @@ from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.time.transient import TransientResult
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 patient = settings(deadline=None, max_examples=15)
 seeds = st.integers(0, 2**32 - 1)

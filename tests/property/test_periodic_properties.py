@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
@@ -21,8 +20,7 @@ from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.periodic import PeriodicResponse, periodic_response
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 RISE = 0.02
 """Part of a base pitch in which the stiffness of a steep trapezoid rises."""

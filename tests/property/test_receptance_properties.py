@@ -40,9 +40,8 @@ from gearwhine.housing.model.seats import seat_matrix, sensor_port
 from gearwhine.housing.model.supports import fixed_freedoms
 from gearwhine.housing.modes.effective_mass import damping_ratios
 from gearwhine.meshes import Bore, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 Point = tuple[float, float, float]
 
 STEEL = Material(207e9, 0.3, 7850.0)

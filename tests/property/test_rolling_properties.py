@@ -4,11 +4,11 @@ import math
 from dataclasses import fields, replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import EquilibriumError
 from gearwhine.rotors.rolling_bearings import (
     COORDINATES,
@@ -21,8 +21,6 @@ from gearwhine.rotors.rolling_bearings import (
     rolling_equilibrium,
     rolling_state,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 SIGN = st.sampled_from([-1.0, 0.0, 1.0])
 

@@ -15,10 +15,8 @@ from inertia_count import negative_pivots
 from lobatto_elements import DEGREE, REACH, Elements, Matrices, bending_matrices, cut, rod_matrices
 from scipy import linalg
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.rotors import Coupling, RadialSupport, Rotor
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 # Part of itself to which a frequency is known from the count.
 WIDTH = 1e-12
@@ -44,7 +42,7 @@ class PlaneModel:
     node_mass: FloatArray
     node_polar: FloatArray
 
-    def wittrick_williams_count(self, frequencies: npt.ArrayLike) -> IntArray:
+    def wittrick_williams_count(self, frequencies: npt.ArrayLike) -> IndexArray:
         """Number of natural frequencies below each of some frequencies (rad/s), multiple ones with multiplicity."""
         omega = np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
         stiffness, mass = self.matrices.stiffness, self.matrices.mass
@@ -88,7 +86,7 @@ class PlaneModel:
         return np.sqrt(squared[squared > 0.0])
 
     @property
-    def positions(self) -> IntArray:
+    def positions(self) -> IndexArray:
         """Places of each element's unknowns in the whole, (e, n); node by node first, then bubbles."""
         size, n = self.matrices.size, self.matrices.stiffness.high.shape[-1]
         count, bubbles = self.elements.lengths.size, n - 2 * size

@@ -10,15 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from finite_element_rotor import PlaneModel, bending_model, condensed, rod_model
 from lobatto_elements import DEGREE, REACH
 from scipy import linalg
 
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors import Bearing, Rotor
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

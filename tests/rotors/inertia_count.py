@@ -5,10 +5,9 @@ pivots. Without pivoting a small pivot grows its successors: thirty-one digits a
 """
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @njit(cache=True, error_model="numpy")

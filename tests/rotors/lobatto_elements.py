@@ -25,10 +25,9 @@ import numpy as np
 import numpy.typing as npt
 from double_double import DoubleDouble
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Coupling, Rotor, Segment
 from gearwhine.rotors.model.material import Section
-
-FloatArray = npt.NDArray[np.float64]
 
 DEGREE = 8
 # Wave number times length of an element, at most. The relative error of ω² is about (p! / 2p!)² (k h)^2p / (2p + 1)

@@ -1,9 +1,9 @@
 """Roots divided out of the determinant before its turns are counted: the count is the same whatever is divided out."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from gearwhine.numerics.arrays import ComplexArray
 from gearwhine.rotors import (
     Bearing,
     Disc,
@@ -18,8 +18,6 @@ from gearwhine.rotors.whirl.argument_principle import count_by_argument_principl
 from gearwhine.rotors.whirl.completeness import oscillating
 from gearwhine.rotors.whirl.eigenvalues import constant_speed
 from gearwhine.rotors.whirl.equations import whirl_equations
-
-ComplexArray = npt.NDArray[np.complex128]
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISC = Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)

@@ -4,10 +4,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.optimize import minimize_scalar
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import RotorError
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
@@ -23,8 +23,6 @@ from gearwhine.rotors.rolling_bearings import (
     rolling_state,
 )
 from gearwhine.rotors.rolling_bearings.life import equivalent_load, reference_revolutions
-
-FloatArray = npt.NDArray[np.float64]
 
 BALLS = BallRow(9, 11.1e-3, 53.5e-3, clearance=8e-6)
 SPHERICAL = SphericalRollerRow(18, 11e-3, 10e-3, 66e-3, angle=math.radians(11.0), clearance=8e-6)

@@ -4,10 +4,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import optimize
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors import EquilibriumError, RotorError
 from gearwhine.rotors.rolling_bearings import (
@@ -23,8 +23,6 @@ from gearwhine.rotors.rolling_bearings import (
     rolling_state,
     spherical_groove,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 ANGULAR = BallRow(13, 8.1e-3, 38.5e-3, math.radians(25.0))
 ROLLERS = RollerRow(14, 11e-3, 11e-3, 60e-3, clearance=5e-6)

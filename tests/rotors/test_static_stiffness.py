@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import quad
 
+from gearwhine.numerics.arrays import FloatArray, IndexArray
 from gearwhine.rotors import (
     Bearing,
     Coupling,
@@ -23,9 +23,6 @@ from gearwhine.rotors import (
 )
 from gearwhine.rotors.analyses.static_stiffness import StaticShaft, static_shaft
 from gearwhine.rotors.analyses.statics import StaticForce
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 STEEL = ShaftMaterial(2.1e11, 8.0e10, 7850.0)
 BRASS = ShaftMaterial(1.0e11, 3.7e10, 8500.0)
@@ -45,7 +42,7 @@ def rigid_motions(places: FloatArray) -> FloatArray:
     return motions.reshape(6, -1)
 
 
-def solve(stiffness: FloatArray, loads: FloatArray, held: Sequence[int] | IntArray = ()) -> FloatArray:
+def solve(stiffness: FloatArray, loads: FloatArray, held: Sequence[int] | IndexArray = ()) -> FloatArray:
     """Displacements under loads (..., k), some held; scaled, because forces and moments have units of their own."""
     free = np.setdiff1d(np.arange(stiffness.shape[0]), held)
     scale = 1.0 / np.sqrt(np.diag(stiffness)[free])
@@ -116,12 +113,12 @@ class OwnShaft:
             weight[int(np.abs(places - at).argmin()), [0, 1, 2], [0, 1, 2]] += mass
         return cls(own, places, stiffness, (weight @ GRAVITY).ravel())
 
-    def numbers(self, stations: FloatArray) -> IntArray:
+    def numbers(self, stations: FloatArray) -> IndexArray:
         """Indices of the displacements of some places."""
         nodes = np.abs(self.places - stations[:, None]).argmin(axis=1)
         return (6 * nodes[:, None] + np.arange(6)).ravel()
 
-    def condensed(self, kept: IntArray) -> tuple[FloatArray, FloatArray]:
+    def condensed(self, kept: IndexArray) -> tuple[FloatArray, FloatArray]:
         """Stiffness and weight left on some displacements when all others are free."""
         loads = np.column_stack([self.stiffness[:, kept], self.weight])
         moved = solve(self.stiffness, loads.T, kept).T

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import (
     Bearing,
     Coupling,
@@ -26,8 +26,6 @@ from gearwhine.rotors import (
 )
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.model.profile import StiffnessDiameter
-
-FloatArray = npt.NDArray[np.float64]
 
 STEEL = ShaftMaterial(2.1e11, 8.0e10, 7850.0)
 BRASS = ShaftMaterial(1.0e11, 3.7e10, 8500.0)

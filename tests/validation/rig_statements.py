@@ -18,9 +18,9 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.coupled_system import embed
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import HousingModes
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solve.machine import reduce_housing
 
-FloatArray = npt.NDArray[np.float64]
 Runs = Callable[..., "Run"]
 
 TOP, END = "top (node 21)", "end (node 40)"

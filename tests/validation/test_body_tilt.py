@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import sparse
 
@@ -23,8 +22,8 @@ from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance
 from gearwhine.housing import Material, assemble
 from gearwhine.housing.fem.factorization import Factorizer
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]
 
 SOURCE = "Solid finite elements of whole gear bodies, of our own"

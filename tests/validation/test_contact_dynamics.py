@@ -12,7 +12,6 @@ Mathieu's equation x'' + 2ζ x' + (1 + ε cos 2t) x = 0: the principal instabili
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
@@ -21,8 +20,8 @@ from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.time.transient import TransientResult
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]
 
 BACKBONE = "Free vibration with loss of contact, closed form"

@@ -21,8 +21,7 @@ from gearwhine.coupling.gears.stiffness.hertz import line_contact
 from gearwhine.housing import Material, assemble
 from gearwhine.housing.fem.factorization import Factorization, Factorizer
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 SOURCE = "Solid finite elements of one wide tooth, of our own"
 GEAR = Gear("rig", 28, 3.175e-3, math.radians(20.0), 6.35e-3)

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import (
@@ -33,6 +32,7 @@ from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.machine.components import Component, rotor_component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.statics.mean_mesh import contact_at
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import (
     Bearing,
     Disc,
@@ -46,7 +46,6 @@ from gearwhine.rotors import (
 from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
-FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]
 
 TURBO_GENERATOR = "Rao, Shiau & Chang (1998), turbo-generator of two geared shafts"

@@ -34,10 +34,9 @@ from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.housing import Housing, HousingModes, Material, Seat, Support
 from gearwhine.meshes import BoxGeometry, mesh_box
 from gearwhine.meshes.box.parts import Bore, WallThickness
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Pedestal, Rotor, Segment
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, RollingBearing, paired
-
-FloatArray = npt.NDArray[np.float64]
 
 GRAVITY = (1.0, -9.81, 0.3)
 JOURNAL = np.array([[2.0e7, 3.5e7], [-1.2e7, 6.0e7]])

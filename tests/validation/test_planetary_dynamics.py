@@ -10,7 +10,6 @@ written anew below, from the angles of one instant, and integrated by an adaptiv
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
@@ -20,8 +19,7 @@ from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, TurningPart
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 ALPHA = np.radians(24.6)
 BASE = {"sun": 0.024, "planet": 0.030, "ring": 0.084}  # base radii [m]

@@ -21,7 +21,6 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
@@ -32,10 +31,10 @@ from gearwhine.coupling.gears.loaded.face_load import FaceContact, face_load_fac
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
 from gearwhine.coupling.statics.operating_point import OperatingPoint, PairLoad
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial
 from gearwhine.rotors.rolling_bearings import RollingBearing, catalogue_bearing, catalogue_row
 
-FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]
 
 HAND = "FVA two-stage industrial gear unit (REXS 1.4), statics by hand"

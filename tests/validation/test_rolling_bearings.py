@@ -30,9 +30,9 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
@@ -42,7 +42,6 @@ from gearwhine.rotors.rolling_bearings import (
     TaperedRollerRow,
     catalogue_row,
     dynamic_rating,
-    kramer_ball_stiffness,
     paired,
     point_contact,
     rolling_equilibrium,
@@ -52,7 +51,6 @@ from gearwhine.rotors.rolling_bearings import (
 )
 from gearwhine.rotors.rolling_bearings.life import reference_revolutions
 
-FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]
 
 ISO_BALLS = "ISO 16281 ball bearing, MASTA documentation"
@@ -229,10 +227,6 @@ def test_cylindrical_rollers_under_a_moment(published: Published, remark: Callab
     published(NJ_207, "radial stiffness, F_r / x", 533.0, 20e3 / state.displacement[0] / 1e6, "N/µm", rel=0.10)
     at_shaft_speed = row.centrifugal_force(speed) / (0.5 * (1.0 - row.gamma)) ** 2
     published(NJ_207, "centrifugal force at the speed of the shaft", 41.0, at_shaft_speed, "N", rel=0.03)
-
-
-def test_kramers_formula() -> None:
-    assert kramer_ball_stiffness(8, 0.03, 500.0, math.radians(30.0)) == pytest.approx(1.00906e8, rel=1e-5)
 
 
 # Dimensions [mm], dynamic and static rating [kN]; of the balls and of NU 205 the usual count of elements.

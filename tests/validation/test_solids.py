@@ -20,16 +20,15 @@ from typing import Any
 
 import meshio
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.housing import Material, ModeSet, Support, assemble, attach_fixtures, solve_modes
 from gearwhine.meshes import ElementBlock, Mesh, read_mesh, write_mesh
 from gearwhine.meshes.formats.files import WRITABLE
 from gearwhine.meshes.gmsh_meshing import gmsh_session
+from gearwhine.numerics.arrays import FloatArray
 
 Published = Callable[..., None]
-FloatArray = npt.NDArray[np.float64]
 
 RING = "code_aster V2.03.109 (SDLS109), free thick ring"
 CYLINDER = "FinEtools, free solid cylinder, after the Abaqus C3D10 benchmark"

@@ -32,8 +32,6 @@ from gearwhine.rotors import (
 )
 from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
-FloatArray = npt.NDArray[np.float64]
-
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, diameter, 0.05, 7810.0) for at, diameter in ((0.5, 0.28), (1.0, 0.35))]
 FRISWELL = Rotor("Friswell 5.9.1", [Segment(0.25, 0.05, 0.0, STEEL)] * 6, DISCS)

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from coupled_cases import coupled
 
@@ -23,10 +22,9 @@ from gearwhine.coupling.analyses.transient import starting_state
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import rest_frequencies, solve_torsional_modes
 from gearwhine.solve.machine import plan_of
-
-FloatArray = npt.NDArray[np.float64]
 
 TABLE_I = "NASA TM-101442 (Choy et al., 1989), Table I, natural frequencies of the stages"
 TEXT = "NASA TM-101442 (Choy et al., 1989), text on Figs. 4 to 12"

@@ -85,14 +85,13 @@ from gearwhine.coupling.gears.contact.tooth_pair import (
     without_shared_compliance,
 )
 from gearwhine.coupling.gears.errors import GearError
-from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, IntArray
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
 from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
 from gearwhine.coupling.gears.stiffness.compliant_teeth import CompliantTeeth
 from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
 from gearwhine.coupling.gears.stiffness.models import GIVEN_SPRINGS, StiffnessModel, shared_compliance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 KernelArguments = tuple[FloatArray, int]
 

@@ -40,7 +40,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import solveh_banded
 from scipy.linalg.lapack import dptsv
 
@@ -51,13 +50,10 @@ from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.geometry.profile import tooth_side
 from gearwhine.coupling.gears.stiffness.beam import shear_modulus
 from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IndexArray
 
 _OUTLINE = 200
 _LAYERS = 300
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
 
 DEFAULT_SLICES = 61
 FINE_SLICES = 241
@@ -338,7 +334,7 @@ def face_equilibrium(
     base: FloatArray,
     gap: FloatArray,
     meeting: BoolArray,
-    owner: IntArray,
+    owner: IndexArray,
     force: FloatArray,
     *,
     touching: BoolArray | None = None,
@@ -378,8 +374,8 @@ def face_equilibrium(
     moved = np.zeros((owner.size, slices.z.size, size))
     fixed = np.zeros(gap.shape)
     every = np.arange(owner.size)
-    changed: IntArray | slice = slice(None)
-    unsettled: IntArray | slice = slice(None)
+    changed: IndexArray | slice = slice(None)
+    unsettled: IndexArray | slice = slice(None)
     first = np.searchsorted(owner, np.arange(meshes))
     for _ in range(_MOST_ROUNDS):
         flat = np.where(touching[changed], slices.flattening * slices.width, 0.0)
@@ -441,7 +437,7 @@ def _combined(fields: FloatArray, parts: FloatArray) -> FloatArray:
 
 
 def _touching_alone(
-    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IntArray, force: FloatArray
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IndexArray, force: FloatArray
 ) -> BoolArray:
     """Slices that touch when uncoupled: a close first guess of the slices that touch when coupled."""
     spring = meeting / (1.0 / base + 1.0 / slices.flattening)

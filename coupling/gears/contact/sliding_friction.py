@@ -32,8 +32,7 @@ from gearwhine.coupling.gears.contact.contact_law import ToothContact
 from gearwhine.coupling.gears.contact.lookup_tables import Weight, face_force_table, law_table
 from gearwhine.coupling.gears.errors import GearError, require_finite
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 LARGEST_COEFFICIENT = 0.5
 

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.errors import GearError
@@ -28,8 +27,8 @@ from gearwhine.coupling.gears.geometry.path_of_contact import (
 )
 from gearwhine.coupling.gears.geometry.pitch_deviations import PairFaults
 from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Flattening = Callable[[FloatArray], FloatArray]
 """Compliance of the contact of two flanks [m/N] by position in base pitches."""
 

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
 from gearwhine.coupling.gears.geometry.gear import Flank, Gear
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 NO_CONTACT_GAP = 1.0
 """Gap of a missing tooth [m], wider than any load closes."""

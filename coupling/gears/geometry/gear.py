@@ -40,7 +40,6 @@ from functools import cached_property
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError, require_finite
 from gearwhine.coupling.gears.geometry.involute import involute
@@ -49,11 +48,10 @@ from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet
 from gearwhine.coupling.gears.geometry.ring_support import RingSupport
 from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 _STEEPEST_HELIX = math.radians(60.0)
 _STIFF_RIM = 3.5

@@ -16,12 +16,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.own_copies import keep_tuples
 
-FloatArray = npt.NDArray[np.float64]
 ReliefShape = Literal["linear", "parabolic"]
 
 _POWER = {"linear": 1, "parabolic": 2}

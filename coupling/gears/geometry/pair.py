@@ -52,10 +52,8 @@ from gearwhine.coupling.gears.geometry.interference import (
     radial_clearance,
 )
 from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.numerics.findings import Finding
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 PRINTED_ROUNDING = 1e-3
 """Relative rounding of printed sizes, as of a module of 3.175 mm (8 teeth per inch) printed as 3.1748. Module, pressure

@@ -35,8 +35,7 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 POINTS_OF_CONTACT: tuple[str, ...] = ("SAP", "LPSTC", "pitch point", "HPSTC", "EAP")
 """Points of the driver: start of active profile, lowest point of single tooth contact, pitch point, highest point of

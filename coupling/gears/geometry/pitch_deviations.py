@@ -22,12 +22,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Fault, Flank, Gear
-from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, IntArray, ToothNumbering
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, ToothNumbering
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 
 def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:

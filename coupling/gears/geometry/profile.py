@@ -40,8 +40,7 @@ import numpy.typing as npt
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

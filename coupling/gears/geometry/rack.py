@@ -43,8 +43,7 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 from gearwhine.coupling.gears.geometry.involute import involute
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True)

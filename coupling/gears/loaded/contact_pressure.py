@@ -31,8 +31,7 @@ from gearwhine.coupling.gears.contact.contact_law import ToothContact
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _PATH_END_ROUNDING = 1e-12
 """Distance beyond the ends within which a position counts as on the path [base pitches]."""

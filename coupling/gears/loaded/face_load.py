@@ -48,8 +48,7 @@ from gearwhine.coupling.gears.contact.face_slices import FaceLoads, face_equilib
 from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _PHASES = 48  # number of phases of a mesh period in the means
 _CONVERGED_DEFLECTION_STEP = 1e-13  # last step of the mean deflection over the deflection

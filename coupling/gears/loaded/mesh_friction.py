@@ -17,16 +17,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from gearwhine.coupling.gears.contact.contact_law import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import sliding_direction_means
 from gearwhine.coupling.gears.errors import require_finite
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, period_mean
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,8 +31,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 )
 from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
 from gearwhine.coupling.gears.stiffness.models import StiffnessModel, shared_compliance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,10 +24,7 @@ from gearwhine.coupling.gears.contact.contact_law import PairStates, ToothContac
 from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_equilibrium, face_loads
 from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.coupling.gears.geometry.faults import NO_CONTACT_GAP
-from gearwhine.coupling.gears.geometry.pair import IntArray
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 _HAIR = 1e-9
 """Compression for the tangent stiffness of an unloaded face [m]."""

@@ -22,15 +22,13 @@ from collections.abc import Callable, Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.geometry.pair import ALLOWED_REACH
 from gearwhine.coupling.gears.geometry.profile import ProfilePoints, fillet_points, flank_points, load_angle
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 PlaneState = Literal["plane-stress", "plane-strain"]
 

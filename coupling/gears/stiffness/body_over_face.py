@@ -26,15 +26,13 @@ import math
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.geometry.profile import root_half_angle
 from gearwhine.coupling.gears.stiffness.elastic_ring import root_stamp
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
 from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, root_loads, solid_rings
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 FACE_SHAPES = 3
 """Shapes p_1, p_2, p_3 of the load over the face besides the even one; a fourth has 2 % of the even compliance."""

@@ -49,8 +49,7 @@ from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance, line_cont
 from gearwhine.coupling.gears.stiffness.normal_section import Compliance, largest_section, transverse_compliance
 from gearwhine.coupling.gears.stiffness.rim_on_hub import shift_compliance
 from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance, support_compliance, twist_compliance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 ContactModel = Literal["yang-sun", "weber"]
 

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
 from gearwhine.coupling.gears.geometry.faults import check_flank, check_tooth_number, require_tooth
@@ -29,8 +28,7 @@ from gearwhine.coupling.gears.geometry.gear import Flank, Gear
 from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
 from gearwhine.coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
 from gearwhine.coupling.gears.stiffness.normal_section import transverse_compliance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LEAST_LEFT = 0.1
 """Least part of any section that a crack may leave."""

@@ -39,7 +39,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SHAPES = 8
 """Chebyshev polynomials in each traction: the compliance is within 1e-4 of its limit."""

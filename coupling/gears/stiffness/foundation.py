@@ -31,13 +31,11 @@ import math
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import StiffnessModelError
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle, root_half_angle
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 RootSection = Literal["ma2014", "trochoid"]
 

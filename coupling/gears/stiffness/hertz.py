@@ -32,8 +32,7 @@ from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle
 from gearwhine.coupling.gears.stiffness.normal_section import in_normal_section
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def hertz_compliance(geometry: GearPairGeometry) -> float:

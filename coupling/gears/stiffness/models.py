@@ -30,7 +30,6 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.errors import StiffnessModelError
@@ -45,9 +44,8 @@ from gearwhine.coupling.gears.stiffness.tooth_compliance import (
     PotentialEnergyStiffness,
     WeberBanaschekStiffness,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.own_copies import keep_arrays
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class StiffnessModel(Protocol):
@@ -225,7 +223,6 @@ STIFFNESS_MODELS: dict[str, Callable[..., StiffnessModel]] = {
     )
 }
 """All models by their names in cases: a new model is added here."""
-
 
 _KNOW_BODIES = tuple(
     name for name, model in STIFFNESS_MODELS.items() if isinstance(model, type) and issubclass(model, CompliantTeeth)

@@ -20,11 +20,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 OverRadii = Callable[..., FloatArray]
 """Function of one array of radii for each of some points of the flank; the shapes broadcast."""
 Compliance = Callable[..., FloatArray]

@@ -34,7 +34,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.stiffness.beam import PlaneState
@@ -42,8 +41,6 @@ from gearwhine.coupling.gears.stiffness.elastic_ring import ring_motions, root_m
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
 from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, ring_section, twist_compliance
 from gearwhine.coupling.gears.stiffness.toothed_ring import ring_flexibility
-
-FloatArray = npt.NDArray[np.float64]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _RIGID_MOTION_TRACTIONS = np.array(

@@ -30,7 +30,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import StiffnessModelError
 from gearwhine.coupling.gears.geometry.gear import Gear
@@ -44,14 +43,12 @@ from gearwhine.coupling.gears.stiffness.elastic_ring import (
 )
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
 from gearwhine.coupling.gears.stiffness.toothed_ring import RingSection, ring_flexibility
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _OUTLINE = 40
 """Points on each curve of an internal tooth's outline."""
 SOLID_HOLD = 1.0 / 3.0
 """Radius at which a gear without a bore is held, in root circle radii; an internal one at its inverse."""
-
 
 BodyCompliance = Callable[[FloatArray], FloatArray]
 """Function of the radii of loaded points [m] that gives the body's compliance along the line of action [m/N]."""

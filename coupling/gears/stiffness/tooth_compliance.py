@@ -73,7 +73,6 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
@@ -94,8 +93,7 @@ from gearwhine.coupling.gears.stiffness.compliant_teeth import (
 )
 from gearwhine.coupling.gears.stiffness.foundation import RootSection, foundation_compliance
 from gearwhine.coupling.gears.stiffness.ring_body import rim_compliance, ring_compliance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True)

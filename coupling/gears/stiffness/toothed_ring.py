@@ -59,9 +59,7 @@ from gearwhine.coupling.gears.stiffness.elastic_ring import (
     wave_flexibility,
 )
 from gearwhine.coupling.gears.stiffness.elastic_tooth import tooth_flexibility
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _PLACES = 24
 """Places of a tooth between two bolts at which its compliance is solved."""

@@ -42,13 +42,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg, sparse
 
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.coupling.gears.stiffness.foundation import held_radius
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _FIRST, _MOST = 3, 12  # nodal diameters that are always solved, and the most
 _ALONG, _THROUGH = 8, 2  # elements of second order along web or disc, and along the rim and through half a width

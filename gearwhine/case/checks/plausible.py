@@ -24,6 +24,7 @@ from gearwhine.case.rotors import Rotor
 
 if TYPE_CHECKING:
     from gearwhine.case.parts import Parts
+    from gearwhine.case.planetary import Planetary
     from gearwhine.coupling.description.solids import Wall
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.gears.loaded.gear_pair import GearPair as BuiltPair
@@ -49,7 +50,7 @@ def library_findings(case: Case) -> Iterator[Finding]:
         yield from _of_gears(case.gear, case.parts.gears)
         yield from _of_pairs(case.parts)
     if case.rotor:
-        yield from _of_sets(case)
+        yield from _of_sets(case.planetary, case.parts)
         yield from _of_machine(case)
 
 
@@ -135,14 +136,14 @@ def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterato
                 yield placed(("gear", index), finding, key_in_gear(gear, finding.attribute))
 
 
-def _of_sets(case: Case) -> Iterator[Finding]:
+def _of_sets(sets: Sequence[Planetary], parts: Parts) -> Iterator[Finding]:
     """Yield findings of planetary sets, and of the rotors that are their carriers and planets."""
     from gearwhine.coupling.errors import CouplingError
     from gearwhine.rotors.errors import RotorError
 
-    numbers = {one.name: index for index, one in enumerate(case.planetary)}
+    numbers = {one.name: index for index, one in enumerate(sets)}
     try:
-        findings = list(case.parts.set_findings()) if numbers else []
+        findings = list(parts.set_findings()) if numbers else []
     except (CouplingError, RotorError):
         return  # shafts that cannot be built are findings of their own
     for finding in findings:

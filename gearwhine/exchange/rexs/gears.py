@@ -261,19 +261,15 @@ def settle_shifts(unit: GearUnit, meshes: list[Mesh]) -> None:
         if total is None or abs(total) < 1e-6:
             total = 0.0
         if one.shift is None and other.shift is None:
-            one.shift = other.shift = 0.5 * total
-            lacking = [one, other]
+            lacking = [(one, 0.5 * total), (other, 0.5 * total)]
         elif one.shift is None:
-            one.shift = total - (other.shift or 0.0)
-            lacking = [one]
+            lacking = [(one, total - (other.shift or 0.0))]
         elif other.shift is None:
-            other.shift = total - one.shift
-            lacking = [other]
+            lacking = [(other, total - one.shift)]
         else:
             continue
-        for gear in lacking:
-            assert gear.shift is not None
-            gear.shift = plain(gear.shift)
+        for gear, shift in lacking:
+            gear.shift = plain(shift)
             text = f"no profile shift: {gear.shift:.5g}, by the centre distance of {mesh.stage.label}"
             unit.notes.assumed(gear.component.label, text)
 

@@ -112,24 +112,19 @@ def find_drive(unit: GearUnit, speed: tuple[Body, float], loads: list[Load], rat
     speeds = {name: ratio * speed[1] for name, ratio in ratios.items()}
     stated = [load for load in loads if load.torque or load.power]
     stated.sort(key=lambda load: load.component.flag("defines_torque") is not True)
-    powers = {}
+    powered = list[tuple[Load, float]]()
     for load in stated:
-        if speeds.get(load.body.name):
-            torque = load.torque
-            powers[load.component.number] = (
-                load.power if torque is None or not torque else torque * speeds[load.body.name]
-            )
-    stated = [load for load in stated if powers.get(load.component.number)]
-    if not stated:
+        if turns := speeds.get(load.body.name):
+            power = load.torque * turns if load.torque else load.power
+            powered += [(load, power)] if power else []
+    if not powered:
         unit.notes.assumed("loads", "no torque: 0 N m", "operation", "torque")
         return Drive(speed[0], speed[1], 0.0, None)
-    first = stated[0]
-    power = powers[first.component.number]
-    assert power is not None
+    first, power = powered[0]
     if power > 0.0:
         return Drive(first.body, speeds[first.body.name], power / abs(speeds[first.body.name]), first)
     # It is taken out there: it comes in at the load that gives power, or at the one that passes torque on.
-    inputs = [load for load in stated if (powers[load.component.number] or 0.0) > 0.0]
+    inputs = [load for load, given in powered if given > 0.0]
     others = [load for load in loads if load.body is not first.body and _passes_torque(load, speeds)]
     for load in (*inputs, *others):
         return Drive(load.body, speeds[load.body.name], -power / abs(speeds[load.body.name]), load)

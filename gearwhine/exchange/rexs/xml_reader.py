@@ -91,7 +91,7 @@ class _Reader:
     found_model: bool = False
 
     # What is open.
-    component: Component | None = None
+    component: Component = field(default_factory=lambda: Component(0, "", ""))
     attributes: dict[str, Attribute] = field(default_factory=dict)
     attribute: tuple[str, str] = ("", "")
     value: Any = None
@@ -99,7 +99,7 @@ class _Reader:
     rows: list[Any] = field(default_factory=list)
     cells: list[str] = field(default_factory=list)
     array: dict[str, str] = field(default_factory=dict)
-    relation: Relation | None = None
+    relation: Relation = field(default_factory=lambda: Relation(0, "", (), 0))
     refs: list[tuple[str, int]] = field(default_factory=list)
     cases: list[LoadCase] = field(default_factory=list)
     case_number: int = 0
@@ -150,11 +150,9 @@ class _Reader:
         self.refs = []
 
     def _start_ref(self, attributes: dict[str, str]) -> None:
-        assert self.relation is not None
         self.refs.append((attributes.get("role", ""), _id_of(attributes, self.relation.label)))
 
     def _end_relation(self) -> None:
-        assert self.relation is not None
         relation = self.relation
         self.relations.append(Relation(relation.number, relation.kind, tuple(self.refs), relation.order))
 
@@ -164,7 +162,6 @@ class _Reader:
         self.attributes = {}
 
     def _end_component(self) -> None:
-        assert self.component is not None
         component = self.component.changed(self.attributes)
         (self.case_components if "load_case" in self.path else self.components).append(component)
 
@@ -236,7 +233,6 @@ class _Reader:
 
     @property
     def _place(self) -> str:
-        assert self.component is not None
         return f"{self.component.label}: {self.attribute[0]}"
 
     def model(self) -> RexsModel:

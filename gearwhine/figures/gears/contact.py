@@ -29,8 +29,7 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SHARE, _PRESSURE, _SLIDING, _BETWEEN, _LETTERS = 40.0, 40.0, 36.0, 4.0, 5.0  # [mm of paper]
 _NAMES = "ABCDE"
@@ -140,7 +139,8 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
     faces = contact.faces
     if faces is None or mesh.line_loads is None:
         raise ValueError(f"{pair.label}: the load is the same all over the face, which is no map")
-    places = np.linspace(*_reach(contact), _PLACES)
+    reach = float(np.abs(faces.shift).max())
+    places = np.linspace(contact.contact_range[0] + reach, contact.contact_range[1] - reach, _PLACES)
     present = contact.pairs(mesh.phases).present
     pressure = mesh_pressure(pair, contact, mesh)
     loads, pressures = (
@@ -162,8 +162,12 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
         (FOOT, MEGA * pressures, "contact pressure [MPa]"),
     ):
         axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)
-        _draw_map(axes, rolls, edges, values, quantity)
-        _draw_lines(axes, pair, contact, mesh)
+        _draw_map(figure, axes, rolls, edges, values, quantity)
+        # Contact lines at one time, the middle of the mesh period.
+        row = int(np.abs(mesh.phases - 0.5).argmin())
+        for position in mesh.positions[row][contact.pairs(mesh.phases[row : row + 1]).present[0]]:
+            roll = np.degrees(pair.driver_roll_angle(position + faces.shift))
+            axes.plot(roll, MILLI * faces.z, color="white", alpha=0.7, lw=0.9, zorder=3, label="_contact line")
         panels.append(axes)
     panels[0].tick_params(labelbottom=False)
     panels[1].set_xlabel("roll angle of the driver [°]")
@@ -186,16 +190,9 @@ def over_flank(
     return by_slice
 
 
-def _reach(contact: ToothContact) -> tuple[float, float]:
-    """Range of the path on which slices can touch."""
-    assert contact.faces is not None
-    reach = float(np.abs(contact.faces.shift).max())
-    return contact.contact_range[0] + reach, contact.contact_range[1] - reach
-
-
-def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, quantity: str) -> None:
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+def _draw_map(
+    figure: Figure, axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, quantity: str
+) -> None:
     half = 0.5 * (rolls[1] - rolls[0])
     sides = np.concatenate([rolls - half, [rolls[-1] + half]])
     loaded = np.ma.masked_where(~(values > 0.0), values)
@@ -208,12 +205,3 @@ def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArr
     bar = figure.colorbar(colors, cax=figure.add_axes(place))
     bar.ax.tick_params(labelsize=TICK, colors=INK)
     bar.set_label(quantity, size=LABEL, color=INK)
-
-
-def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> None:
-    """Contact lines at one time, the middle of the mesh period."""
-    assert contact.faces is not None
-    row = int(np.abs(mesh.phases - 0.5).argmin())
-    for position in mesh.positions[row][contact.pairs(mesh.phases[row : row + 1]).present[0]]:
-        roll = np.degrees(pair.driver_roll_angle(position + contact.faces.shift))
-        axes.plot(roll, MILLI * contact.faces.z, color="white", alpha=0.7, lw=0.9, zorder=3, label="_contact line")

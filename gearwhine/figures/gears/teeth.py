@@ -38,8 +38,7 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _HEIGHT = 104.0  # height of the panel [mm of paper]
 _PITCHES = 5.6  # number of teeth side by side

@@ -5,7 +5,6 @@ the load shares of the tooth pairs; the Harris map for a range of torques, with 
 """
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib import colormaps
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -38,8 +37,7 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _STIFFNESS, _SHARES, _BETWEEN = 66.0, 42.0, 5.0  # heights of the panels and the gap between them [mm of paper]
 

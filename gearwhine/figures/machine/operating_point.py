@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -42,10 +41,9 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
 from gearwhine.rotors import Segment
-
-FloatArray = npt.NDArray[np.float64]
 
 _TALLEST, _SLIMMEST = 34.0, 7.0  # largest and least height of a shaft with its gears [mm of paper]
 _BESIDE, _BETWEEN = 6.0, 6.0  # margins and gap between the two planes [mm of paper]

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -28,8 +27,7 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SIDE = 118.0  # side of the square panel [mm of paper]
 _LEFT = 21.0  # its left edge [mm of paper]

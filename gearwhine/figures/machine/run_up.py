@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from gearwhine.coupling.analyses.run_up import RunSignature
@@ -21,10 +20,9 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
-
-FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 80.0  # height of the panel of order slices [mm of paper]
 _COLUMNS = 3  # columns of their legend

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -38,12 +37,11 @@ from gearwhine.figures.style import (
     shortened,
 )
 from gearwhine.housing.acoustics.sound_levels import a_weighting, pressure_level
+from gearwhine.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
     from gearwhine.housing.acoustics.boundary_elements import SoundField
-
-FloatArray = npt.NDArray[np.float64]
 
 _POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound power, and gap between them [mm]
 _ABOVE = 2.0  # height above the panel for the leaders of the names [mm]
@@ -222,10 +220,11 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
     lines : sequence of SoundLine
         Lines solved by boundary elements.
     """
+    fields = [field for line in lines if (field := sound_field(line)) is not None]
     curves = []
     for _, right, up, _ in _PLANES:
         directions = np.outer(np.cos(_ANGLES), right) + np.outer(np.sin(_ANGLES), up)
-        curves.append([_directed(line, directions) for line in lines])
+        curves.append([_directed(field, directions) for field in fields])
     top = 5.0 * np.ceil(max(float(np.nanmax(curve)) for plane in curves for curve in plane) / 5.0)
     note = f"{shortened(title, 50)}; far field, referred to 1 m from the middle; level [dB re 20 µPa]"
     figure = sheet(HEAD + 6.0 + _ROSE + 8.0, "Directivity at the loudest lines", note)
@@ -253,10 +252,8 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
     return figure
 
 
-def _directed(line: "SoundLine", directions: FloatArray) -> FloatArray:
+def _directed(field: "SoundField", directions: FloatArray) -> FloatArray:
     """Return levels of the far field at 1 m [dB]; NaN behind a hard plane."""
-    field = sound_field(line)
-    assert field is not None
     levels = pressure_level(field.far_field(directions).sum(axis=1))
     behind = np.zeros(len(levels), dtype=bool) if field.plane is None else directions @ field.plane.normal < -1e-9
     return np.where(behind, np.nan, levels)

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -33,9 +32,8 @@ from gearwhine.figures.style import (
     sheet,
     stretches,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.sections import arrowed
-
-FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN = 46.0, 6.0  # height of a branch's panels, and gap between them [mm]
 _ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # height of a motion's rows, gaps between them and above the first [mm]

@@ -7,7 +7,6 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -31,13 +30,12 @@ from gearwhine.figures.style import (
     panel_title,
     sheet,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
 
 if TYPE_CHECKING:
     import xarray as xr
-
-FloatArray = npt.NDArray[np.float64]
 
 _MOST_WATERFALLS = 12  # largest number of waterfalls of a grid over several keys
 _RANGE_OF_COLOURS = 40.0  # range of levels below the highest that the colours distinguish [dB]

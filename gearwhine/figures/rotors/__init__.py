@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from gearwhine.case import Case, RollingStiffness, Segment
@@ -26,13 +25,12 @@ from gearwhine.figures.rotors.responses import (
 )
 from gearwhine.figures.rotors.shaft import draw_shaft
 from gearwhine.figures.style import shortened
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
 from gearwhine.rotors import Bearing, Rotor
 from gearwhine.rotors import Segment as RotorSegment
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-
-FloatArray = npt.NDArray[np.float64]
 
 _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
 _MODES = 6  # modes drawn of each kind
@@ -131,7 +129,7 @@ def _figures(solved: SolvedRotor, assembly: RotorAssembly) -> list[tuple[str, Fi
     critical, directions = _critical_speeds(solved)
     name = f"Rotor {shortened(solved.rotor.name, 20)}"
     if solved.campbell is not None and solved.campbell.speeds.size > 1 and solved.campbell.eigenvalues.size:
-        crossed, senses, orders = _with_other_orders(solved, critical, directions)
+        crossed, senses, orders = _with_other_orders(solved, solved.campbell.speeds, critical, directions)
         campbell = draw_campbell(
             f"{name}: Campbell diagram",
             solved.campbell,
@@ -186,11 +184,10 @@ def _figures(solved: SolvedRotor, assembly: RotorAssembly) -> list[tuple[str, Fi
 
 
 def _with_other_orders(
-    solved: SolvedRotor, critical: FloatArray, directions: FloatArray
+    solved: SolvedRotor, speeds: FloatArray, critical: FloatArray, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return critical speeds of order 1, then of the other orders, with their senses and orders."""
-    assert solved.campbell is not None
-    sense = -1.0 if solved.campbell.speeds.min() < 0.0 else 1.0
+    sense = -1.0 if speeds.min() < 0.0 else 1.0
     more = [
         crossing for crossings in solved.orders.values() if not isinstance(crossings, str) for crossing in crossings
     ]

@@ -34,11 +34,10 @@ from gearwhine.figures.style import (
     sheet,
     stretches,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Campbell
 from gearwhine.rotors.analyses.campbell import stability_onset
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, NEUTRAL
-
-FloatArray = npt.NDArray[np.float64]
 
 # Below this part of a circular whirl a mode as a whole has no sense.
 PLANAR = 0.05
@@ -59,12 +58,9 @@ class Sense:
 
 FORWARD = Sense("forward", BLUE, "-")
 
-
 BACKWARD = Sense("backward", RED, (0, (5, 2)))
 
-
 MIXED = Sense("planar or mixed", "#6b747c", (0, (6, 2, 1.2, 2)))
-
 
 AXIAL = Sense("along the axis", SERIES[3], (0, (1.2, 1.8)))
 

@@ -28,9 +28,8 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing
-
-FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 92.0  # height of the panel [mm of paper]
 _SAMPLES = 80  # samples of a bearing's table over speed

@@ -32,13 +32,11 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors import WhirlModes
 from gearwhine.rotors.modes.lateral import LateralModes
 from gearwhine.rotors.modes.torsional_and_axial import TorsionalModes
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _PLACES = 201  # even places along a shaft, besides those of its parts
 _HIGHEST, _LOWEST = 20.0, 7.0  # largest and least height of a mode [mm]

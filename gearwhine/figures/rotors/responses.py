@@ -31,9 +31,7 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _AMPLITUDE, _PHASE, _BETWEEN = 70.0, 40.0, 4.0  # heights of the panels and the gap between them [mm of paper]
 _PEAK_TO_PEAK = 2e6  # peak-to-peak µm of an amplitude of one metre

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle
@@ -35,9 +34,8 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Coupling, Disc, ElasticMaterial, Segment
-
-FloatArray = npt.NDArray[np.float64]
 
 MM = 1e3  # millimetres of a metre: shafts are drawn in millimetres
 

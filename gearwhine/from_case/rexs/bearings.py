@@ -52,8 +52,7 @@ def _springs(bearing: Bearing, speed: float, sheet: Sheet, about: str) -> dict[s
     """Return the springs of a bearing: one radial, one axial and one tilt stiffness."""
     assert not isinstance(bearing.stiffness, RollingStiffness | StopStiffness)
     entries = np.asarray(bearing.stiffness.build(), dtype=float)
-    if entries.ndim == 3:
-        assert bearing.speeds is not None
+    if bearing.speeds is not None:
         speeds = np.asarray(bearing.speeds)
         flat = entries.reshape(len(speeds), -1)
         entries = np.array([np.interp(abs(speed), speeds, row) for row in flat.T]).reshape(entries.shape[1:])

@@ -30,6 +30,7 @@ def add_gears(case: Case, shafts: Shafts) -> dict[str, int]:
     CaseError
         Where a gear has no face width.
     """
+    wide = [(gear, gear.face_width) for gear in case.gear if gear.face_width is not None]
     problems = [
         Problem(f"gear.{place}.face_width", gear.name, "a face width, which every gear of a REXS file has")
         for place, gear in enumerate(case.gear)
@@ -37,21 +38,20 @@ def add_gears(case: Case, shafts: Shafts) -> dict[str, int]:
     ]
     if problems:
         raise CaseError(problems)
-    return {gear.name: _add_gear(gear, case.parts.gears[gear.name], shafts) for gear in case.gear}
+    return {gear.name: _add_gear(gear, width, case.parts.gears[gear.name], shafts) for gear, width in wide}
 
 
-def _add_gear(gear: Gear, built: BuiltGear, shafts: Shafts) -> int:
+def _add_gear(gear: Gear, face_width: float, built: BuiltGear, shafts: Shafts) -> int:
     sheet, about = shafts.sheet, f'gear "{gear.name}"'
     assert gear.rotor is not None
     assert gear.at is not None
-    assert gear.face_width is not None
     shaft, at = shafts.place(gear.rotor, gear.at)
     attributes = {
         "number_of_teeth": plain(abs(gear.teeth)),
         **quantities(
             {
                 "normal_module": built.module,
-                "face_width": gear.face_width,
+                "face_width": face_width,
                 "u_coordinate_on_shaft": at,
                 "tip_diameter": 2.0 * abs(built.tip_radius),
                 "root_diameter": 2.0 * abs(built.root_circle_radius),

@@ -59,9 +59,9 @@ class Places:
         for section in sections:
             self.add(result, section.place)
             for table in section.tables:
-                for row in table.rows if table.anchor is not None else ():
-                    assert table.anchor is not None
-                    self.add(result, table.anchor(row))
+                if (anchor := table.anchor) is not None:
+                    for row in table.rows:
+                        self.add(result, anchor(row))
             for picture in pictures.get(id(section), ()):
                 self.add(result, picture.place)
             self.add_sections(result, section.inner, pictures)

@@ -10,12 +10,14 @@ from dataclasses import replace
 from scipy import sparse
 
 from gearwhine.case import Case, UpdateParameter
-from gearwhine.case.box import FACES
+from gearwhine.case.box import FACES, Box
+from gearwhine.case.measured import Update
 from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
 from gearwhine.coupling.load_analysis.ranking import FACES_IN_PLACE_OF_WALLS
-from gearwhine.from_case.housing import bearing_places, build_seats
+from gearwhine.from_case.given_housing import GivenHousing, given_housing
+from gearwhine.from_case.housing import build_seats
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
 from gearwhine.housing.model.seats import bearing_port, seat_matrix, sensor_port
 from gearwhine.housing.updating import ModelSensitivity
@@ -27,13 +29,12 @@ from gearwhine.meshes.box.morph import MorphError
 _COMMAND = "load --sensitivity"
 
 
-def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
-    """Return the parameters of a case's ``[update]``, else a thickness for every wall of its box; none for others."""
-    if case.update is not None:
-        return tuple(case.update.parameter)
-    if case.housing is None or case.housing.box is None:
+def housing_parameters(update: Update | None, box: Box | None) -> tuple[UpdateParameter, ...]:
+    """Return the parameters of ``[update]``, else a thickness for every wall of a box; none for another housing."""
+    if update is not None:
+        return update.parameter
+    if box is None:
         return ()
-    box = case.housing.box
     parameters = []
     for face in FACES:
         thickness = getattr(box.walls, face)
@@ -53,7 +54,8 @@ def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], 
     str or None
         Why flat faces stand in place of walls, where they do.
     """
-    parameters, seats = housing_parameters(case), [seat.name for seat in housing_table(case, _COMMAND).seat]
+    table = housing_table(case, _COMMAND)
+    parameters, seats = housing_parameters(case.update, table.box), [seat.name for seat in table.seat]
     if not parameters:
         return face_changes(mesh, seats), None
     try:
@@ -74,7 +76,7 @@ def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) 
         Where the mesh of a box cannot follow.
     """
     fitted = fitted_case(case, parameters=parameters)
-    meshed = MeshedParameters(fitted, fitted.start, case, mesh)
+    meshed = MeshedParameters(fitted, fitted.start, given_housing(case, _COMMAND), mesh)
     changes = []
     for number, (rate, entry, z) in enumerate(zip(meshed.rates(), fitted.numbers, fitted.start.tolist(), strict=True)):
         bearings, sensors = _port_rates(meshed, number, rate)
@@ -111,8 +113,7 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     """
     above, below = meshed.beside(number)
     is_rigid = rate.velocity is None
-    tables = [housing_table(case, _COMMAND) for case in (above, below)]
-    if is_rigid and tables[0].seat == tables[1].seat and tables[0].sensor == tables[1].sensor:
+    if is_rigid and above.table.seat == below.table.seat and above.table.sensor == below.table.sensor:
         return {}, {}
     meshes = [meshed.mesh] * 2
     if rate.velocity is not None:
@@ -125,12 +126,10 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     return bearings, sensors
 
 
-def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[str, sparse.csr_array]]:
-    """Assemble the ports of a case's bearings and of its sensors on a mesh."""
-    table = housing_table(case, _COMMAND)
-    seats = {seat.name: seat for seat in build_seats(table)}
-    places = bearing_places(table.seat, case.bearing, case.rotor)
+def _ports(given: GivenHousing, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[str, sparse.csr_array]]:
+    """Assemble the ports of a housing's bearings and of its sensors on a mesh."""
+    seats = {seat.name: seat for seat in build_seats(given.table)}
     return (
-        {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
-        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in table.sensor},
+        {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in given.bearings.items()},
+        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in given.table.sensor},
     )

@@ -4,13 +4,11 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import skfem
 
 from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 NU = 0.3
 SHEAR = 1.0 / (2.0 * (1.0 + NU))  # over Young's modulus

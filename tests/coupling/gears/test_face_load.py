@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -24,8 +23,7 @@ from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.gears.loaded.face_load import FaceContact, lagrange
 from gearwhine.coupling.machine.load_shuttling import load_arms
 from gearwhine.coupling.statics.static_model import face_stations
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 WIDTH, FORCE = 24e-3, 6000.0
 ALPHA = math.radians(20.0)

@@ -4,7 +4,6 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -19,8 +18,7 @@ from gearwhine.coupling.gears.geometry.profile import (
     pair_outlines,
     root_half_angle,
 )
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 21, 3e-3, ALPHA, 15e-3, profile_shift=0.25, helix_angle=math.radians(18.0))

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling.gears import (
@@ -21,8 +20,7 @@ from gearwhine.coupling.gears.contact.face_slices import face_slices, face_stati
 from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 from gearwhine.coupling.gears.loaded.face_load import FaceContact
 from gearwhine.coupling.gears.stiffness.models import StiffnessModel
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 FORCE = 2800.0
 ALPHA = math.radians(20.0)

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
@@ -11,8 +10,7 @@ from gearwhine.coupling.gears import ElasticRingStiffness, Gear, GearPairGeometr
 from gearwhine.coupling.gears.stiffness.hertz import line_contact
 from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
 from gearwhine.coupling.gears.stiffness.normal_section import normal_section_gears
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 def pair(degrees: float, teeth: int = 40) -> GearPairGeometry:

@@ -7,15 +7,13 @@ gear's points are carried into its frame by rolling alone.  Undercut teeth are h
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from gearwhine.coupling.gears import Gear, GearError
 from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 ALPHA = math.radians(20.0)
 GEARS = [

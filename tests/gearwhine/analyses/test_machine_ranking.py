@@ -9,6 +9,7 @@ from planetary_machines import set_parts
 
 import gearwhine as gw
 from gearwhine.case.box import FACES
+from gearwhine.case.model import housing_table
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.load_analysis.line_model import turning_carriers
 from gearwhine.coupling.load_analysis.ranking import rank_parts
@@ -91,7 +92,7 @@ def test_walls_of_a_box_of_python_are_those_of_the_case() -> None:
     """The box is described, meshed and solved by `gw.Housing`; derivatives by its walls take another step."""
     changes = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "4 kHz", "gear.*.at": "70 mm"}
     study = gw.load("small-gearbox", changes)
-    box = geometry_of(study.case)
+    box = geometry_of(housing_table(study.case, "load"))
     assert box is not None
     assert study.housing is not None
     given = study.housing.housing

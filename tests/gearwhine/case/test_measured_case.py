@@ -11,7 +11,8 @@ from gearwhine.case import CaseError, case_document, dump_case, load_case, parse
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
 from gearwhine.housing.measured.survey_planning import survey_grid
 from gearwhine.meshes import Mesh
-from gearwhine.results.check import check_document, measured_document
+from gearwhine.output.quantity import document_of
+from gearwhine.results.check import MEASURED, check_document
 from gearwhine.results.comparison import survey_document
 from gearwhine.solve.comparison import modal_test_of, read_measured, refused_by_key
 
@@ -48,7 +49,7 @@ def test_a_file_is_found_from_the_case_and_read(tmp_path: Path, name: str) -> No
     modes = read_measured(case.measured)
     np.testing.assert_allclose(modes.frequencies, 2 * np.pi * np.array([658.0, 1049.0]))
     assert modes.shapes.shape == (2, 9)
-    document = measured_document(case)
+    document = document_of(MEASURED, case.measured)
     assert (document["points"], document["degrees_of_freedom"], document["complex"]) == (9, 9, False)
     assert parse_case(case_document(case), folder="/") == case
     assert "survey" in dump_case(case)
@@ -106,7 +107,7 @@ def test_modes_are_found_in_a_file_of_responses(tmp_path: Path) -> None:
     responses = MeasuredResponses(geometry, np.array([0]), np.array([[0, 1.0, 0]]), omega, values[:, None] + 0j)
     write_survey(tmp_path / "frf.uff", SurveyData(geometry, None, responses))
     case = case_with(tmp_path, file="frf.uff")
-    assert measured_document(case)["responses"]["lines"] == 181
+    assert document_of(MEASURED, case.measured)["responses"]["lines"] == 181
     modes = read_measured(case.measured)
     np.testing.assert_allclose(modes.frequencies, [natural], rtol=1e-6)
     np.testing.assert_allclose(modes.damping_ratios, [0.01], rtol=1e-4)

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from case_housings import materials_on, mesh_of
 
 from gearwhine.case import case_document, load_case, parse_case
+from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import ParametricHousing, _followed, fitted_case
 from gearwhine.housing import HousingError, assemble
 from gearwhine.housing.updating.parameters import coordinate_bounds, values_at
@@ -82,18 +82,19 @@ def test_where_the_neighbours_mesh_would_fold_a_new_one_is_made(designs: Paramet
     start = designs.solve(designs.start)
     narrow = designs.start.copy()
     narrow[1] = coordinate_bounds(designs.parameters)[0, 1]
-    case = designs.case_at(narrow)
-    followed = _followed(start, case)
+    given = designs.housing_at(narrow)
+    followed = _followed(start, given.table)
     assert followed is not None
     with pytest.raises(HousingError, match="folded"):
-        assemble(*materials_on(case, followed))
-    assert np.array_equal(designs.solve(narrow, start).mesh.points, mesh_of(case).points)
+        assemble(*materials_of(given.table, given.materials, followed))
+    afresh = build_mesh(given.table, given.materials, given.files)
+    assert np.array_equal(designs.solve(narrow, start).mesh.points, afresh.points)
 
 
 def test_a_design_that_is_no_sound_housing_is_said(designs: ParametricHousing) -> None:
     wide = designs.start.copy()
     wide[1] = 100.0  # as wide a boss as its range allows is still sound
-    assert designs.case_at(wide).housing is not None
+    assert designs.housing_at(wide).table.box is not None
     broken = ParametricHousing(designs.case, 10_000)
     with pytest.raises(HousingError):
         broken.solve(designs.start)

@@ -52,7 +52,7 @@ def run(case: Case) -> SolvedTransient:
 
 
 def driving_of(case: Case, rotors: Sequence[RotorComponent]) -> Driving:
-    return machine_driving(describe_machine(case), rotors, run_of(case))
+    return machine_driving(describe_machine(case), rotors, run_of(case.transient))
 
 
 @pytest.mark.parametrize(

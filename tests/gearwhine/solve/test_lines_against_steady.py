@@ -1,7 +1,6 @@
 """Lines of sensors by linear response about the mean load, against the periodic motion under the whole tooth law."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from coupled_cases import coupled
 from scipy import linalg
@@ -15,10 +14,9 @@ from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.from_case.machine import describe_machine, solve_gears
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
-
-FloatArray = npt.NDArray[np.float64]
 
 HELIX = 15.0  # degrees
 HARMONICS = 6

@@ -239,14 +239,14 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
     changed = document(misalignment="0 rad")
     for bearing in changed["bearing"]:
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}
-    found, told = load_of_case(parse_case(changed), describe_machine(parse_case(changed)))
+    found, told = load_of_case(parse_case(changed).parts, describe_machine(parse_case(changed)))
     assert found is None
     assert told[0]["message"].startswith("no operating point is found")
     assert told[0]["message"].endswith(": no static equilibrium of the machine")
     with pytest.raises(EquilibriumNotFoundError):
-        load_of_case(parse_case(document()), describe_machine(parse_case(document()), None))
+        load_of_case(parse_case(document()).parts, describe_machine(parse_case(document()), None))
     idle = parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}})
-    assert load_of_case(idle, describe_machine(idle)) == (None, [])
+    assert load_of_case(idle.parts, describe_machine(idle)) == (None, [])
 
 
 def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
@@ -344,7 +344,7 @@ def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
     given["rotor"][1]["axis"] = ["72.5 mm", "0 m"]
     given["bearing"] = [bearing | ACROSS for bearing in given["bearing"] if bearing["name"].endswith("left")]
     case = parse_case(given)
-    load, (entry,) = load_of_case(case, describe_machine(case))
+    load, (entry,) = load_of_case(case.parts, describe_machine(case))
     assert load is None
     assert entry["message"].endswith("; the misalignment of gear pair 'pinion' -> 'wheel' is taken as 0")
     (pair,), _ = solve_pairs(case, None)

@@ -7,11 +7,12 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.case import CaseError
+from gearwhine.from_case.given_housing import given_housing
 from gearwhine.housing import HousingModes, mesh_refinement
 from gearwhine.housing.mesh_refinement import refined_modes
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.meshes import BoxGeometry, WallThickness
-from gearwhine.solve.housing_modes import given_housing, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 
 CASE = """
 [material.steel]

@@ -11,12 +11,13 @@ from case_housings import mesh_of
 
 import gearwhine
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
+from gearwhine.from_case.given_housing import MODES_CODE, given_housing
 from gearwhine.housing.modes import eigensolver
 from gearwhine.housing.modes.eigensolver import arpack_modes
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.meshes import write_mesh
 from gearwhine.numerics.source_digest import _source_files, source_digest
-from gearwhine.solve.housing_modes import MODES_CODE, given_housing, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 
 CASE = "nasa-gear-noise-rig"
 

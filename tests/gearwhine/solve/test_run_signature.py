@@ -44,12 +44,12 @@ def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, So
 @pytest.mark.parametrize("teeth", [(27, 29), (26, 30)])
 def test_tooth_numbers_without_common_turns_have_their_orders(teeth: tuple[int, int]) -> None:
     case, solved = run_up(teeth, 0.6)
-    found = solve_run_signature(solved, tracking_of(case))
+    found = solve_run_signature(solved, tracking_of(case.transient))
     assert found is not None
     rows = run_signature_document(found)["orders"]
     assert {row["order"] for row in rows} >= {teeth[0], 2 * teeth[0]}
     # 30 turns do not part one shaft from another that turns 27/29 or 26/30 times: it is said.
-    (told,) = run_signature_warnings(solved, tracking_of(case))
+    (told,) = run_signature_warnings(solved, tracking_of(case.transient))
     assert told["name"] == "run signature"
     assert "output" in told["message"]
     for orders in found.orders.values():
@@ -59,8 +59,8 @@ def test_tooth_numbers_without_common_turns_have_their_orders(teeth: tuple[int, 
 
 def test_a_run_too_short_for_orders_says_so() -> None:
     case, solved = run_up((27, 29), 0.06)
-    assert solve_run_signature(solved, tracking_of(case)) is None
-    (told,) = run_signature_warnings(solved, tracking_of(case))
+    assert solve_run_signature(solved, tracking_of(case.transient)) is None
+    (told,) = run_signature_warnings(solved, tracking_of(case.transient))
     # 50 turns a second on average over 0.06 s.
     assert "no spectra and orders along the run: 3 turns of the leading shaft in the record" in told["message"]
     assert "3 whole ones; expected 4 or more" in told["message"]
@@ -69,7 +69,7 @@ def test_a_run_too_short_for_orders_says_so() -> None:
 def test_four_turns_are_enough_for_orders() -> None:
     """From 1500 to 4500 rpm in 0.08 s the leading shaft turns four times, from one whole turn to another."""
     case, solved = run_up((26, 30), 0.08)
-    found = solve_run_signature(solved, tracking_of(case))
+    found = solve_run_signature(solved, tracking_of(case.transient))
     assert found is not None
     assert {26.0, 52.0, 78.0} <= set(found.named.values())
 
@@ -101,14 +101,14 @@ def test_a_long_run_has_every_order_at_its_amplitude(teeth: tuple[int, int], wit
     ratio = teeth[0] / teeth[1]
     given = {1.0: 60.0, ratio: 40.0, float(teeth[0]): 200.0, 2.0 * teeth[0]: 30.0}
     run = long_run(solved, given)
-    found = solve_run_signature(run, tracking_of(case))
+    found = solve_run_signature(run, tracking_of(case.transient))
     assert found is not None
     rows: list[dict[str, Any]] = run_signature_document(found)["orders"]
     assert sorted(row["order"] for row in rows) == pytest.approx(sorted([*given, 3.0 * teeth[0]]))
     for order, size in given.items():
         (row,) = [row for row in rows if abs(row["order"] - order) < 1e-9]
         assert row["highest_amplitude"] == pytest.approx(size, rel=within)
-    assert run_signature_warnings(run, tracking_of(case)) == []
+    assert run_signature_warnings(run, tracking_of(case.transient)) == []
 
 
 @pytest.mark.slow
@@ -116,7 +116,7 @@ def test_a_run_in_the_other_sense_has_its_speeds_below_zero() -> None:
     """As those of the run itself are; frequencies are none the less positive, and lines stand where they did."""
     case, solved = run_up((26, 30), 0.06, "operation.speed=-5500 rpm")
     run = long_run(solved, {26.0: 200.0})
-    found = solve_run_signature(run, tracking_of(case))
+    found = solve_run_signature(run, tracking_of(case.transient))
     assert found is not None
     document = run_signature_document(found)
     whole = document_of(RUN, run)
@@ -169,7 +169,7 @@ def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
     """An order that rises with the speed is highest at the limit; a mesh force goes on to the end of the run."""
     case, solved = run_up((27, 29), 0.06)
     run = with_sensor(solved)
-    found = solve_run_signature(run, tracking_of(case))
+    found = solve_run_signature(run, tracking_of(case.transient))
     assert found is not None
     rows = {(row["signal"], row["order"]): row for row in run_signature_document(found)["orders"]}
     # The amplitude is that at the speed, not a mean over the window.
@@ -201,7 +201,7 @@ def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
 def test_an_order_beyond_the_limit_all_along_has_no_row() -> None:
     case, solved = run_up((27, 29), 0.06)
     run = replace(with_sensor(solved), trusted_limit=500.0)
-    found = solve_run_signature(run, tracking_of(case))
+    found = solve_run_signature(run, tracking_of(case.transient))
     assert found is not None
     rows = {(row["signal"], row["order"]) for row in run_signature_document(found)["orders"]}
     assert 54.0 * found.orders["top"].speeds.min() > 500.0
@@ -224,7 +224,7 @@ def test_peaks_of_a_run_are_the_highest_of_its_orders() -> None:
     """Not lines of the whole record, in which an order is smeared over all frequencies that it passes."""
     case, solved = run_up((27, 29), 0.06)
     run = with_sensor(solved)
-    found = solve_run_signature(run, tracking_of(case))
+    found = solve_run_signature(run, tracking_of(case.transient))
     assert found is not None
     document = transient_document(run, None, found)
     (sensor,), (pair,) = document["sensors"], document["gear_pairs"]
@@ -269,7 +269,7 @@ def test_pairs_that_share_an_order_share_its_curve(tmp_path: Path) -> None:
     run = "transient.run={ from = '1500 rpm', to = '4500 rpm', time = '0.1 s' }"
     case = load_case(idler(tmp_path), (*FEW, "rotor.third.modes=2", "transient.revolutions=", run)).case
     solved = solve_transient(coupled(case), plan_of(case))
-    found = solve_run_signature(solved, tracking_of(case))
+    found = solve_run_signature(solved, tracking_of(case.transient))
     assert found is not None
     meshes = {f"{n}× pinion -> wheel, {n}× wheel -> end": 28.0 * n for n in (1, 2, 3)}
     assert found.named == {"1× input, output, third": 1.0} | meshes

@@ -6,17 +6,15 @@ Reference is the housing solved anew beside the design, its modes followed by fr
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
-from case_housings import materials_on, mesh_of
 
 from gearwhine.case import Case, case_document, load_case, parse_case
+from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import HousingAtParameters, ParametricHousing, fitted_case
 from gearwhine.housing import HousingError, assemble, solve_modes
 from gearwhine.housing.updating import ModeCount, Target, measure
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solve.updating import update_housing
-
-FloatArray = npt.NDArray[np.float64]
 
 HERTZ, NOISE, MODES, RIGID = 2.0 * np.pi, 0.005, 20, 6
 WALLS = {"top": "9 mm", "left": "10 mm", "right": "11 mm", "bottom": "13 mm", "back": "12 mm", "front": "10.5 mm"}
@@ -54,8 +52,10 @@ def design(designs: ParametricHousing) -> HousingAtParameters:
 @pytest.fixture(scope="module")
 def all_modes(designs: ParametricHousing) -> FloatArray:
     """Frequencies [rad/s] of the box as it stands, from its matrices."""
-    case = designs.case_at(designs.start)
-    return solve_modes(assemble(*materials_on(case, mesh_of(case)), threads=1), count=MODES).frequencies
+    given = designs.housing_at(designs.start)
+    mesh = build_mesh(given.table, given.materials, given.files)
+    parts = materials_of(given.table, given.materials, mesh)
+    return solve_modes(assemble(*parts, threads=1), count=MODES).frequencies
 
 
 @pytest.fixture(scope="module")

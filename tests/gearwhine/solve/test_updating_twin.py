@@ -10,7 +10,6 @@ it" is taken here for all five parameters together within the ellipsoid of 99 %,
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import sparse
 from scipy.stats import chi2
@@ -32,8 +31,7 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.housing.updating.parameters import coordinate_bounds
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 MODES, MISSING = 10, (3, 6)
 FREQUENCY_NOISE, SHAPE_NOISE = 0.01, 0.05

@@ -6,8 +6,6 @@ import numpy.typing as npt
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import KINDS
 
-FloatArray = npt.NDArray[np.float64]
-
 
 def cubes(cells: npt.NDArray[np.bool_], sizes: tuple[float, float, float]) -> Mesh:
     """Mesh the true cells of a grid from the origin, each of some sizes [m], with eight-node hexahedra."""

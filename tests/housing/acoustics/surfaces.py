@@ -1,12 +1,9 @@
 """Triangulated spheres, boxes and rectangles whose sound fields are known."""
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _T = (1.0 + 5.0**0.5) / 2.0
 _ICOSAHEDRON = np.array(

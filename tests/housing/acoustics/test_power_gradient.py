@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from solids import spherical_shell
 
@@ -12,8 +11,7 @@ from gearwhine.housing.acoustics.power_gradient import PowerGradient
 from gearwhine.housing.acoustics.radiation import HousingRadiation, Method
 from gearwhine.housing.acoustics.surface_velocity import surface_velocity
 from gearwhine.meshes import Mesh
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 SIZE = (0.3, 0.2, 0.24)
 HERTZ = 900.0

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import materials_on, mesh_of
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.case.model import housing_table
 from gearwhine.coupling import MachineLoads, assemble_machine, machine_description
 from gearwhine.coupling.gears.contact.face_slices import face_stations
 from gearwhine.coupling.gears.loaded.transmission_error import (
@@ -30,6 +30,7 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
+from gearwhine.from_case.given_housing import given_housing
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
@@ -37,13 +38,12 @@ from gearwhine.housing.material import element_constants
 from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import case_changes, housing_changes
-
-FloatArray = npt.NDArray[np.float64]
 
 LIMIT = 2.0 * np.pi * 5500.0
 PARAMETERS = [
@@ -127,13 +127,13 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     rates, slopes = found.rates(fields, changes), slopes_of(changes)
     own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes
     fitted = fitted_case(case, parameters=PARAMETERS)
-    meshed = MeshedParameters(fitted, fitted.start, case, housing.mesh)
+    meshed = MeshedParameters(fitted, fitted.start, given_housing(case), housing.mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
     step, either = 2e-5, []
     for size in (step, -step):
         there = fitted.at((values + size * way).tolist())
-        geometry = geometry_of(there)
+        geometry = geometry_of(housing_table(there, "update"))
         assert geometry is not None
         near = solve(there, meshed.morph.moved(geometry))
         np.testing.assert_allclose(near[2].model.contact.stiffness, found.model.contact.stiffness, rtol=1e-9)

@@ -4,16 +4,17 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import mesh_of
 
 import gearwhine as gw
 from gearwhine.case import Case, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.case.box import FACES
+from gearwhine.case.model import housing_table
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, pair_adjoints
+from gearwhine.from_case.given_housing import given_housing
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
@@ -28,8 +29,6 @@ from gearwhine.solve.sensitivity.housing_changes import (
     case_changes,
     housing_parameters,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 KEYS = ("misalignment_rad", "k_h_beta", "transmission_error_peak_to_peak_m")
 PARAMETERS = [
@@ -87,13 +86,13 @@ def fields(case: Case, solve: Solve) -> StaticSensitivity:
 def test_numbers_of_the_housing(case: Case, fitted: FittedCase, fields: StaticSensitivity, solve: Solve) -> None:
     """Walls, bosses, a length with its seats, springs and a modulus together, along a direction: to 1e-5."""
     own = by_changes(fields, case_changes(case, fields.mesh, PARAMETERS))
-    meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
+    meshed = MeshedParameters(fitted, fitted.start, given_housing(case), fields.mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
     either = []
     for step in (3e-4, -3e-4):
         there = fitted.at((values + step * way).tolist())
-        geometry = geometry_of(there)
+        geometry = geometry_of(housing_table(there, "update"))
         assert geometry is not None
         (pair,) = solve(there, meshed.morph.moved(geometry))[1].pairs
         either.append([pair.misalignment, pair.k_h_beta, np.ptp(pair.transmission_error)])
@@ -175,12 +174,12 @@ def test_the_document_ranks_what_changes_the_pair_most() -> None:
 
 
 def test_walls_of_a_box_and_parameters_of_a_fit() -> None:
-    box = load_case("small-gearbox").case
-    assert [one.name for one in housing_parameters(box)] == [f"{face} wall" for face in FACES]
+    box = housing_table(load_case("small-gearbox").case, "load").box
+    assert [one.name for one in housing_parameters(None, box)] == [f"{face} wall" for face in FACES]
     fit = load_case("nasa-gear-noise-rig-nominal").case
     assert fit.update is not None
-    assert housing_parameters(fit) == tuple(fit.update.parameter)
-    assert housing_parameters(load_case("helical-pair").case) == ()
+    assert housing_parameters(fit.update, box) == fit.update.parameter
+    assert housing_parameters(None, None) == ()
 
 
 @pytest.mark.slow

@@ -4,13 +4,13 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from case_housings import mesh_of
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.case.model import housing_table
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
@@ -21,6 +21,7 @@ from gearwhine.coupling.sound import solution
 from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
+from gearwhine.from_case.given_housing import given_housing
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
@@ -29,6 +30,7 @@ from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import shape_functions
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.sections import Table
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
@@ -36,8 +38,6 @@ from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import case_changes
-
-FloatArray = npt.NDArray[np.float64]
 
 PARAMETERS = [
     UpdateParameter(name="front wall", keys=("housing.box.wall.front",), range=("5 mm", "20 mm")),
@@ -147,7 +147,7 @@ def way() -> tuple[float, FloatArray, list[Beside]]:
     case = sounding(CHAINS["erp"][0])
     mesh = mesh_of(case)
     fitted = fitted_case(case, parameters=PARAMETERS)
-    meshed = MeshedParameters(fitted, fitted.start, case, mesh)
+    meshed = MeshedParameters(fitted, fitted.start, given_housing(case), mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
     # So short that the curvature adds a part of 1e-6; modes to 1e-10 and better leave as much.
@@ -155,7 +155,7 @@ def way() -> tuple[float, FloatArray, list[Beside]]:
     cases = [Beside(case, solve_at_rest(case, mesh))]
     for size in (step, -step):
         there = fitted.at((values + size * way).tolist())
-        geometry = geometry_of(there)
+        geometry = geometry_of(housing_table(there, "update"))
         assert geometry is not None
         cases.append(Beside(there, solve_at_rest(there, meshed.morph.moved(geometry))))
     return step, way, cases

@@ -186,7 +186,7 @@ def test_a_sound_beyond_the_modes_is_warned_of() -> None:
 
 def test_a_case_without_acoustics_has_nothing_to_tell() -> None:
     case = load_case("small-gearbox").case
-    assert check_before_modes(case) is None
+    assert check_before_modes(case.acoustics, case.housing) is None
     assert told({}) == {}
 
 

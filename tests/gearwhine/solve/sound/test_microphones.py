@@ -9,8 +9,7 @@ from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.signals.transfer_paths import housing_paths
 from gearwhine.coupling.sound.microphones import FADE, fading_weights, microphone_histories
 from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _INTERVAL, _COUNT, _TONE = 1e-4, 8000, 517.3
 

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sounding_housing, swept_point
 
@@ -16,14 +15,13 @@ from gearwhine.coupling.sound.motion_lines import lines_of_run, lines_of_steady,
 from gearwhine.coupling.sound.solution import build_radiation, solve_sound
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, sounding_lines
 from gearwhine.housing.pictures.drawn_shapes import drawn_housing
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
 from gearwhine.sweep import SweptPoint, sweep_points
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def motion(period: float, harmonics: dict[int, complex]) -> Any:
