@@ -87,7 +87,7 @@ def solve_variation(
     assert variation is not None
     if not variation.vary:
         raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
-    inputs = varied_inputs(case, source, variation)
+    inputs = varied_inputs(source, variation)
     count = variation.samples if samples is None else samples
     points, design = _points(inputs, variation, count, variation.seed if seed is None else seed, indices=indices)
     wanted = _wanted(case, variation)
@@ -156,7 +156,7 @@ def _wanted(case: Case, variation: Variation) -> Wanted:
     else:
         listens = case.housing is not None and bool(case.housing.sensor)
         listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
-        allowed = {"gears": True, "load": case.is_loaded, "lines": listens and case.is_loaded}
+        allowed = {"gears": True, "load": case.parts.is_loaded, "lines": listens and case.parts.is_loaded}
         analyses = tuple(
             name for name, held in allowed.items() if held and all(getattr(case, table) for table in _NEEDS[name])
         )

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document
+from gearwhine.case import CaseError, CaseSource, Problem, case_document
 from gearwhine.case.errors import NOTHING, UNSAID, Location, key_of, look_up
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.overrides import matching_places, parse_key_path
@@ -61,20 +61,20 @@ class Input:
     ----------
     name : str
         Key path as the case names it; with an entry's own where each has a value of its own.
+    law : Distribution or Pitches
     unit : str
         Unit of the values; empty for plain numbers, in SI.
-    law : Distribution or Pitches
-    keys : tuple of (str, float)
-        Key paths, and the factor by which each takes the value.
     words : tuple of str
         Texts that a value stands for by its number; empty where it is one itself.
+    keys : tuple of (str, float)
+        Key paths, and the factor by which each takes the value.
     """
 
     name: str
-    unit: str
     law: Distribution | Pitches
+    unit: str
+    words: tuple[str, ...]
     keys: tuple[tuple[str, float], ...]
-    words: tuple[str, ...] = ()
 
     def value(self, coordinate: float) -> float:
         """Value at a coordinate in (0, 1): in the unit, the number of a word, or the range of pitch deviations [m]."""
@@ -99,16 +99,15 @@ class Input:
             yield f"{key}={self.text(value if self.words else factor * value)}"
 
 
-def varied_inputs(case: Case, source: CaseSource, variation: Variation) -> tuple[Input, ...]:
-    """Return the inputs that a case's variation has, in its order.
+def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]:
+    """Return the inputs of a variation, in its order.
 
     A `*` stands for every entry that takes the key, whether it has it already or not.
 
     Parameters
     ----------
-    case : Case
     source : CaseSource
-        Content that the case is made of.
+        Content of the case whose keys are varied.
     variation : Variation
 
     Raises
@@ -116,10 +115,10 @@ def varied_inputs(case: Case, source: CaseSource, variation: Variation) -> tuple
     CaseError
         With every key that leads nowhere, and every distribution that cannot be.
     """
-    inputs, problems, document = list[Input](), list[Problem](), case_document(case)
+    inputs, problems, keys = list[Input](), list[Problem](), _Keys(source)
     for key, varied in variation.vary.items():
         try:
-            inputs += _inputs_of(case, source, document, key, varied)
+            inputs += keys.inputs(key, varied)
         except _CannotVaryError as error:
             problems.append(Problem(key_of(("variation", "vary", key, *error.at)), error.value, error.expected))
     if problems:
@@ -141,88 +140,108 @@ class _CannotVaryError(Exception):
         self.expected, self.at, self.value = expected, at, value
 
 
-def _inputs_of(
-    case: Case, source: CaseSource, document: Mapping[str, Any], key: str, varied: Varied
-) -> Iterator[Input]:
-    places = _places(document, key)
-    there = [place for place in places if look_up(document, place) is not NOTHING]
-    if len(places) > 1:
-        # Entries without the key have it from now on, where they take it.
-        text = _trial(case, document, varied, there or places)
-        places = [place for place in places if place in there or _takes(source, f"{key_of(place)}={text}")]
-    if not places:
-        raise _CannotVaryError("a key that some entries of the case take")
-    factors = [_factor(document, place, varied) for place in places]
-    unknown = set(varied.factor) - {name for place in places for name in _names(document, place)}
-    if unknown:
+_Law = tuple[Distribution | Pitches, str, tuple[str, ...]]
+"""A distribution, its unit and its words."""
+
+
+class _Keys:
+    """Keys of a case, as its variation names them."""
+
+    def __init__(self, source: CaseSource) -> None:
+        case = source.changed().case
+        self._source, self._document, self._files = source, case_document(case), case.input_files
+        self._gears = [case.parts.gears[table.name] for table in case.gear]
+
+    def inputs(self, key: str, varied: Varied) -> Iterator[Input]:
+        """Yield the inputs of a varied key: one, or one for each entry where these are independent."""
+        document = self._document
+        places = _places(document, key)
+        there = [place for place in places if look_up(document, place) is not NOTHING]
+        if len(places) > 1:
+            # Entries without the key have it from now on, where they take it.
+            one = Input("", *self._law((there or places)[0], varied), ((key_of((there or places)[0]), 1.0),))
+            text = next(one.overrides(0.5)).partition("=")[2]
+            places = [place for place in places if place in there or self._takes(f"{key_of(place)}={text}")]
+        if not places:
+            raise _CannotVaryError("a key that some entries of the case take")
         names = [name for place in places for name in _names(document, place)]
-        hint = did_you_mean(next(iter(sorted(unknown))), names)
-        raise _CannotVaryError(f"names of entries that {key!r} leads to{hint}", "factor", value=sorted(unknown)[0])
-    if varied.independent:
-        for place in places:
-            yield from _joined(case, document, key_of(_named_place(document, place)), varied, [place], [1.0])
-        return
-    yield from _joined(case, document, key, varied, places, factors)
+        if unknown := sorted(set(varied.factor) - set(names)):
+            hint = did_you_mean(unknown[0], names)
+            raise _CannotVaryError(f"names of entries that {key!r} leads to{hint}", "factor", value=unknown[0])
+        if varied.independent:
+            for place in places:
+                name = key_of(_named_place(document, place))
+                yield Input(name, *self._law(place, varied), ((key_of(place), 1.0),))
+            return
+        if varied.kind in ("fit", "class") and len(places) > 1:
+            raise _CannotVaryError(
+                f"independent = true beside {varied.kind!r}: each of the {len(places)} entries has a size of its own"
+            )
+        keys = tuple((key_of(place), _factor(document, place, varied)) for place in places)
+        yield Input(key, *self._law(places[0], varied), keys)
+
+    def _takes(self, override: str) -> bool:
+        """Whether the case takes a value at a key."""
+        try:
+            self._source.changed([override])
+        except CaseError:
+            return False
+        return True
+
+    def _law(self, place: Location, varied: Varied) -> _Law:
+        """Return the law of a key; what it cannot be is said of it."""
+        try:
+            if (built := built_distribution(varied)) is not None:
+                return (*built, ())
+            if varied.file is not None:
+                return (*_of_file(varied.file, varied.column, self._files), ())
+            if varied.fit is not None:
+                return (*_of_fit(look_up(self._document, place), varied.fit, key_of(place)), ())
+            if varied.tolerance_class is not None:
+                law = self._of_class(varied.tolerance_class, place)
+                return law, "m" if isinstance(law, Pitches) else "um", ()
+            return _of_values(varied.values or (), varied.weights)
+        except (ValueError, DistributionError, ToleranceZoneError, GearError) as error:
+            findings = getattr(error, "findings", ())
+            text = "; ".join(finding.expected for finding in findings) or str(error)
+            raise _CannotVaryError(text, varied.kind) from None
+
+    def _of_class(self, tolerance_class: int, place: Location) -> Distribution | Pitches:
+        """Return the distribution of an error of a gear in a tolerance class [µm], of pitches [m]."""
+        error = tuple(place[3:])
+        if place[:1] != ("gear",) or place[2:3] != ("errors",):
+            raise ValueError(f"a key of the errors of a gear: gear.NAME.errors. and {_OF_CLASS}")
+        gear = self._gears[int(place[1])]
+        tolerances = flank_tolerances(gear, tolerance_class)
+        if error == ("pitch",):
+            return Pitches(tolerances, abs(gear.teeth))
+        slopes: dict[Location, float] = {
+            ("profile", "slope"): tolerances.profile_slope,
+            ("helix", "slope"): tolerances.helix_slope,
+        }
+        sizes: dict[Location, float] = {("runout",): tolerances.runout, ("profile", "form"): tolerances.profile_form}
+        if error in slopes:
+            slope = _MICROMETRES * slopes[error]
+            return Normal(0.0, slope / _THIRD, -slope, slope)
+        if error in sizes:
+            size = _MICROMETRES * sizes[error]
+            return Rayleigh(size / float(_RAYLEIGH_END), size)
+        raise ValueError(f"one of the errors {_OF_CLASS}")
 
 
-def _joined(
-    case: Case,
-    document: Mapping[str, Any],
-    name: str,
-    varied: Varied,
-    places: Sequence[Location],
-    factors: Sequence[float],
-) -> Iterator[Input]:
-    """Yield the input of places that have one value; of fits and tolerance classes each place has its own size."""
-    if varied.kind in ("fit", "class") and len(places) > 1:
-        raise _CannotVaryError(
-            f"independent = true beside {varied.kind!r}: each of the {len(places)} entries has a size of its own"
-        )
-    keys = tuple((key_of(place), factor) for place, factor in zip(places, factors, strict=True))
-    law, unit, words = _checked_law(case, document, varied, places[0])
-    yield Input(name, unit, law, keys, words)
+_OF_CLASS = "pitch, runout, profile.slope, profile.form or helix.slope"
 
 
-def _checked_law(
-    case: Case, document: Mapping[str, Any], varied: Varied, place: Location
-) -> tuple[Distribution | Pitches, str, tuple[str, ...]]:
-    """Return the distribution, its unit and its words; what it cannot be is said of its key."""
-    try:
-        return _law(case, document, varied, place)
-    except (ValueError, DistributionError, ToleranceZoneError, GearError) as error:
-        findings = getattr(error, "findings", ())
-        text = "; ".join(finding.expected for finding in findings) or str(error)
-        raise _CannotVaryError(text, varied.kind) from None
-
-
-def _law(
-    case: Case, document: Mapping[str, Any], varied: Varied, place: Location
-) -> tuple[Distribution | Pitches, str, tuple[str, ...]]:
-    """Return the distribution, its unit and its words."""
-    if (built := built_distribution(varied)) is not None:
-        return (*built, ())
-    if varied.values is not None:
-        return _of_values(varied)
-    if varied.file is not None:
-        return (*_of_file(varied.file, varied.column, case.input_files), ())
-    if varied.fit is not None:
-        return (*_of_fit(document, varied.fit, place), ())
-    assert varied.tolerance_class is not None
-    law = _of_class(case, varied.tolerance_class, place)
-    return law, "m" if isinstance(law, Pitches) else "um", ()
-
-
-def _of_values(varied: Varied) -> tuple[Discrete, str, tuple[str, ...]]:
-    values = varied.values or ()
+def _of_values(values: Sequence[Any], weights: Sequence[float]) -> tuple[Discrete, str, tuple[str, ...]]:
     plain = [float(one) if isinstance(one, int) and not isinstance(one, bool) else one for one in values]
     if all(isinstance(one, float) or (isinstance(one, str) and split_quantity(one)) for one in plain):
         whole = all(isinstance(one, int) for one in values)
         numbers, unit = in_one_unit(tuple(plain))
         if not whole:
-            return Discrete(numbers, varied.weights), unit, ()
+            return Discrete(numbers, weights), unit, ()
     # Whole numbers stay such, as numbers of teeth must.
     words = tuple(one if isinstance(one, str) else _toml(one) for one in values)
-    return Discrete([float(number) for number in range(len(words))], varied.weights), "", words
+    return Discrete([float(number) for number in range(len(words))], weights), "", words
 
 
 def _toml(value: object) -> str:
@@ -262,40 +281,13 @@ def _rows_of(path: Path) -> list[list[str]]:
         return [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
 
 
-def _of_fit(document: Mapping[str, Any], zone: str, place: Location) -> tuple[Normal, str]:
+def _of_fit(written: object, zone: str, key: str) -> tuple[Normal, str]:
     """Return the distribution of a length in a tolerance zone [mm]."""
-    written = look_up(document, place)
     nominal = si_amount(written)
     if nominal is None or nominal <= 0.0:
-        raise ValueError(f"a key with a length in the case, about which the zone lies; {key_of(place)} has none")
+        raise ValueError(f"a key with a length in the case, about which the zone lies; {key} has none")
     low, high = (_MILLIMETRES * (nominal + deviation) for deviation in limit_deviations(zone, nominal))
     return Normal(0.5 * (low + high), 0.5 * (high - low) / _THIRD, low, high), "mm"
-
-
-_OF_CLASS = "pitch, runout, profile.slope, profile.form or helix.slope"
-
-
-def _of_class(case: Case, tolerance_class: int, place: Location) -> Distribution | Pitches:
-    """Return the distribution of an error of a gear in a tolerance class [µm], of pitches [m]."""
-    steps = tuple(place[2:])
-    if place[:1] != ("gear",) or steps[:1] != ("errors",):
-        raise ValueError(f"a key of the errors of a gear: gear.NAME.errors. and {_OF_CLASS}")
-    table = case.gear[int(place[1])]
-    tolerances = flank_tolerances(case.parts.gears[table.name], tolerance_class)
-    if steps[1:] == ("pitch",):
-        return Pitches(tolerances, abs(table.teeth))
-    slopes: dict[Location, float] = {
-        ("profile", "slope"): tolerances.profile_slope,
-        ("helix", "slope"): tolerances.helix_slope,
-    }
-    sizes: dict[Location, float] = {("runout",): tolerances.runout, ("profile", "form"): tolerances.profile_form}
-    if (slope := slopes.get(steps[1:])) is not None:
-        slope *= _MICROMETRES
-        return Normal(0.0, slope / _THIRD, -slope, slope)
-    if (size := sizes.get(steps[1:])) is not None:
-        size *= _MICROMETRES
-        return Rayleigh(size / float(_RAYLEIGH_END), size)
-    raise ValueError(f"one of the errors {_OF_CLASS}")
 
 
 def _places(document: Mapping[str, Any], key: str) -> list[Location]:
@@ -319,22 +311,6 @@ def _new_places(inside: object, steps: Sequence[str], least: int) -> list[Locati
         for found in matching_places(inside, steps[:length]):
             return [(*found, *steps[length:])] if isinstance(look_up(inside, found), Mapping) else []
     return []
-
-
-def _takes(source: CaseSource, override: str) -> bool:
-    """Whether a case takes a value at a key."""
-    try:
-        source.changed([override])
-    except CaseError:
-        return False
-    return True
-
-
-def _trial(case: Case, document: Mapping[str, Any], varied: Varied, places: Sequence[Location]) -> str:
-    """Return a value of a distribution, by which is tried who takes it."""
-    law, unit, words = _checked_law(case, document, varied, places[0])
-    one = Input("", unit, law, ((key_of(places[0]), 1.0),), words)
-    return next(one.overrides(0.5)).partition("=")[2]
 
 
 def _named_place(document: Mapping[str, Any], place: Location) -> Location:

@@ -120,7 +120,7 @@ class VariedCase:
         housing = self.housing
         if case.housing is not None and (housing is None or self.changes_housing):
             housing = reduce_housing(case, solve_housing(case, command="vary"))
-        machine = describe_machine(case, housing or reduced_component(case))
+        machine = describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))

@@ -22,7 +22,7 @@ def _inputs(tmp_path: Path, text: str, case: str = "helical-pair") -> tuple[Inpu
     study = gw.load(path)
     variation = study.case.variation
     assert variation is not None
-    return varied_inputs(study.case, study._source, variation)
+    return varied_inputs(study._source, variation)
 
 
 def test_tied_keys_have_one_value_times_their_factor(tmp_path: Path) -> None:
