@@ -259,6 +259,18 @@ class CaseSource:
         CaseError
             With everything that is wrong.
         """
+        case, overrides = self.changed_case(changes), (*self.changes, *changes)
+        warnings = warnings_of(case) if self.imported is None else (self.imported.summary, *warnings_of(case))
+        return LoadedCase(case, warnings, replace(self, changes=overrides, files=case.input_files))
+
+    def changed_case(self, changes: Sequence[str] = ()) -> Case:
+        """Make the case with further changes, and check it; its warnings are not looked for.
+
+        Raises
+        ------
+        CaseError
+            With everything that is wrong.
+        """
         written = dict(self.written)
         overrides = (*self.changes, *changes)
         files = self.files.copy()
@@ -271,9 +283,7 @@ class CaseSource:
 
         document, sources = apply_overrides(written, overrides, resolved)
         document = without_changed(document, written, sources.keys())
-        case = parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
-        warnings = warnings_of(case) if self.imported is None else (self.imported.summary, *warnings_of(case))
-        return LoadedCase(case, warnings, replace(self, changes=overrides, files=case.input_files))
+        return parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
 
 
 def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> LoadedCase:

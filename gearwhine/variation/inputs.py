@@ -148,7 +148,7 @@ class _Keys:
     """Keys of a case, as its variation names them."""
 
     def __init__(self, source: CaseSource) -> None:
-        case = source.changed().case
+        case = source.changed_case()
         self._source, self._document, self._files = source, case_document(case), case.input_files
         self._gears = [case.parts.gears[table.name] for table in case.gear]
 
@@ -183,7 +183,7 @@ class _Keys:
     def _takes(self, override: str) -> bool:
         """Whether the case takes a value at a key."""
         try:
-            self._source.changed([override])
+            self._source.changed_case([override])
         except CaseError:
             return False
         return True

@@ -101,7 +101,7 @@ class VariedCase:
         CaseError
             Where its values make no machine.
         """
-        return self.source.changed([] if point is None else self.overrides(point)).case
+        return self.source.changed_case([] if point is None else self.overrides(point))
 
     def solve(self, point: FloatArray | None) -> Outcome:
         """Find the quantities of a sample; errors are returned as failures, not raised."""
