@@ -19,13 +19,10 @@ from scipy import linalg
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-
-_SILENCE = 1e-12  # acceleration that stands for none [m/s²]
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,23 +46,22 @@ class LinesOverSpeed:
     amplitudes: FloatArray
 
     @property
-    def levels(self) -> FloatArray:
-        """Level of all lines together at each sensor and speed, of their rms value [dB re 1 µm/s²], shape (o, s)."""
-        return _level(self.amplitudes)
+    def rms(self) -> FloatArray:
+        """Root mean square of all lines together at each sensor and speed [m/s²], shape (o, s)."""
+        return _rms(self.amplitudes)
 
 
-def _level(amplitudes: FloatArray) -> FloatArray:
-    """Level of lines together, along the last axis, of their rms value [dB]."""
-    rms = np.sqrt(0.5 * np.nansum(amplitudes**2, axis=-1))
-    return np.asarray(20.0 * np.log10(np.maximum(rms, _SILENCE) / ACCELERATION_REFERENCE))
+def _rms(amplitudes: FloatArray) -> FloatArray:
+    """Root mean square of lines together, along the last axis, by their peak amplitudes."""
+    return np.asarray(np.sqrt(0.5 * np.nansum(amplitudes**2, axis=-1)))
 
 
-def sensor_levels(machine: CoupledMachine, limit: float) -> FloatArray:
-    """Level at each sensor of all mesh harmonics, and their sidebands, up to a limit [rad/s] [dB re 1 µm/s²], (o,)."""
+def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
+    """Root mean square at each sensor of all mesh harmonics and their sidebands up to a limit [rad/s], (o,) [m/s²]."""
     lines = MeshHarmonicModel(machine).responses(limit)
     moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
-    return _level(np.abs(rows @ moved.T))
+    return _rms(np.abs(rows @ moved.T))
 
 
 def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: float) -> LinesOverSpeed:

@@ -26,7 +26,7 @@ from gearwhine.figures.style import (
     shortened,
 )
 from gearwhine.figures.style import HEAD as STYLE_HEAD
-from gearwhine.results.variation import part_of, shown_quantity
+from gearwhine.output.named_quantities import part_of, shown_quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

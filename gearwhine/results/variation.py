@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.quantity import UNITS, Part, Quantity, Rows, document_of, unit_of
+from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
 
 if TYPE_CHECKING:
@@ -151,26 +152,6 @@ def varied_dataset(varied: "VariedResult", title: str) -> "xr.Dataset":
         attributes = {"units": "dB", "long_name": "level over speed"}
         variables["value_over_speed"] = (("sample", "curve", "speed"), over_speed, attributes)
     return xr.Dataset(variables, coordinates, {"title": title, "source": f"gearwhine {__version__}"})
-
-
-_SCALES = {"m": ("µm", 1e6), "Pa": ("MPa", 1e-6), "N/m": ("N/µm", 1e-6), "rad": ("µrad", 1e6)}
-"""Units that tables and figures show in place of those of the names, and the factors to them."""
-_SYMBOLS = {"k_h_beta": "K_Hβ", "mesh_load_factor": "mesh load factor K_γ"}
-
-
-def part_of(name: str) -> str:
-    """Return what a quantity is of: ``sensor top`` of ``sensor.top.level_db``."""
-    kind, _, rest = name.rpartition(".")[0].partition(".")
-    return rest if kind == "gear_pair" else f"{kind} {rest}"
-
-
-def shown_quantity(name: str) -> tuple[str, float]:
-    """Return a quantity's name in words with the unit that is shown, and the factor to that."""
-    unit, factor = _SCALES.get(unit_of(name), (unit_of(name), 1.0))
-    last = name.rpartition(".")[2]
-    end = max((end for end in UNITS if last.endswith(end)), key=len, default="")
-    words = _SYMBOLS.get(last, last.removesuffix(end).replace("_", " "))
-    return (f"{words} [{unit}]" if unit else words), factor
 
 
 def _limit(row: Document) -> str:

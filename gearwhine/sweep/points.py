@@ -11,11 +11,12 @@ import gearwhine
 from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.housing.storage.netcdf import content_key
-from gearwhine.numerics.source_digest import installed, source_digest
+from gearwhine.numerics.source_digest import installed
 from gearwhine.output import file_stems
-from gearwhine.output.files import PRESENTATION, ROOMS, with_contents
+from gearwhine.output.files import with_contents
+from gearwhine.workers import code_digest
 
-WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "provenance"})
+_WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "provenance"})
 """Tables that no transient depends on."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 
@@ -106,11 +107,6 @@ def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, .
     return tuple(points)
 
 
-def code_digest() -> str:
-    """SHA-256 of all our code that makes numbers: points and workers of other code are not used."""
-    return source_digest(*ROOMS, "gearwhine", without=PRESENTATION)
-
-
 def axis_name(key: str) -> str:
     """Return a swept key as a dimension's name: ``speed`` for the speed, else letters, digits and underscores."""
     if key == SPEED_KEY:
@@ -119,7 +115,7 @@ def axis_name(key: str) -> str:
 
 
 def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str) -> Point:
-    document = {name: table for name, table in case_document(case).items() if name not in WITHOUT_EFFECT}
+    document = {name: table for name, table in case_document(case).items() if name not in _WITHOUT_EFFECT}
     key = content_key(
         {
             "case": with_contents(document, case.input_files.contents),

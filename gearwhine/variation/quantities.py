@@ -16,7 +16,7 @@ from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transie
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.transmission_error import transmission_error_phasors
-from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_levels
+from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
 from gearwhine.coupling.load_analysis.load_warnings import find_load
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
@@ -29,6 +29,7 @@ HARMONICS = 3
 """Number of harmonics of a transmission error."""
 _CRITICAL_SPEEDS = 3
 _RPM = 30.0 / np.pi
+_SILENCE = 1e-12  # acceleration that stands for none [m/s²]
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Wanted:
     Attributes
     ----------
     analyses : tuple of str
-        As :attr:`gearwhine.case.variation.Variation.analyses`.
+        Names of :data:`ANALYSES`, in the order wanted.
     speeds : tuple of float
         Signed speeds of lines [rad/s].
     plan : TransientPlan, optional
@@ -171,15 +172,20 @@ def _of_lines(gearbox: _Gearbox) -> Named:
         # Sidebands and tables over speed have a machine of their own at each speed.
         point = None if gearbox.load is None else gearbox.load.point
         at = [load_machine(replace(machine, speed=speed), point).coupled for speed in speeds]
-        over_speed = np.array([sensor_levels(one, limit) for one in at]).T
+        over_speed = np.array([sensor_rms(one, limit) for one in at]).T
     else:
-        over_speed = lines_over_speed(coupled, speeds, limit).levels
-    for sensor, levels in zip(coupled.sensor_rows, over_speed, strict=True):
+        over_speed = lines_over_speed(coupled, speeds, limit).rms
+    for sensor, levels in zip(coupled.sensor_rows, _level(over_speed), strict=True):
         place = int(np.argmax(levels))
         yield f"sensor.{sensor}.level_db", float(levels[place])
         if len(levels) > 1:
             yield f"sensor.{sensor}.loudest_speed_rpm", _RPM * abs(float(speeds[place]))
         yield f"sensor.{sensor}.level_db", levels
+
+
+def _level(rms: FloatArray) -> FloatArray:
+    """Level of an acceleration by its root mean square [dB re 1 µm/s²]."""
+    return np.asarray(20.0 * np.log10(np.maximum(rms, _SILENCE) / ACCELERATION_REFERENCE))
 
 
 def _of_motion(gearbox: _Gearbox) -> Named:
@@ -191,8 +197,7 @@ def _of_motion(gearbox: _Gearbox) -> Named:
         loaded = load_machine(gearbox.machine, None if gearbox.load is None else gearbox.load.point, plan.run)
     solved: SolvedTransient = solve_transient(loaded.coupled, plan)
     for sensor in solved.sensor_spectra:
-        rms = max(solved.sensor_rms(sensor), 1e-12)
-        yield f"sensor.{sensor}.motion_level_db", float(20.0 * np.log10(rms / ACCELERATION_REFERENCE))
+        yield f"sensor.{sensor}.motion_level_db", float(_level(np.array(solved.sensor_rms(sensor))))
 
 
 _ANALYSES: Mapping[str, Callable[[_Gearbox], Named]] = {

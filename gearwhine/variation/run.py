@@ -15,10 +15,9 @@ from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
-from gearwhine.sweep.points import code_digest
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Failure, Outcome, Record, VariedCase, solve_samples
-from gearwhine.workers import await_workers, connected
+from gearwhine.workers import await_workers, code_digest, connected
 
 if TYPE_CHECKING:
     from distributed import Client, Future

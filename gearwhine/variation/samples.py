@@ -29,14 +29,14 @@ from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
-from gearwhine.sweep.points import WITHOUT_EFFECT, code_digest
-from gearwhine.sweep.solution import OtherCodeError
 from gearwhine.variation.inputs import Input
 from gearwhine.variation.quantities import Evaluation, Wanted, evaluate
+from gearwhine.workers import code_digest, require_same_code
 
 FloatArray = npt.NDArray[np.float64]
 
 _OF_HOUSING = frozenset({"housing", "material"})
+_REMARKS = frozenset({"title", "notes", "provenance"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 FOLDER = "samples"
 """Folder of the record within the results folder."""
@@ -130,7 +130,7 @@ class VariedCase:
     def key(self) -> str:
         """Key of all that the samples depend on but their points: case, files, inputs, libraries and our code."""
         case = self.case(None)
-        document = {name: table for name, table in case_document(case).items() if name not in WITHOUT_EFFECT}
+        document = {name: table for name, table in case_document(case).items() if name not in _REMARKS}
         return content_key(
             {
                 "case": with_contents(document, case.input_files.contents),
@@ -152,10 +152,7 @@ def solve_samples(varied: VariedCase, points: Sequence[tuple[int, FloatArray]], 
     code : str
         Digest of the caller's code; other code on the worker could give other numbers.
     """
-    if code_digest() != code:
-        raise OtherCodeError(
-            "the worker has another version of gearwhine than the command; install the same one on every worker"
-        )
+    require_same_code(code)
     return [(number, varied.solve(point)) for number, point in points]
 
 

@@ -8,9 +8,8 @@ from sounding_gearbox import small_gearbox
 
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
-from gearwhine.coupling.linear.lines_over_speed import lines_over_speed
+from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.signals.spectrum import decibels
 
 LIMIT = 2.0 * np.pi * 6000.0
 
@@ -35,8 +34,9 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
         assert np.allclose(
             found.orders[: len(lines)] * part * abs(machine.speed), [line.frequency for line in lines], rtol=1e-12
         )
-        together = 10.0 * np.log10(np.sum(10.0 ** (0.1 * decibels(expected)), axis=1))
-        assert np.allclose(found.levels[:, place], together, atol=1e-6)
+        together = np.sqrt(np.sum((expected / np.sqrt(2.0)) ** 2, axis=1))
+        assert np.allclose(found.rms[:, place], together, rtol=1e-8)
+        assert np.allclose(sensor_rms(there, LIMIT), together, rtol=1e-12)
 
 
 def test_speeds_of_the_other_sense_or_of_standstill_are_refused() -> None:
