@@ -56,6 +56,9 @@ def test_random_pitches_are_within_the_class_and_close_over_the_turn() -> None:
     # Neither all small, nor all at the tolerance.
     assert 0.3 < np.median(ranges) / tolerances.cumulative_pitch < 0.9
     assert np.std(steps) / tolerances.single_pitch == pytest.approx(1.0 / 3.0, rel=0.1)
+    # The step that closes the turn is like the others.
+    of_each = np.std(steps, axis=0)
+    assert of_each[-1] == pytest.approx(of_each.mean(), rel=0.15)
     assert random_pitch_deviations(tolerances, 25, 3) == random_pitch_deviations(tolerances, 25, 3)
 
 
@@ -83,6 +86,7 @@ def test_random_pitches_are_within_the_class_and_close_over_the_turn() -> None:
         ("N7", 52, -39, -9),
         ("N9", 40, -62, 0),
         ("P7", 52, -51, -21),
+        ("P8", 40, -65, -26),
         ("P9", 40, -88, -26),
         ("JS7", 40, -12.5, 12.5),
         ("k8", 40, 0, 39),
