@@ -249,7 +249,7 @@ def export_reduced(case: Case, housing: HousingComponent, target: Path) -> dict[
     housing : HousingComponent
         The solved housing of the case.
     target : path
-        File to write, ``.npz``, ``.mtx``, ``.op4`` or ``.pch``; the tables stand beside it in a ``.toml`` of its name.
+        File to write, ``.npz``, ``.nc``, ``.mtx``, ``.op4`` or ``.pch``; the tables stand beside it as ``.toml``.
 
     Returns
     -------
@@ -268,9 +268,7 @@ def export_reduced(case: Case, housing: HousingComponent, target: Path) -> dict[
 
     refuse_ending(target)
     try:
-        # The rows of files without names are those of whole nodes.
-        named = target.suffix.lower() in (".npz", ".pch")
-        reduced = interface_matrices(housing, with_sensors=named)
+        reduced = interface_matrices(housing)
     except CouplingError as error:
         raise CaseError([Problem("export --reduced", case.title or str(target), str(error))]) from error
     with staging(target.parent, listed=False) as place:  # the files are the user's
@@ -310,7 +308,7 @@ def reduced_sections(document: Document) -> tuple[Section, ...]:
     nodes = [f"{name}: node {node}" for part in ("seats", "sensors") for name, node in reduced[part].items()]
     left = []
     if reduced["left_out"]:
-        why = "their directions are along no axis, other nodes move them, or the format has whole nodes alone"
+        why = "their directions are along no axis, or other nodes move them"
         left = [f"sensors {', '.join(reduced['left_out'])} are left out: {why}"]
     note = f" mass, stiffness and damping of order {reduced['order']}, supports included, in SI"
     return (Section("Exported", (*nodes, *left), note=note),)

@@ -21,6 +21,7 @@ from gearwhine.housing.reduced import (
     NodeSpring,
     ReducedHousing,
     read_matrix,
+    read_row_labels,
     reduced_matrices,
 )
 from gearwhine.housing.reduced.writing import NAMES
@@ -83,16 +84,18 @@ def tables_of(reduced: InterfaceMatrices, files: Mapping[str, Path], limit: floa
     limit : float or None
         Frequency below which they are accurate [rad/s]; None where it is unknown.
     """
-    frequency = f"{limit / _TWO_PI!r} Hz" if limit is not None else "… Hz"
-    lines = ["[housing]", f'frequency_limit = "{frequency}"', "damping_ratio   = 0.0    # the matrix has it", ""]
+    lines = ["[housing]"]
+    if limit is not None:
+        lines.append(f'frequency_limit = "{limit / _TWO_PI!r} Hz"')
+    else:
+        lines.append("# frequency_limit, below which the matrices are accurate, is not known: please state it")
+    lines += ["damping_ratio   = 0.0    # the matrix has it", ""]
     lines.append("[housing.reduced]")
     for kind, path in files.items():
         lines.append(f"{kind} = {json.dumps(path.name, ensure_ascii=False)}")
-        if path.suffix.lower() != ".mtx":
-            name = kind if path.suffix.lower() == ".npz" else NAMES[kind]
+        if path.suffix.lower() not in (".mtx", ".dof"):
+            name = kind if path.suffix.lower() in (".npz", ".nc") else NAMES[kind]
             lines.append(f'{kind}_name = "{name}"')
-    if all(path.suffix.lower() in (".mtx", ".op4") for path in files.values()):
-        lines.append(f"nodes = {[seat.node for seat in reduced.seats]}")
 
     def at(place: Sequence[float]) -> str:
         return "[" + ", ".join(f'"{number!r} m"' for number in map(float, place)) + "]"
@@ -109,13 +112,20 @@ def tables_of(reduced: InterfaceMatrices, files: Mapping[str, Path], limit: floa
 
 def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
     """Read the matrices; each file that cannot be used is a problem of its key."""
-    read, problems = dict[str, LabelledMatrix](), []
+    read, problems, labels = dict[str, LabelledMatrix](), [], None
+    if table.mapping is not None:
+        try:
+            labels = files.read(table.mapping, read_row_labels)
+        except (HousingError, ChangedFileError) as error:
+            expected = f"a file of the nodes of rows; {error}"
+            problems.append(Problem("housing.reduced.mapping", table.mapping.name, expected))
     for kind in ("mass", "stiffness", "damping"):
         path = getattr(table, kind)
         if path is None:
             continue
         try:
-            read[kind] = files.read(path, read_matrix, name=getattr(table, f"{kind}_name"))
+            matrix = files.read(path, read_matrix, name=getattr(table, f"{kind}_name"), kind=kind)
+            read[kind] = matrix if labels is None else matrix.with_rows(labels, path.name)
         except (HousingError, ChangedFileError) as error:
             problems.append(Problem(f"housing.reduced.{kind}", path.name, f"a file of the {kind} matrix; {error}"))
     if problems:

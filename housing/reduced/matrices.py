@@ -30,6 +30,16 @@ INDEFINITENESS = 1e-8
 MASSLESS = INDEFINITENESS
 """Eigenvalue of the mass matrix with a diagonal of ones, below which a combination of coordinates has no mass."""
 
+HELD = 1e30
+"""Stiffness at and beyond which a motion counts as held: Abaqus puts 1e36 on the diagonal of one."""
+
+USUAL_NAMES = {
+    "mass": ("MASS", "M", "MAAX", "MAA", "MGG", "MXX"),
+    "stiffness": ("STIFFNESS", "K", "KAAX", "KAA", "KGG", "KXX"),
+    "damping": ("DAMPING", "C", "B", "BAAX", "BAA", "BGG", "BXX"),
+}
+"""Names by which a matrix is known in a file of several, in capitals."""
+
 UNITS = {"SI": (1.0, 1.0), "mm-t-s": (1e-3, 1e-3)}
 """Length [m] and energy [J] of each system of units: t mm²/s² is 1e-3 J."""
 
@@ -48,6 +58,53 @@ class LabelledMatrix:
 
     values: FloatArray
     coordinates: tuple[Coordinate, ...] | None = None
+
+    def with_rows(self, coordinates: Sequence[Coordinate], file: str) -> "LabelledMatrix":
+        """Return the matrix with coordinates of its rows from another file than its own, called ``file``.
+
+        Raises
+        ------
+        HousingError
+            Where the file names them itself, or there are more or fewer of them.
+        """
+        if self.coordinates is not None:
+            raise HousingError(f"{file} names its nodes itself; expected no mapping of rows beside it")
+        if len(coordinates) != len(self.values):
+            order = len(self.values)
+            raise HousingError(f"{file} is of order {order}; expected {len(coordinates)}, the rows of the mapping")
+        return LabelledMatrix(self.values, tuple(coordinates))
+
+
+def chosen_matrix(names: Sequence[str], name: str, kind: str, file: str) -> str:
+    """Return the name of the matrix that is meant: the one of this name, the only one, or the one of a usual name.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names in the file.
+    name : str
+        Name that is asked for, as the file writes it; empty for none.
+    kind : {"", "mass", "stiffness", "damping"}
+        Matrix that is meant, see :data:`USUAL_NAMES`.
+    file : str
+        Name of the file, for messages.
+
+    Raises
+    ------
+    HousingError
+        Where there is no such matrix, or several could be meant.
+    """
+    listed = ", ".join(map(repr, names[:20])) or "none at all"
+    if name:
+        if name not in names:
+            raise HousingError(f"{file}: expected a matrix {name!r}; it has {listed}")
+        return name
+    if len(names) == 1:
+        return names[0]
+    usual = [one for one in names if one.upper() in USUAL_NAMES.get(kind, ())]
+    if len(usual) != 1:
+        raise HousingError(f"{file}: expected the name of one of its matrices; it has {listed}")
+    return usual[0]
 
 
 @dataclass(frozen=True)
@@ -139,7 +196,8 @@ def reduced_matrices(
     Parameters
     ----------
     matrices : mapping of str to LabelledMatrix
-        ``mass``, ``stiffness``, and ``damping`` where there is one. Rows that one of labelled matrices lacks are zero.
+        ``mass``, ``stiffness``, and ``damping`` where there is one. Rows that one of labelled matrices lacks are zero;
+        those of a stiffness of :data:`HELD` are left out.
     nodes : sequence of int
         Numbers of the nodes to which the first rows belong, six each, where the files name no coordinates; the others
         are internal.
@@ -174,6 +232,10 @@ def reduced_matrices(
             values[name] = np.zeros((len(union), len(union)))
             values[name][np.ix_(rows, rows)] = matrices[name].values
         coordinates = tuple(union)
+        held = np.diag(values["stiffness"]) >= HELD
+        if held.any():
+            coordinates = tuple(one for one, is_held in zip(union, held, strict=True) if not is_held)
+            values = {name: matrix[np.ix_(~held, ~held)] for name, matrix in values.items()}
     else:
         order = len(matrices["stiffness"].values)
         if 6 * len(nodes) > order or not nodes:

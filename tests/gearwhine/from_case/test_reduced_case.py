@@ -118,7 +118,11 @@ def test_commands_that_need_shapes_say_so(document: dict[str, Any], command: str
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        (("reduced", "mass_name"), "MBBX", r"housing.reduced.mass: expected a file of the mass matrix; .* it has MAAX"),
+        (
+            ("reduced", "mass_name"),
+            "MBBX",
+            r"housing.reduced.mass: expected a file of the mass matrix; .* it has 'MAAX'",
+        ),
         (("reduced", "nodes"), [11], r"housing.reduced.nodes: expected none beside files that name their nodes"),
         (("reduced", "units"), "inch", r"housing.reduced.units: expected one of 'SI' or 'mm-t-s', got 'inch'"),
         (("reduced", "stiff"), 1, r"housing.reduced.stiff: expected no such key"),
