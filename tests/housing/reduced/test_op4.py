@@ -113,6 +113,14 @@ def test_text_without_strings_and_other_exponents(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4").values, [[1500.0, 0.0], [-2.5, 0.4]])
 
 
+def test_strings_of_single_precision_as_text(tmp_path: Path) -> None:
+    """A string of two numbers of one word each, from row 1 on: 1 + 65536 (2 + 1)."""
+    lines = ["       2       2       2       1KGG     1P,5E16.9", "       1       0       3", "      196609"]
+    lines += [" 4.500000000E+00-1.500000000E+00", "       3       1       1", " 1.000000000E+00", ""]
+    (tmp_path / "k.op4").write_text("\n".join(lines))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4").values, [[4.5, 0.0], [-1.5, 0.0]])
+
+
 def text(*lines: str) -> Callable[[], bytes]:
     return lambda: "\n".join([*lines, ""]).encode()
 

@@ -116,6 +116,13 @@ def in_order(read: LabelledMatrix) -> np.ndarray:
     return read.values[np.ix_(rows, rows)]
 
 
+def test_both_triangles_are_taken_as_they_stand(tmp_path: Path) -> None:
+    """Where any term has its mirror, one without is not mirrored: the matrix is refused later, as not symmetric."""
+    (tmp_path / "k.sti").write_text("1 1 4.0\n1 2 1.0\n2 1 1.0\n2 2 4.0\n2 3 -2.0\n3 3 4.0\n")
+    expected = [[4.0, 1.0, 0.0], [1.0, 4.0, -2.0], [0.0, 0.0, 4.0]]
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.sti").values, expected)
+
+
 @pytest.mark.parametrize("triangle", [True, False])
 def test_terms_of_abaqus(tmp_path: Path, triangle: bool) -> None:
     for name, matrix in (("k", with_internal(STIFFNESS)), ("m", with_internal(MASS))):
