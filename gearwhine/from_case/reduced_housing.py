@@ -23,6 +23,7 @@ from gearwhine.housing.reduced import (
     read_matrix,
     read_row_labels,
     reduced_matrices,
+    static_stiffness,
 )
 from gearwhine.housing.reduced.writing import NAMES
 
@@ -57,6 +58,7 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
         With what is wrong with the files, their matrices, or with what is at their nodes.
     """
     read = _read(table.reduced, files)
+    static = read.pop("static", None)
     try:
         return ReducedHousing(
             reduced_matrices(read, table.reduced.nodes, table.reduced.units),
@@ -68,6 +70,7 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
             ],
             table.damping_ratio,
             limit=_TWO_PI * table.frequency_limit,
+            static=None if static is None else static_stiffness(static, table.reduced.nodes, table.reduced.units),
         )
     except HousingError as error:
         raise CaseError(_problems(table, error)) from error
@@ -119,13 +122,18 @@ def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
         except (HousingError, ChangedFileError) as error:
             expected = f"a file of the nodes of rows; {error}"
             problems.append(Problem("housing.reduced.mapping", table.mapping.name, expected))
-    for kind in ("mass", "stiffness", "damping"):
+    for kind, name in (
+        ("mass", table.mass_name),
+        ("stiffness", table.stiffness_name),
+        ("damping", table.damping_name),
+        ("static", ""),
+    ):
         path = getattr(table, kind)
         if path is None:
             continue
         try:
-            matrix = files.read(path, read_matrix, name=getattr(table, f"{kind}_name"), kind=kind)
-            read[kind] = matrix if labels is None else matrix.with_rows(labels, path.name)
+            matrix = files.read(path, read_matrix, name=name, kind=kind.replace("static", "stiffness"))
+            read[kind] = matrix if labels is None or kind == "static" else matrix.with_rows(labels, path.name)
         except (HousingError, ChangedFileError) as error:
             problems.append(Problem(f"housing.reduced.{kind}", path.name, f"a file of the {kind} matrix; {error}"))
     if problems:

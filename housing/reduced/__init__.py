@@ -11,7 +11,9 @@
 from gearwhine.housing.reduced.certificate import ReducedCertificate as ReducedCertificate
 from gearwhine.housing.reduced.matrices import LabelledMatrix as LabelledMatrix
 from gearwhine.housing.reduced.matrices import ReducedMatrices as ReducedMatrices
+from gearwhine.housing.reduced.matrices import StaticStiffness as StaticStiffness
 from gearwhine.housing.reduced.matrices import reduced_matrices as reduced_matrices
+from gearwhine.housing.reduced.matrices import static_stiffness as static_stiffness
 from gearwhine.housing.reduced.matrix_files import read_matrix as read_matrix
 from gearwhine.housing.reduced.reduced_housing import NodeSeat as NodeSeat
 from gearwhine.housing.reduced.reduced_housing import NodeSensor as NodeSensor

@@ -243,12 +243,58 @@ def reduced_matrices(
             refuse([Finding(("reduced housing", ""), "nodes", tuple(nodes), expected)], HousingError)
         at_nodes = [(node, axis) for node in nodes for axis in range(1, 7)]
         coordinates = (*at_nodes, *((number, 0) for number in range(1, order - len(at_nodes) + 1)))
-    length, energy = UNITS[units]
-    per_unit = np.array([1.0 / length if 1 <= axis <= 3 else 1.0 for _, axis in coordinates])
     for name, matrix in values.items():
         if matrix.shape == (len(coordinates),) * 2:
-            values[name] = energy * per_unit[:, None] * matrix * per_unit
+            values[name] = _in_si(matrix, coordinates, units)
     return ReducedMatrices(values["mass"], values["stiffness"], coordinates, values.get("damping"))
+
+
+def _in_si(matrix: FloatArray, coordinates: Sequence[Coordinate], units: str) -> FloatArray:
+    """Return E S⁻¹ A S⁻¹ of :func:`reduced_matrices`."""
+    length, energy = UNITS[units]
+    per_unit = np.array([1.0 / length if 1 <= axis <= 3 else 1.0 for _, axis in coordinates])
+    return np.asarray(energy * per_unit[:, None] * matrix * per_unit)
+
+
+@dataclass(frozen=True)
+class StaticStiffness:
+    """Static stiffness of the interface nodes, from another computation than the reduction.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n, n)
+        N/m of translations, N and N m with rotations.
+    coordinates : tuple of Coordinate
+    """
+
+    values: FloatArray
+    coordinates: tuple[Coordinate, ...]
+
+
+def static_stiffness(matrix: LabelledMatrix, nodes: Sequence[int] = (), units: str = "SI") -> StaticStiffness:
+    """Make a static stiffness in SI of that of a file.
+
+    Parameters
+    ----------
+    matrix : LabelledMatrix
+    nodes : sequence of int
+        Nodes of the rows, six each, where the file does not name them.
+    units : {"SI", "mm-t-s"}
+
+    Raises
+    ------
+    HousingError
+        Where there are more or fewer rows than motions of the nodes, or the matrix is not symmetric.
+    """
+    coordinates = matrix.coordinates
+    if coordinates is None:
+        coordinates = tuple((node, axis) for node in nodes for axis in range(1, 7))
+    if len(coordinates) != len(matrix.values):
+        expected = f"six rows for each of the {len(nodes)} nodes; its order is {len(matrix.values)}"
+        refuse([Finding(_part("static"), "", None, expected)], HousingError)
+    values = _in_si(matrix.values, coordinates, units)
+    refuse(_symmetry_findings({"static": values}), HousingError)
+    return StaticStiffness(0.5 * (values + values.T), coordinates)
 
 
 def _part(name: str) -> Part:
