@@ -26,10 +26,10 @@ NodeNumber = Annotated[int, Whole(0, 999_999_999)]
 class ReducedFiles(Table):
     """`[housing.reduced]`: files of the matrices, and what these do not say."""
 
-    mass: CaseFile
-    """Mass matrix: a file of Nastran, Abaqus, CalculiX or Ansys, of Matrix Market, NumPy or NetCDF."""
     stiffness: CaseFile
-    """Stiffness matrix."""
+    """Stiffness matrix: a file of Nastran, Abaqus, CalculiX or Ansys, of Matrix Market, NumPy, NetCDF or REXS."""
+    mass: CaseFile | None = None
+    """Mass matrix. Default: none, of a housing that follows its loads without resonances of its own."""
     damping: CaseFile | None = None
     """Matrix of viscous damping. Default: none beside `damping_ratio` and dashpots."""
     mass_name: Annotated[str, Field(max_length=100)] = ""

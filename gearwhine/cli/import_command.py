@@ -1,5 +1,6 @@
 """Command that makes a case of a gear unit in another program's file: import."""
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,6 +50,10 @@ def _import(file: str, output: Path | None, load_case: str) -> dict[str, Any]:
     if target.exists():
         raise CaseError([Problem("--output", str(target), "a place where no file of that name stands yet")])
     imported = imported_case(*read_rexs_file(file), load_case)
+    if "housing" in imported.document:
+        # The matrix of the casing stays in the file: the case names it by the way from its own folder.
+        way = os.path.relpath(file, target.parent)
+        imported.document["housing"]["reduced"]["stiffness"] = Path(way).as_posix()
     with staging(target.parent, listed=False) as place:  # the case is the user's
         (place / target.name).write_text(imported.toml, encoding="utf-8")
     try:

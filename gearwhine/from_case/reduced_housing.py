@@ -13,6 +13,7 @@ from gearwhine.case.reduced_housing import ReducedFiles
 from gearwhine.case.reduced_housing import ReducedHousing as ReducedTable
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.reduced_component import InterfaceMatrices, component_of_reduced_housing
+from gearwhine.exchange.file_names import is_rexs_file
 from gearwhine.housing import HousingError
 from gearwhine.housing.reduced import (
     LabelledMatrix,
@@ -132,13 +133,34 @@ def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
         if path is None:
             continue
         try:
-            matrix = files.read(path, read_matrix, name=name, kind=kind.replace("static", "stiffness"))
+            if is_rexs_file(path):
+                matrix = files.read(path, _casing_stiffness)
+            else:
+                matrix = files.read(path, read_matrix, name=name, kind=kind.replace("static", "stiffness"))
             read[kind] = matrix if labels is None or kind == "static" else matrix.with_rows(labels, path.name)
         except (HousingError, ChangedFileError) as error:
             problems.append(Problem(f"housing.reduced.{kind}", path.name, f"a file of the {kind} matrix; {error}"))
     if problems:
         raise CaseError(problems)
     return read
+
+
+def _casing_stiffness(path: Path) -> LabelledMatrix:
+    """Read the reduced stiffness of the casing in a REXS file.
+
+    Raises
+    ------
+    HousingError
+        Where it has none, or is no REXS file.
+    """
+    from gearwhine.exchange.rexs.errors import RexsError
+    from gearwhine.exchange.rexs.reading import read_rexs
+    from gearwhine.exchange.rexs.reduced_casing import casing_stiffness
+
+    try:
+        return casing_stiffness(read_rexs(path))
+    except RexsError as error:
+        raise HousingError(str(error)) from error
 
 
 def _problems(table: ReducedTable, error: HousingError) -> list[Problem]:

@@ -121,6 +121,8 @@ class ReducedMatrices:
         Coordinate of each row, each once.
     damping : ndarray, shape (n, n), or None
         C of viscous damping: N s/m of translations.
+    is_static : bool
+        Whether the mass is zero: the housing follows its loads without resonances of its own.
 
     Raises
     ------
@@ -133,6 +135,7 @@ class ReducedMatrices:
     stiffness: FloatArray
     coordinates: tuple[Coordinate, ...]
     damping: FloatArray | None = None
+    is_static: bool = False
 
     def __post_init__(self) -> None:
         """Keep symmetric copies; check order, symmetry and definiteness."""
@@ -147,7 +150,10 @@ class ReducedMatrices:
             symmetric = 0.5 * (matrix + matrix.T)
             symmetric.setflags(write=False)
             object.__setattr__(self, name, symmetric)
-        refuse(_definiteness_findings({name: getattr(self, name) for name in matrices}), HousingError)
+        checked = [name for name in matrices if not (self.is_static and name == "mass")]
+        refuse(_definiteness_findings({name: getattr(self, name) for name in checked}), HousingError)
+        if self.is_static and self.mass.any():
+            refuse([Finding(_part("mass"), "", None, "a mass of zero of a static housing")], HousingError)
 
     @property
     def size(self) -> int:
@@ -196,8 +202,8 @@ def reduced_matrices(
     Parameters
     ----------
     matrices : mapping of str to LabelledMatrix
-        ``mass``, ``stiffness``, and ``damping`` where there is one. Rows that one of labelled matrices lacks are zero;
-        those of a stiffness of :data:`HELD` are left out.
+        ``stiffness``, and ``mass`` and ``damping`` where there are any: without a mass the housing is static. Rows that
+        one of labelled matrices lacks are zero; those of a stiffness of :data:`HELD` are left out.
     nodes : sequence of int
         Numbers of the nodes to which the first rows belong, six each, where the files name no coordinates; the others
         are internal.
@@ -246,7 +252,8 @@ def reduced_matrices(
     for name, matrix in values.items():
         if matrix.shape == (len(coordinates),) * 2:
             values[name] = _in_si(matrix, coordinates, units)
-    return ReducedMatrices(values["mass"], values["stiffness"], coordinates, values.get("damping"))
+    mass = values.get("mass", np.zeros((len(coordinates),) * 2))
+    return ReducedMatrices(mass, values["stiffness"], coordinates, values.get("damping"), "mass" not in values)
 
 
 def _in_si(matrix: FloatArray, coordinates: Sequence[Coordinate], units: str) -> FloatArray:

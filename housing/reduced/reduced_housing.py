@@ -269,7 +269,7 @@ class ReducedHousing:
         for row in translations:
             shift[row, self.matrices.coordinates[row][1] - 1] = 1.0
         mass = float(np.diag(shift.T @ self.matrices.mass @ shift).mean())
-        if not LIGHTEST <= mass <= HEAVIEST:
+        if not self.matrices.is_static and not LIGHTEST <= mass <= HEAVIEST:
             expected = (
                 f"a housing of {LIGHTEST:g} to {HEAVIEST:g} kg in all translations; the files may have other units"
             )
@@ -326,7 +326,7 @@ class ReducedHousing:
         Raises
         ------
         HousingError
-            Where a combination without mass has no stiffness either.
+            Where a combination without mass has no stiffness either, as of a static housing that nothing holds.
         """
         stiffness, _ = self.supported
         mass = self.matrices.mass
@@ -344,13 +344,15 @@ class ReducedHousing:
                 expected = "stiffness of every motion that has no mass; one has neither"
                 refuse([Finding(("reduced housing", "stiffness"), "", None, expected)], HousingError)
             moving = moving - still @ np.linalg.solve(inner, still.T @ stiffness @ moving)
-        if not moving.shape[1]:
+        if not moving.shape[1] and not self.matrices.is_static:
             refuse([Finding(("reduced housing", "mass"), "", None, "mass of one motion at least")], HousingError)
         reduced_stiffness = moving.T @ stiffness @ moving
-        squares, vectors = linalg.eigh(reduced_stiffness, moving.T @ mass @ moving)
-        squares = np.where(squares < _RIGID * max(float(squares[-1]), 0.0), 0.0, squares)
+        squares, vectors = np.zeros(0), np.zeros((0, 0))
+        if moving.shape[1]:
+            squares, vectors = linalg.eigh(reduced_stiffness, moving.T @ mass @ moving)
+        squares = np.where(squares < _RIGID * max(float(squares.max(initial=0.0)), 0.0), 0.0, squares)
         frequencies = np.sqrt(squares)
-        highest = STATIC_RATIO * max(float(frequencies[-1]), self.limit)
+        highest = STATIC_RATIO * max(float(frequencies.max(initial=0.0)), self.limit)
         static = still @ (static_vectors * (highest / np.sqrt(static_values)))
         return ReducedModes(
             frequencies, highest, np.hstack([moving @ vectors, static]), int((frequencies <= self.limit).sum())
@@ -385,6 +387,9 @@ class ReducedHousing:
     def warnings(self) -> list[ResultWarning]:
         """Warnings of rigid motions that nothing holds, and of matrices whose rigid motions are strained in part."""
         warnings = []
+        if self.matrices.is_static:
+            message = "the reduced housing has a stiffness alone: it follows its loads without resonances of its own"
+            warnings.append(warning("reduced-housing", message))
         free = int((self.modes.frequencies == 0.0).sum())
         if free:
             message = f"the reduced housing has {free} motions that nothing holds: it floats freely in them"

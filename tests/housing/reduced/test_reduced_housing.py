@@ -277,3 +277,21 @@ def test_static_stiffness_that_there_cannot_be() -> None:
         static_stiffness(LabelledMatrix(np.eye(5)), [101])
     with pytest.raises(HousingError, match="a symmetric matrix"):
         static_stiffness(LabelledMatrix(np.array([[1.0, 2.0], [0.0, 1.0]]), ((1, 1), (1, 2))))
+
+
+def test_a_stiffness_alone_is_a_static_housing() -> None:
+    """Its coordinates keep the static compliance Φ Φᵀ/Ω², which is the inverse of the stiffness; no mode is its own."""
+    stiffness = frame()[1] + 1e7 * np.eye(12)
+    made = reduced_matrices({"stiffness": LabelledMatrix(stiffness, tuple(FRAME_COORDINATES))})
+    housing = free_frame(matrices=made, limit=2.0 * np.pi * 1000.0)
+    assert made.is_static
+    assert len(housing.frequencies_hz) == 0
+    vectors = housing.modes.vectors
+    np.testing.assert_allclose(
+        vectors @ vectors.T / housing.modes.static_frequency**2 @ stiffness, np.eye(12), atol=1e-10
+    )
+    assert any("without resonances of its own" in one["message"] for one in housing.warnings)
+    with pytest.raises(HousingError, match="stiffness of every motion that has no mass"):
+        _ = free_frame(matrices=replace(made, stiffness=frame()[1])).modes
+    with pytest.raises(HousingError, match="a mass of zero of a static housing"):
+        replace(made, mass=np.eye(12))
