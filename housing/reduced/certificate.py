@@ -1,5 +1,6 @@
 """Certificate of a reduced housing: what its matrices prove, and whether a static stiffness agrees."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,15 +78,35 @@ def rigid_motions(matrices: ReducedMatrices, positions: dict[int, tuple[float, f
     """
     motions = np.zeros((matrices.size, 6))
     known = np.array([axis > 0 and node in positions for node, axis in matrices.coordinates])
+    numbers = list(positions)
+    of_nodes = rigid_motions_of(np.array([positions[node] for node in numbers]))
     for row in np.flatnonzero(known):
         node, axis = matrices.coordinates[row]
-        motions[row, axis - 1] = 1.0
-        if axis <= 3:
-            x, y, z = positions[node]
-            # Displacement θ × r of a rotation θ.
-            motions[row, 3:] = ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))[axis - 1]
+        motions[row] = of_nodes[6 * numbers.index(node) + axis - 1]
     motions[~known] = _following(matrices.stiffness, known) @ motions[known]
     return motions
+
+
+def rigid_motions_of(places: FloatArray) -> FloatArray:
+    """Rigid motions through the origin of nodes with six motions each, at places (m, 3) [m]; shape (6 m, 6).
+
+    A rotation θ about the origin displaces a node at r by θ × r, and turns it by θ.
+    """
+    motions = np.tile(np.eye(6), (len(places), 1))
+    x, y, z = np.asarray(places, dtype=np.float64).T
+    motions[0::6, 4], motions[0::6, 5] = z, -y
+    motions[1::6, 3], motions[1::6, 5] = -z, x
+    motions[2::6, 3], motions[2::6, 4] = y, -x
+    return motions
+
+
+def condensed_stiffness(stiffness: FloatArray, rows: Sequence[int]) -> FloatArray:
+    """Return the static stiffness of some coordinates, in their order, with the others following; shape (m, m)."""
+    led = np.zeros(len(stiffness), dtype=bool)
+    led[rows] = True
+    static = stiffness[np.ix_(led, led)] + stiffness[np.ix_(led, ~led)] @ _following(stiffness, led)
+    place = np.cumsum(led) - 1
+    return np.asarray(static[np.ix_(place[rows], place[rows])])
 
 
 def _following(stiffness: FloatArray, led: npt.NDArray[np.bool_]) -> FloatArray:
@@ -117,17 +138,11 @@ def static_difference(matrices: ReducedMatrices, given: StaticStiffness) -> floa
     given : StaticStiffness
         Of coordinates that the matrices have.
     """
-    rows = np.array([matrices.coordinates.index(one) for one in given.coordinates])
-    led = np.zeros(matrices.size, dtype=bool)
-    led[rows] = True
-    condensed = np.zeros((matrices.size, matrices.size))
-    static = matrices.stiffness[np.ix_(led, led)] + matrices.stiffness[np.ix_(led, ~led)] @ _following(
-        matrices.stiffness, led
-    )
-    condensed[np.ix_(led, led)] = static
+    rows = [matrices.coordinates.index(one) for one in given.coordinates]
+    static = condensed_stiffness(matrices.stiffness, rows)
     size = np.sqrt(np.abs(np.diag(given.values)))
     size = np.outer(size, size)
-    difference = np.abs(condensed[np.ix_(rows, rows)] - given.values)
+    difference = np.abs(static - given.values)
     return float(np.max(np.divide(difference, size, out=difference.copy(), where=size > 0.0)))
 
 
