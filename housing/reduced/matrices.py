@@ -30,6 +30,9 @@ INDEFINITENESS = 1e-8
 MASSLESS = INDEFINITENESS
 """Eigenvalue of the mass matrix with a diagonal of ones, below which a combination of coordinates has no mass."""
 
+LARGEST_TERM = 1e100
+"""Size beyond which a term of a matrix is no quantity: products of two stay finite."""
+
 HELD = 1e30
 """Stiffness at and beyond which a motion counts as held: Abaqus puts 1e36 on the diagonal of one."""
 
@@ -176,8 +179,8 @@ class ReducedMatrices:
             if matrix.shape != (n, n):
                 expected = f"a square matrix of order {n}, that of the coordinates; its shape is {matrix.shape}"
                 yield Finding(_part(name), "", None, expected)
-            elif not np.isfinite(matrix).all():
-                row, column = np.argwhere(~np.isfinite(matrix))[0]
+            elif not (within := np.abs(matrix) <= LARGEST_TERM).all():
+                row, column = np.argwhere(~within)[0]
                 place = f"row {row + 1}, column {column + 1}"
                 yield Finding(_part(name), place, float(matrix[row, column]), "a finite number")
         if not 0 < n <= MOST_COORDINATES:
@@ -260,7 +263,8 @@ def _in_si(matrix: FloatArray, coordinates: Sequence[Coordinate], units: str) ->
     """Return E S⁻¹ A S⁻¹ of :func:`reduced_matrices`."""
     length, energy = UNITS[units]
     per_unit = np.array([1.0 / length if 1 <= axis <= 3 else 1.0 for _, axis in coordinates])
-    return np.asarray(energy * per_unit[:, None] * matrix * per_unit)
+    with np.errstate(over="ignore"):  # what is no number of a housing is refused later, by its place
+        return np.asarray(energy * per_unit[:, None] * matrix * per_unit)
 
 
 @dataclass(frozen=True)
@@ -300,6 +304,8 @@ def static_stiffness(matrix: LabelledMatrix, nodes: Sequence[int] = (), units: s
         expected = f"six rows for each of the {len(nodes)} nodes; its order is {len(matrix.values)}"
         refuse([Finding(_part("static"), "", None, expected)], HousingError)
     values = _in_si(matrix.values, coordinates, units)
+    if not (np.abs(values) <= LARGEST_TERM).all():
+        refuse([Finding(_part("static"), "", None, "finite numbers")], HousingError)
     refuse(_symmetry_findings({"static": values}), HousingError)
     return StaticStiffness(0.5 * (values + values.T), coordinates)
 

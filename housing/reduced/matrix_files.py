@@ -5,6 +5,9 @@ Sizes are checked before anything is allocated, and nothing in a file is execute
 
 import io
 import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -121,7 +124,7 @@ def _matrix_market(path: Path) -> FloatArray:
 
 def _numpy_coordinates(path: Path) -> tuple[Coordinate, ...] | None:
     """Coordinates by the arrays ``nodes`` and ``axes`` beside the matrices; None without these."""
-    with zipfile.ZipFile(path) as archive:
+    with _whole_archive(path), zipfile.ZipFile(path) as archive:
         names = archive.namelist()
         if not {"nodes.npy", "axes.npy"} <= set(names):
             return None
@@ -143,27 +146,31 @@ def _coordinates(path: Path, nodes: npt.NDArray[np.int64], axes: npt.NDArray[np.
 
 def _numpy_array(path: Path, name: str, kind: str) -> FloatArray:
     """Read an array of real numbers from an archive of arrays, no objects."""
+    with _whole_archive(path), zipfile.ZipFile(path) as archive:
+        arrays = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+        for label in ("nodes", "axes"):
+            if len(arrays) > 1:
+                arrays.pop(label, None)
+        name = chosen_matrix(sorted(arrays), name, kind, path.name)
+        with archive.open(arrays[name]) as file:
+            version = np.lib.format.read_magic(file)
+            header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+            shape, _, dtype = header(file)
+        _check_shape(f"{path.name}: array {name!r}", shape)
+        if dtype.kind not in "fiu":
+            raise HousingError(f"{path.name}: array {name!r} is of {dtype}; expected real numbers")
+        with archive.open(arrays[name]) as file:
+            return np.asarray(np.lib.format.read_array(file, allow_pickle=False), dtype=np.float64)
+
+
+@contextmanager
+def _whole_archive(path: Path) -> Iterator[None]:
+    """Refuse an archive of arrays that is damaged."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            arrays = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
-            for label in ("nodes", "axes"):
-                if len(arrays) > 1:
-                    arrays.pop(label, None)
-            name = chosen_matrix(sorted(arrays), name, kind, path.name)
-            with archive.open(arrays[name]) as file:
-                version = np.lib.format.read_magic(file)
-                header = (
-                    np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-                )
-                shape, _, dtype = header(file)
-            _check_shape(f"{path.name}: array {name!r}", shape)
-            if dtype.kind not in "fiu":
-                raise HousingError(f"{path.name}: array {name!r} is of {dtype}; expected real numbers")
-            with archive.open(arrays[name]) as file:
-                return np.asarray(np.lib.format.read_array(file, allow_pickle=False), dtype=np.float64)
+        yield
     except HousingError:
         raise
-    except (ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError) as error:
+    except (ValueError, zipfile.BadZipFile, zlib.error, EOFError, KeyError, NotImplementedError, RuntimeError) as error:
         raise HousingError(f"{path.name}: expected arrays as numpy.savez writes them ({error})") from error
 
 

@@ -275,6 +275,8 @@ def test_static_stiffness_that_there_cannot_be() -> None:
         free_frame(static=StaticStiffness(np.eye(1), ((7, 3),)))
     with pytest.raises(HousingError, match="six rows for each of the 1 nodes; its order is 5"):
         static_stiffness(LabelledMatrix(np.eye(5)), [101])
+    with pytest.raises(HousingError, match="expected finite numbers"):
+        static_stiffness(LabelledMatrix(np.full((1, 1), np.nan), ((1, 1),)))
     with pytest.raises(HousingError, match="a symmetric matrix"):
         static_stiffness(LabelledMatrix(np.array([[1.0, 2.0], [0.0, 1.0]]), ((1, 1), (1, 2))))
 
