@@ -10,7 +10,8 @@ from rexs_files import POINTS, RexsFile, _at, add_reduced_casing, helical_stage
 import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.cli.command_line import run_command
-from gearwhine.exchange.rexs import RexsError, case_of, read_content
+from gearwhine.exchange.rexs import RexsError, case_of, read_content, read_rexs
+from gearwhine.exchange.rexs.reduced_casing import casing_of, casing_stiffness
 
 ALONG_U, ALONG_V, ALONG_W, TILT = 4e5, 2e5, 1e5, 5e8
 """Springs at each reduction point [N/mm], and about each axis [N mm/rad]."""
@@ -60,6 +61,51 @@ def test_the_case_names_the_file_and_what_is_assumed(tmp_path: Path, monkeypatch
     checked = gw.load("made/unit.toml").check()
     assert len(checked.document["reduced_housing"]["seats"]) == 4
     assert any("follows its loads without resonances of its own" in one for one in checked.warnings)
+
+
+def test_the_stiffness_is_written_as_it_was_read(tmp_path: Path) -> None:
+    """A matrix with couplings, of a group whose axes are turned, comes back along the axes of the gear unit."""
+    draw = np.random.default_rng(3).normal(size=(24, 24))
+    matrix = np.array(springs()) + 2e3 * (draw @ draw.T)
+    (tmp_path / "unit.rexs").write_bytes(on_springs(TURNED, matrix.tolist()).xml())
+    study = gw.load(tmp_path / "unit.rexs")
+    study.export_rexs(tmp_path / "back.rexs")
+    first, second = (casing_stiffness(read_rexs(tmp_path / name)) for name in ("unit.rexs", "back.rexs"))
+    one, other = (casing_of(read_rexs(tmp_path / name)) for name in ("unit.rexs", "back.rexs"))
+    assert one is not None
+    assert other is not None
+    names = [point.name.removeprefix("at ") for point in one.points]
+    rows = [6 * names.index(point.name.removesuffix(" seat")) + axis for point in other.points for axis in range(6)]
+    size = np.sqrt(np.diag(second.values))
+    np.testing.assert_allclose(
+        first.values[np.ix_(rows, rows)] / np.outer(size, size), second.values / np.outer(size, size), atol=1e-9
+    )
+    again = gw.load(tmp_path / "back.rexs").case
+    assert again.reduced_housing is not None
+    assert study.case.reduced_housing is not None
+    places = {seat.name: seat.center for seat in study.case.reduced_housing.seat}
+    for seat in again.reduced_housing.seat:
+        np.testing.assert_allclose(seat.center, places[seat.name], atol=1e-12)
+    ordered = [relation.order for relation in read_rexs(tmp_path / "back.rexs").of_relation("ordered_assembly")]
+    assert ordered[-4:] == [1, 2, 3, 4] or ordered[:4] == [1, 2, 3, 4]
+
+
+@pytest.mark.slow
+def test_the_load_is_the_same_on_the_static_stiffness_of_a_solved_housing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seats of the box and of its stiffness in a file move alike, where modes of OUT give the stiffness."""
+    monkeypatch.chdir(tmp_path)
+    coarse = ["--set", "housing.box.mesh_size=40 mm"]
+    assert run_command(["load", "small-gearbox", "-o", "out", *coarse]) == 0
+    assert run_command(["export", "small-gearbox", "--rexs", "unit.rexs", "-o", "out", *coarse]) == 0
+    ours = gw.load("small-gearbox", {"housing.box.mesh_size": "40 mm"}).operating_point().document["bearings"]
+    theirs = gw.load("unit.rexs").operating_point().document["bearings"]
+    moved = {bearing["name"]: np.array(bearing["seat_displacement_m"][:3]) for bearing in ours}
+    largest = max(np.abs(one).max() for one in moved.values())
+    for bearing in theirs:
+        assert bearing["seat"] == f"{bearing['name']} seat"
+        np.testing.assert_allclose(bearing["seat_displacement_m"][:3], moved[bearing["name"]], atol=1e-4 * largest)
 
 
 @pytest.mark.slow
