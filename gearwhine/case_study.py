@@ -730,7 +730,7 @@ class CaseStudy(Study):
         Parameters
         ----------
         file : path
-            File to write, which ends in ``.npz``, ``.pch``, ``.op4`` or ``.mtx``.
+            File to write, which ends in ``.npz``, ``.nc``, ``.pch``, ``.op4`` or ``.mtx``.
 
         Returns
         -------

@@ -125,6 +125,8 @@ REDUCED_HOUSING = (
             Quantity("massless_coordinates", "massless_count"),
             Quantity("free_rigid_motions", "free_motions"),
             Quantity("mass_kg"),
+            Quantity("held_frequency_hz", "held_frequency", optional=True),
+            Quantity("static_difference", optional=True),
         ),
         optional=True,
     ),
@@ -645,6 +647,10 @@ def _reduced_lines(document: Document) -> list[str]:
         free = f"{proved['free_rigid_motions']} of 6 rigid motions free without the supports"
         massless = f", {proved['massless_coordinates']} without mass" if proved["massless_coordinates"] else ""
         lines.append(f"proved: symmetric, no negative eigenvalue, {free}{massless}; {proved['mass_kg']:.6g} kg")
+        if (held := proved.get("held_frequency_hz")) is not None:
+            lines.append(f"modes with the nodes held: up to {held:.5g} Hz")
+        if (difference := proved.get("static_difference")) is not None:
+            lines.append(f"static stiffness of the interface: within {100.0 * difference:.2g} % of the one given")
     frequencies = housing["frequencies_hz"]
     shown = ", ".join(f"{frequency:.2f}" for frequency in frequencies[:_REDUCED_FREQUENCIES])
     more = f" and {len(frequencies) - _REDUCED_FREQUENCIES} more" if len(frequencies) > _REDUCED_FREQUENCIES else ""

@@ -19,6 +19,7 @@ from gearwhine.meshes.formats.content import MeshContent, corner_rows, find_face
 from gearwhine.meshes.mesh import Mesh
 from gearwhine.numerics.arrays import IntArray
 
+_LONGEST_FIELD = 20  # characters of a number that CalculiX reads
 _DEPTH = 20  # levels of files that include files
 _INCLUDE, _INPUT = "INCLUDE", "INPUT"
 # Keywords that are read here, whose lines of data may stand in a file of their own.
@@ -390,7 +391,7 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
     with path.open("w", encoding="utf-8") as file:
         file.write("*NODE\n")
         for number, place in enumerate(mesh.points.tolist(), start=1):
-            file.write(f"{number}, " + ", ".join(map(repr, place)) + "\n")
+            file.write(f"{number}, " + ", ".join(map(_field, place)) + "\n")
         first = 1
         for block in mesh.blocks:
             file.write(f"*ELEMENT, TYPE={names[block.kind]}\n")
@@ -411,6 +412,11 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
                     raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
                 for number, place in zip(mesh.faces.element[faces] + 1, mesh.faces.source[faces], strict=True):
                     file.write(f"{number}, {_label(mesh.blocks[place[0]], int(place[2]))}\n")
+
+
+def _field(value: float) -> str:
+    """Return a number in at most 20 characters, as CalculiX reads it: 13 digits where all have no room."""
+    return text if len(text := repr(value)) <= _LONGEST_FIELD else f"{value:.13g}"
 
 
 def _quoted(name: str) -> str:

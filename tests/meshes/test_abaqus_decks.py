@@ -220,6 +220,18 @@ def test_names_of_sets_are_one_in_any_case(tmp_path: Path) -> None:
         write_mesh(twice, tmp_path / "twice.inp")
 
 
+def test_numbers_are_as_short_as_calculix_reads_them(tmp_path: Path) -> None:
+    """CalculiX refuses -1.3877787807814457e-17, which has 23 characters; it reads 20."""
+    mesh = read_mesh(_deck(tmp_path, CUBES))
+    points = mesh.points.copy()
+    points[0] = -1.3877787807814457e-17, 1.0 / 3.0, -123456.78901234567
+    write_mesh(replace(mesh, points=points), tmp_path / "long.inp")
+    line = (tmp_path / "long.inp").read_text().splitlines()[1]
+    fields = line.split(", ")[1:]
+    assert max(map(len, fields)) <= 20
+    np.testing.assert_allclose([float(field) for field in fields], points[0], rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
