@@ -12,8 +12,9 @@ from pathlib import Path
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.formats.abaqus import read_abaqus, write_abaqus
 from gearwhine.meshes.formats.content import MeshContent
+from gearwhine.meshes.formats.med import read_med
 from gearwhine.meshes.formats.meshio_formats import content_from_meshio, load_meshio, meshio_from_mesh
-from gearwhine.meshes.formats.nastran import ENDINGS, read_nastran
+from gearwhine.meshes.formats.nastran import is_nastran, read_nastran
 from gearwhine.meshes.mesh import Mesh
 
 # Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
@@ -28,7 +29,7 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     ----------
     path : path
         A file of any format that meshio reads, or an input deck of Abaqus or CalculiX (``.inp``) or Nastran
-        (``.bdf``, ``.fem``, ``.nas``).
+        (``.bdf``, ``.fem``, ``.nas``, or ``.dat`` with cards of Nastran in it).
     unit : float
         The file's unit of length [m], such as 1e-3 for millimetres.
 
@@ -125,7 +126,9 @@ def _read(path: Path) -> MeshContent:
     ending = path.suffix.lower()
     if ending == ".inp":
         return read_abaqus(path)
-    return read_nastran(path) if ending in ENDINGS else _through_meshio(path)
+    if ending in (".med", ".rmed"):
+        return read_med(path)
+    return read_nastran(path) if is_nastran(path) else _through_meshio(path)
 
 
 def _through_meshio(path: Path) -> MeshContent:
