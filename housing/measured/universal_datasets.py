@@ -121,7 +121,12 @@ def _read_one(file: Any, block: bytes, index: int, number: int, name: str) -> Da
         raise MeasuredDataError(
             f"{where} cannot be read: its lines are not those of the format, or cut short"
         ) from error
-    _CHECKS[number](dataset, where)
+    try:
+        _CHECKS[number](dataset, where)
+    except MeasuredDataError:
+        raise
+    except (KeyError, TypeError, ValueError) as error:  # what pyuff leaves of lines that are not those of the format
+        raise MeasuredDataError(f"{where} cannot be read: its lines are not those of the format") from error
     return dataset
 
 
@@ -133,10 +138,12 @@ def _check_points(dataset: Dataset, where: str) -> None:
 
 
 def _check_systems(dataset: Dataset, where: str) -> None:
+    keys: tuple[str, ...] = ("CS_sys_labels", "CS_types", "CS_matrices")
     if dataset["type"] == 18:
-        _check_lengths(dataset, ("cs_num", "cs_type", "ref_cs_num", "ref_o", "x_point", "xz_point"), where)
-    else:
-        _check_lengths(dataset, ("CS_sys_labels", "CS_types", "CS_matrices"), where)
+        keys = ("cs_num", "cs_type", "ref_cs_num", "ref_o", "x_point", "xz_point")
+    _check_lengths(dataset, keys, where)
+    for key in keys:
+        _check_finite(np.asarray(dataset[key], dtype=np.float64), where)
 
 
 def _check_lines(dataset: Dataset, where: str) -> None:
@@ -236,10 +243,10 @@ class SurveyPoints:
 
     def index(self, node: float, where: str) -> int:
         """Return the index of a node in the list; an unknown node is an error."""
-        try:
-            return self._places[str(int(node))]
-        except KeyError:
-            raise MeasuredDataError(f"{where} names node {int(node)}, which is not among the survey's points") from None
+        place = self._places.get(str(int(node))) if np.isfinite(node) else None
+        if place is None:
+            raise MeasuredDataError(f"{where} names node {node:.9g}, which is not among the survey's points")
+        return place
 
     def geometry(self, points: list[int], directions: list[FloatArray]) -> MeasuredGeometry:
         """Return the measured geometry of these points with some degrees of freedom."""
