@@ -295,10 +295,10 @@ def together(folder: Path, *beside: Document) -> tuple[Segment, tuple[str, ...]]
 
 def test_a_sleeve_of_the_same_material_makes_one_section_with_its_shaft(tmp_path: Path) -> None:
     """Areas and second moments of a shaft of 50 mm and a sleeve of 50 to 80 mm are those of one of 80 mm."""
-    sleeve = element(0, tag="sleeve", idl=0.05, idr=0.05, odl=0.08, odr=0.08)
+    sleeve = element(0, tag="sleeve", idl=0.05, idr=0.05, odl=0.08, odr=0.08, axial_force=50.0)
     segment, remarks = together(tmp_path, element(0, axial_force=100.0), sleeve)
     assert (segment.outer_diameter, segment.inner_diameter, segment.length) == (0.08, 0.0, 0.25)
-    assert segment.axial_force == 100.0
+    assert segment.axial_force == 150.0
     nu = 211.0 / (2.0 * 81.2) - 1.0
     shares = [
         (25.0, shear_coefficient("cowper", 0.0, nu)),
@@ -316,12 +316,13 @@ def test_a_conical_sleeve_keeps_both_ends(tmp_path: Path) -> None:
     assert segment.end_diameters == ((0.08, 0.01), (0.1, 0.02))
 
 
-def test_a_sleeve_of_another_material_adds_its_stiffness_and_mass(tmp_path: Path) -> None:
+@pytest.mark.parametrize("density", [2700.0, 11300.0])
+def test_a_sleeve_of_another_material_adds_its_stiffness_and_mass(tmp_path: Path, density: float) -> None:
     """Sums of E I, G J, κ G A, ρ A and ρ I, computed here from diameters in a file's own terms."""
-    soft = {"rho": 2700.0, "E": 70e9, "G_s": 26e9}
+    soft = {"rho": density, "E": 70e9, "G_s": 26e9}
     sleeve = element(0, tag="sleeve", idl=0.05, idr=0.05, odl=0.08, odr=0.08, material=soft)
     segment, remarks = together(tmp_path, element(0), sleeve)
-    rings = [(0.05, 0.0, 211e9, 81.2e9, 7810.0), (0.08, 0.05, 70e9, 26e9, 2700.0)]
+    rings = [(0.05, 0.0, 211e9, 81.2e9, 7810.0), (0.08, 0.05, 70e9, 26e9, density)]
     areas = [math.pi / 4 * (outer**2 - inner**2) for outer, inner, *_ in rings]
     moments = [math.pi / 64 * (outer**4 - inner**4) for outer, inner, *_ in rings]
     factors = [shear_coefficient("cowper", inner / outer, e / (2 * g) - 1.0) for outer, inner, e, g, _ in rings]
@@ -335,6 +336,7 @@ def test_a_sleeve_of_another_material_adds_its_stiffness_and_mass(tmp_path: Path
     assert section.polar_inertia_per_length == pytest.approx(
         2 * sum(r[4] * i for r, i in zip(rings, moments, strict=True))
     )
+    assert (segment.inner_diameter > 0.0) == (density > 7810.0)
     assert "its axial stiffness is lower than theirs" in remarks[0]
 
 
