@@ -13,6 +13,7 @@ import pytest
 
 from gearwhine.housing import Housing, HousingModes, Material
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredResponses, identify_modes
+from gearwhine.housing.measured.common_denominator import common_denominator_poles
 from gearwhine.housing.modal_test import ModalTest, compare_test, comparison_warnings
 from gearwhine.meshes import Mesh
 
@@ -151,3 +152,17 @@ def test_an_edge_that_cuts_a_resonance_is_warned_of(
     comparison = compare_test(measurement.housing, ModalTest(modes)).comparison
     warnings = comparison_warnings(comparison, measurement.housing.modes, modes)
     assert [one["modes"] for one in warnings if one["name"] == "edge of the band"] == ([cut] if cut else [])
+
+
+def test_poles_stand_on_both_sides_of_both_edges() -> None:
+    """Lines from 500 to 1000 Hz, modes at 494, 502, 730, 998 and 1004 Hz: on the full circle the edges would meet."""
+    hertz = np.arange(500.0, 1001.0)
+    natural, ratio = 2.0 * np.pi * np.array([494.0, 502.0, 730.0, 998.0, 1004.0]), 0.004
+    poles = natural * complex(-ratio, np.sqrt(1.0 - ratio**2))
+    residues = np.random.default_rng(0).normal(size=(12, 5)) * natural
+    s = 2j * np.pi * hertz
+    responses = np.einsum("rp,pw->rw", residues, 1.0 / (s - poles[:, None]) + 1.0 / (s - poles.conj()[:, None]))
+    (*_, found) = common_denominator_poles(responses, 2.0 * np.pi * 500.0, 2.0 * np.pi, 20)
+    apart = np.abs(found[:, None] / poles - 1.0).min(axis=0)
+    assert apart[1:4].max() < 2e-5
+    assert apart[[0, 4]].max() < 2e-4
