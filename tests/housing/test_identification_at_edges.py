@@ -69,13 +69,15 @@ def macs(found: npt.NDArray[np.complex128], true: npt.NDArray[np.float64]) -> np
 
 
 def hold(measurement: Measurement, seed: int, noise: float) -> None:
-    """Every mode of the band is found, those below 0.98 of its end with their shapes, and paired with itself."""
+    """Every mode of the band is found with its shape, and paired with itself."""
     modes = identify_modes(measurement.responses(seed, noise)).modes
     in_band = slice(RIGID, RIGID + AT_THE_EDGE)
     np.testing.assert_allclose(modes.frequencies, measurement.natural[in_band], rtol=1e-3)
     inner = modes.frequencies < 0.98 * measurement.lines[-1]
     assert np.count_nonzero(~inner) == 1
-    assert macs(modes.shapes, measurement.shapes[in_band])[inner].min() > 0.99
+    shares = macs(modes.shapes, measurement.shapes[in_band])
+    assert shares[inner].min() > 0.9999
+    assert shares[~inner] > 0.999  # of a mode whose neighbour, 0.3 % beyond the band, is a residual
     pairs = compare_test(measurement.housing, ModalTest(modes)).comparison.pairs
     assert [(pair.measured_mode, pair.mode) for pair in pairs] == [
         (number, RIGID + number) for number in range(1, AT_THE_EDGE + 1)
