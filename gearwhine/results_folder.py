@@ -217,7 +217,7 @@ def _solved_component(case: Case, folder: Path | None) -> HousingComponent | Non
     from gearwhine.solve.housing_modes import kept_housing
 
     if case.reduced_housing is not None:
-        return reduced_component(case)
+        return reduced_component(case.reduced_housing, case.input_files)
     housing = kept_housing(case, folder)
     return None if housing is None else component_of_housing(housing, participates=False, with_coarser=False)
 

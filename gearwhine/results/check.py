@@ -343,7 +343,7 @@ MEASURED = (
         lambda measured: list(measured.frequencies or ()) if measured.survey is None else None,
         optional=True,
     ),
-    Quantity("file", lambda measured: None if measured.survey is None else str(measured.file), optional=True),
+    Quantity("file", lambda measured: None if measured.survey is None else measured.file_names, optional=True),
     Part("", "survey", _SURVEY),
     Quantity("align", _alignment, optional=True),
     Quantity("pairing", "paired_by"),
