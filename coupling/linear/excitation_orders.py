@@ -175,9 +175,10 @@ def excitation_lines(
     return tuple(lines)
 
 
-def meshes_of_planets(carrier: str) -> str:
-    """Name of the meshes of all planets on a carrier."""
-    return f"planets' meshes of {carrier}"
+def meshes_of_planets(machine: CoupledMachine, carrier: str) -> str:
+    """Name of the meshes of all planets on a carrier, which is named where the machine has several."""
+    carriers = {mesh.carrier for mesh in machine.meshes if mesh.carrier is not None}
+    return "planets' meshes" if len(carriers) == 1 else f"planets' meshes of {carrier}"
 
 
 def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
@@ -189,7 +190,7 @@ def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
             before, _, after = name.partition(meshes[0])
             alike = [f"{before}{mesh}{after}" for mesh in meshes]
             if all(one in left for one in alike):
-                left[left.index(name)] = f"{before}{meshes_of_planets(carrier)}{after}"
+                left[left.index(name)] = f"{before}{meshes_of_planets(machine, carrier)}{after}"
                 left = [one for one in left if one not in alike]
     return ", ".join(left)
 

@@ -84,6 +84,18 @@ class Response:
         )
 
     @property
+    def harmonic(self) -> int | None:
+        """Mesh harmonic of all causes; None where they differ."""
+        harmonics = {harmonic for _, harmonic in self.causes}
+        return harmonics.pop() if len(harmonics) == 1 else None
+
+    @property
+    def turns(self) -> dict[str, float] | None:
+        """Turns of carriers by which the line is off the harmonics of all causes; None where they differ."""
+        places = {one.turns for one in self.sidebands}
+        return dict(places.pop()) if len(places) == 1 else None
+
+    @property
     def ideal_phasing(self) -> float | None:
         """The phasing, were all planets of a carrier equal: 1 where they add, 0 where they cancel.
 
@@ -128,7 +140,7 @@ def causes_in_words(
         together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(name)
     words = []
     for (harmonic, carrier, off), names in together.items():
-        meshes = names if carrier is None or len(names) == 1 else [meshes_of_planets(carrier)]
+        meshes = names if carrier is None or len(names) == 1 else [meshes_of_planets(machine, carrier)]
         words += [f"{harmonic}× {name}{off}" for name in meshes]
     return words
 

@@ -48,7 +48,7 @@ class LineName:
         ``mean``, ``mesh``, ``shaft``, ``load``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
     name : str
         Name such as ``1× pinion -> wheel``; coinciding causes are joined by commas, but for the meshes of all planets
-        on a carrier, ``1× planets' meshes of carrier``.
+        on a carrier, ``1× planets' meshes``.
     order : float
         Cycles per revolution of the leading shaft.
     mode : int or None

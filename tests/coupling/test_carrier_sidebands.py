@@ -238,7 +238,7 @@ def test_sweep_has_each_sideband_and_its_level_where_it_meets_a_mode() -> None:
     orders = machine.speeds["carrier"] / machine.speed * np.array([RING + 1.0, 2.0 * RING - 1.0])
     kept = [int(np.argmin(np.abs(resonances.line_orders - order))) for order in orders]
     assert resonances.line_orders[kept] == pytest.approx(orders, rel=1e-9)
-    assert resonances.lines[kept[0]] == "1× planets' meshes of carrier + 1× carrier"
+    assert resonances.lines[kept[0]] == "1× planets' meshes + 1× carrier"
     (mode,) = np.flatnonzero(np.abs(resonances.frequencies - 995.0) < 2.0)
     # The machine itself, at the speed at which the sideband has the frequency of the mode.
     speed = 2.0 * np.pi * float(resonances.frequencies[mode]) / orders[0]

@@ -217,7 +217,7 @@ def test_names_of_all_sidebands_are_those_that_the_linear_response_follows() -> 
     for number, one in enumerate(named):
         harmonic, k = 1 + number // len(turns), turns[number % len(turns)]
         off = f" {'-' if k < 0 else '+'} {abs(k)}× carrier" if k else ""
-        assert one.name == f"{harmonic}× planets' meshes of carrier{off}"
+        assert one.name == f"{harmonic}× planets' meshes{off}"
         assert one.kind == ("sideband" if k else "mesh")
     # The mean load that circles has the orders of the carrier alone.
     (mean,) = line_names(machine, [3.0 * carrier / (2.0 * np.pi)], 1e-3 * carrier, modes)

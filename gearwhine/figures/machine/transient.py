@@ -146,7 +146,7 @@ def draw_sensor_spectra(
 
 
 def _text(line: TracedLine) -> str:
-    name = line.named.name.replace(" mode of ", " ").replace(" -> ", "→")
+    name = line.named.name.replace(" mode of ", " ").replace(" -> ", "→").replace("planets' meshes", "planets")
     return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
 
 
