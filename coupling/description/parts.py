@@ -559,6 +559,39 @@ def carrier_findings(machine: MachineParts) -> Iterator[Finding]:
                 yield Finding(("shaft", side.name), "axis", side.axis, expected)
 
 
+def rim_findings(shaft: Shaft, gears: Sequence[ShaftGear], rings: Sequence[str]) -> Iterator[Finding]:
+    """Yield a seat for the rim of a ring gear that has no bore to follow, and rims and seats that miss each other.
+
+    Parameters
+    ----------
+    shaft : Shaft
+    gears : sequence of ShaftGear
+        Gears on it.
+    rings : sequence of str
+        Seats of the housing with ``ring_orders``.
+    """
+    part, seat = ("shaft", shaft.name), shaft.rim_seat
+    if seat is not None and seat not in rings:
+        names = ", ".join(map(repr, rings)) or "none"
+        expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
+        yield Finding(part, "rim_seat", seat, expected)
+    if seat is not None and not any(mounted.gear.is_internal for mounted in gears):
+        yield Finding(part, "rim_seat", seat, "None: no ring gear on this shaft, whose rim would follow the bore")
+    for mounted in gears:
+        support = mounted.gear.ring_support
+        if support is None:
+            continue
+        if seat is not None and support.kind in ("springs", "bolts", "pins"):
+            expected = f'a ring_support of the housing, as the rim follows the bore of "{seat}"'
+            yield Finding(("gear", mounted.name), "ring_support", support.kind, expected)
+        if seat is None and support.kind == "housing":
+            expected = (
+                f'a rim_seat of "{shaft.name}", the seat whose bore the rim is to follow; without one the '
+                "outside of the ring is clamped to its shaft, and the bore's deformation is left out"
+            )
+            yield Finding(("gear", mounted.name), "ring_support", support.kind, expected, "warning")
+
+
 def bearing_findings(machine: MachineParts, housing: HousingComponent | None) -> Iterator[Finding]:
     """Yield bearings and supports in seats that the housing does not have or that they miss, and pedestals in seats.
 
@@ -573,17 +606,7 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
     shafts = {shaft.name: shaft for shaft in machine.shafts}
     rings = () if housing is None else tuple(housing.ring_motions)
     for shaft in machine.shafts:
-        if shaft.rim_seat is not None and shaft.rim_seat not in rings:
-            names = ", ".join(map(repr, rings)) or "none"
-            expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
-            yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
-        for on_it in machine.gears:
-            rim = on_it.gear.ring_support
-            if shaft.rim_seat is None or on_it.shaft != shaft.name or rim is None:
-                continue
-            if rim.kind in ("springs", "bolts", "pins"):
-                expected = f'a ring_support of the housing, as the rim follows the bore of "{shaft.rim_seat}"'
-                yield Finding(("gear", on_it.name), "ring_support", rim.kind, expected)
+        yield from rim_findings(shaft, [gear for gear in machine.gears if gear.shaft == shaft.name], rings)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:

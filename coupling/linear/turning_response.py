@@ -14,7 +14,7 @@ sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the 
 line.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -196,11 +196,8 @@ class TurningResponse:
         still = self.still
         found: dict[Order, ComplexArray] = {still: directions.astype(np.complex128)}
         for part in turning:
-            base = next(place for place, rate in enumerate(self.rates) if self._multiple(abs(part.rate), rate))
-            number = self._multiple(abs(part.rate), self.rates[base]) * (1 if part.rate > 0.0 else -1)
             found[still] = found[still] - part.cosine
-            for sense in (1, -1):
-                order = tuple(sense * number if place == base else 0 for place in range(len(self.rates)))
+            for order, sense in self._pair(part):
                 half = np.asarray(0.5 * (part.cosine - 1j * sense * part.sine), dtype=np.complex128)
                 found[order] = found.get(order, np.zeros_like(half)) + half
         return found
@@ -256,7 +253,15 @@ class TurningResponse:
     @cached_property
     def _offsets(self) -> list[Order]:
         """Orders l of the directions."""
-        return sorted({order for one in self._turning for order in one.directions})
+        turning = [*(one.turning for one in self.system.linear), *(one.turning for one in self.system.contacts)]
+        return sorted({self.still, *(order for parts in turning for part in parts for order, _ in self._pair(part))})
+
+    def _pair(self, part: TurningPart) -> Iterator[tuple[Order, int]]:
+        """Yield both orders of a part of directions that turns, each with its sense."""
+        base = next(place for place, rate in enumerate(self.rates) if self._multiple(abs(part.rate), rate))
+        number = self._multiple(abs(part.rate), self.rates[base]) * (1 if part.rate > 0.0 else -1)
+        for sense in (1, -1):
+            yield tuple(sense * number if place == base else 0 for place in range(len(self.rates))), sense
 
     @cached_property
     def _width(self) -> int:

@@ -124,9 +124,9 @@ class BearingLoad:
 # face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
 _EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
 
-CAUSES = ("shafts", "bearings", "housing", "bodies")
-"""Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, and the twist of
-shaft and gear body over the face."""
+CAUSES = ("shafts", "bearings", "housing", "carrier", "bodies")
+"""Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, of planets that of
+their pins on the carrier with the pins' bending and errors, and the twist of shaft and gear body over the face."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,6 +23,7 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.coupling.statics.connector_equilibrium import ConnectedStructure
 from gearwhine.coupling.statics.operating_point import (
+    CAUSES,
     BearingLoad,
     OperatingPoint,
     PairLoad,
@@ -542,20 +543,21 @@ class _StaticModel:
         weights; it is linear in the motions of the seats and the deflections of the bearings. The rest is elastic.
         `_pair` separates the twist.
         """
-        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing", "bodies")}
+        parts = {cause: np.zeros(self.size) for cause in CAUSES}
         parts["bodies"][self.rims_first :] = x[self.rims_first :]
         for part in self.shafts:
             columns = self._indices_of(part.name)
             places = part.shaft.places
             bearings_of_shaft = [bearing for bearing in bearings if bearing.mounted.rotor == part.name]
-            rigid_by = {"bearings": np.zeros(5), "housing": np.zeros(5)}
+            of_seats = "housing" if part.carrier is None else "carrier"
+            rigid_by = {"bearings": np.zeros(5), of_seats: np.zeros(5)}
             matrix = np.zeros((5, 5))
             for bearing in bearings_of_shaft:
                 moved = _rigid_rows(bearing.mounted.bearing.at)
                 metric = 0.5 * (bearing.stiffness + bearing.stiffness.T)
                 matrix += moved.T @ metric @ moved
                 rigid_by["bearings"] += moved.T @ metric @ bearing.deflection
-                rigid_by["housing"] += moved.T @ metric @ bearing.seat_motion
+                rigid_by[of_seats] += moved.T @ metric @ bearing.seat_motion
             whole = np.zeros((places.size, 6))
             for cause, side in rigid_by.items():
                 rigid = np.linalg.lstsq(matrix, side, rcond=1e-12)[0]

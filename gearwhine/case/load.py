@@ -25,7 +25,7 @@ from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import KEY_OF_FORM, Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
-from gearwhine.case.planetary import with_planets
+from gearwhine.case.planetary import with_implied_pairs, with_planets
 from gearwhine.exchange.file_names import LARGEST_MODEL, is_rexs_file
 from gearwhine.numerics.names import did_you_mean
 
@@ -273,6 +273,8 @@ class CaseSource:
         """
         written = dict(self.written)
         overrides = (*self.changes, *changes)
+        if any(override.startswith("gear_pair") for override in overrides):
+            written = with_implied_pairs(written)
         files = self.files.copy()
 
         def resolved(document: dict[str, Any]) -> Mapping[str, Any]:

@@ -194,6 +194,19 @@ def with_planets(document: Mapping[str, Any], context: Mapping[str, Any]) -> tup
     return expansion.document, PlanetCopies(expansion.origins)
 
 
+def with_implied_pairs(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a document with the gear pairs that its sets imply written out, once of planets that are written once."""
+    written = _Expansion(document, {})
+    for index, entry in written.entries("planetary"):
+        one = {**entry, "fixed": written._fixed(entry)}
+        planets = one.get("planets")
+        if _are_names(planets) and planets:
+            written._pair_gears(index, one, len(planets) if {"count", "angles"} & one.keys() else 1)
+    if not written.document.get("gear_pair"):
+        written.document.pop("gear_pair", None)
+    return written.document
+
+
 _KINDS = ("rotor", "gear", "bearing", "gear_pair")
 
 

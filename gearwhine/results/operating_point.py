@@ -213,9 +213,19 @@ _PAIR_COLUMNS = (
     *columns_of(field for field in PAIR if field is not _MISALIGNMENT),
     Column(_PEAK_TO_PEAK.heading, "transmission_error_m.peak_to_peak", ".3f", _MICRO),
 )
+
+
+def _by_carrier(row: Document) -> str:
+    """Return the misalignment by the carrier and its pins; nothing of gears that are no planets."""
+    part = row["misalignment_by_cause_rad"]["carrier"]
+    return "" if part == 0.0 else f"{_MICRO * part:z.2f}"
+
+
 _CAUSE_COLUMNS = (
     *columns_of((*_GEARS, _MISALIGNMENT)),
-    *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
+    *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES[:3]),
+    Column("by\ncarrier", "misalignment_by_cause_rad.carrier", "z.2f", _MICRO, shown=_by_carrier),
+    Column("by\nbodies", "misalignment_by_cause_rad.bodies", "z.2f", _MICRO),
 )
 
 _PLACE = ("shaft_place",)
@@ -925,6 +935,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from _influences(document)
     yield from _lines(document)
     yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
+    yield from _pin_error_note(document)
     yield from kept_sentence(document, LOAD_OPTIONS, "equilibrium")
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:
@@ -944,6 +955,17 @@ def _planetary(document: Document) -> Iterator[str | Table]:
                 f"Over a turn of the carrier the load shares are {shares.min():.4f} to {shares.max():.4f}, K_γ at most "
                 f"{len(shares) * shares.max():.4f}"
             )
+
+
+def _pin_error_note(document: Document) -> Iterator[str]:
+    """Yield that deflections of planets have the errors of their pins in them."""
+    errors = [
+        (planet["name"], float(np.hypot(*planet["pin_error_m"])))
+        for one in document.get("planetary", ())
+        for planet in one["planets"]
+    ]
+    if listed := [f"{name} {_MICRO * error:.3g} µm" for name, error in errors if error > 0.0]:
+        yield f"Deflections are from the places of pins without errors, which they contain: {', '.join(listed)}"
 
 
 def _grouped(motions: list[str]) -> str:

@@ -7,8 +7,12 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
-from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.carrier_sidebands import farthest_turns, forced_sidebands
+from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.turning_response import SIDEBANDS, TurningResponse
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.coupling.signals.transfer_paths import housing_connections, housing_paths
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.coupling.time.histories import histories, transient_outputs
@@ -193,3 +197,30 @@ def test_sidebands_at_a_sensor_are_those_of_moving_forces() -> None:
     # Equal planets in phase leave lines at multiples of three turns of the carrier; a line is `turns` bins a turn.
     strong = np.flatnonzero(np.abs(found[: count // 8]) > 1e-3 * np.abs(found[: count // 8]).max())
     assert np.all(strong % (3 * turns) == 0)
+
+
+def test_names_of_all_sidebands_are_those_that_the_linear_response_follows() -> None:
+    """Lines of a bore of three orders: each is named as the harmonic balance has it, none as free vibration."""
+    machine = _machine()
+    carrier = machine.speeds["carrier"]
+    model = MeshHarmonicModel(machine)
+    followed = farthest_turns(forced_sidebands(machine))
+    # Bores of 2 and 3 waves: half again as far as 3 turns is less than what is handed on six times by one turn each.
+    assert followed == {"carrier": max(SIDEBANDS, 1.5 * 3)}
+    model_orders = {abs(dict(one.turns)["carrier"]) for one in model.turning.followed}
+    assert max(model_orders) == followed["carrier"]
+    frequency = abs(machine.system.contacts[0].mesh_frequency)
+    modes = coupled_modes(machine.system, model.contact)
+    turns = range(-int(followed["carrier"]), int(followed["carrier"]) + 1)
+    lines = [harmonic * frequency + k * carrier / (2.0 * np.pi) for harmonic in (1, 2) for k in turns]
+    named = line_names(machine, lines, 1e-3 * carrier / (2.0 * np.pi), modes)
+    for number, one in enumerate(named):
+        harmonic, k = 1 + number // len(turns), turns[number % len(turns)]
+        off = f" {'-' if k < 0 else '+'} {abs(k)}× carrier" if k else ""
+        assert one.name == f"{harmonic}× planets' meshes{off}"
+        assert one.kind == ("sideband" if k else "mesh")
+    # The mean load that circles has the orders of the carrier alone.
+    (mean,) = line_names(machine, [3.0 * carrier / (2.0 * np.pi)], 1e-3 * carrier, modes)
+    assert (mean.kind, mean.name) == ("shaft", "3× carrier")
+    beyond = line_names(machine, [frequency + (followed["carrier"] + 1) * carrier / (2.0 * np.pi)], 1e-3, modes)
+    assert beyond[0].kind not in ("sideband", "mesh")
