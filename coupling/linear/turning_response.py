@@ -301,19 +301,29 @@ class TurningResponse:
         return np.concatenate(columns, axis=1), orders, np.array(numbers, dtype=np.int64)
 
     @cached_property
-    def _reached(self) -> dict[Order, list[_Reach]]:
-        """Columns of each part by which a motion of each order and the connectors meet."""
+    def _reached(self) -> dict[tuple[Order, bool], list[_Reach]]:
+        """Columns of each part by which motions of an order and connectors meet, with those of free motions or not.
+
+        Directions of free motions stand still, and meet the motion of their own order alone.
+        """
         _, orders, numbers = self._columns
         places = {order: number for number, order in enumerate(self.orders)}
 
-        def reached(order: Order, step: Callable[[Order, Order], Order], part: _Part) -> tuple[IntArray, IntArray]:
-            at = [(n, places.get(step(order, orders[column]), -1)) for n, column in enumerate(part.columns.tolist())]
+        def reached(
+            order: Order, step: Callable[[Order, Order], Order], part: _Part, first: int
+        ) -> tuple[IntArray, IntArray]:
+            meeting = [(n, column) for n, column in enumerate(part.columns.tolist()) if numbers[column] >= first]
+            at = [(n, places.get(step(order, orders[column]), -1)) for n, column in meeting]
             columns = np.array([n for n, place in at if place >= 0], dtype=np.int64)
             places_of = np.array([place for _, place in at if place >= 0], dtype=np.int64)
             return columns, places_of * self._width + numbers[part.columns[columns]]
 
         return {
-            order: [_Reach(*reached(order, _plus, part), *reached(order, _minus, part)) for part in self._parts]
+            (order, restrained): [
+                _Reach(*reached(order, _plus, part, first), *reached(order, _minus, part, first))
+                for part in self._parts
+            ]
+            for restrained, first in ((True, 0), (False, self._restraint[0].shape[1]))
             for order in self.orders
         }
 
@@ -399,57 +409,65 @@ class TurningResponse:
         unknown = {order for loads, _ in excitations for order in loads} - set(self.orders)
         if unknown:
             raise CouplingError(f"loads of orders {sorted(unknown)}; expected orders among those that are followed")
-        count, width = len(self.orders), self._width
-        free = np.zeros((count * width, len(excitations)), dtype=np.complex128)
-        between = np.zeros((count * width, count * width), dtype=np.complex128)
         loads = {
             order: np.array([one.get(order, np.zeros(self.system.size)) for one, _ in excitations]).T.astype(complex)
             for order in self.orders
             if any(order in one for one, _ in excitations)
         }
         scale = max(self.rates, default=0.0)
-        frequencies = [abs(frequency + self.shift(order)) for order in self.orders]
-        stands = min(frequencies) <= _STANDSTILL * scale
-        is_sought = np.ones((count, width), dtype=np.bool_)
+        at = {order: frequency + self.shift(order) for order in self.orders}
+        stands = min(map(abs, at.values())) <= _STANDSTILL * scale
+        # Free motions have springs, which are undone, where nothing else but little inertia resists them.
+        is_restrained = {order: bool(stands or abs(w) <= _SLOW * scale) for order, w in at.items()}
+        unknowns, sought = {}, np.full(len(self.orders) * self._width, -1, dtype=np.int64)
+        end = 0
+        for place, order in enumerate(self.orders):
+            free = 0 if is_restrained[order] else self._restraint[0].shape[1]
+            unknowns[order] = slice(end, end + self._width - free)
+            end += self._width - free
+            sought[place * self._width + free : (place + 1) * self._width] = np.arange(end)[unknowns[order]]
+        deflections = np.zeros((end, len(excitations)), dtype=np.complex128)
+        # Transposed: compliances by force and deflection.
+        between = np.zeros((end, end), dtype=np.complex128)
         # Motions under unit forces along each part's basis, and under the loads, of each order that is asked for.
         moved: dict[Order, list[ComplexArray]] = {}
         asked = set(self.orders if orders is None else orders)
-        for place, order in enumerate(self.orders):
-            is_slow = stands or frequencies[place] <= _SLOW * scale
-            is_sought[place, : self._restraint[0].shape[1]] = is_slow
+        for order, w in at.items():
             motions = []
-            for part, reach in zip(self._parts, self._reached[order], strict=True):
+            for part, reach in zip(self._parts, self._reached[order, is_restrained[order]], strict=True):
                 basis, mix, rank = part.basis, part.mix, part.basis.shape[1]
                 pushed = np.concatenate([basis, loads[order][part.coordinates]], axis=1) if order in loads else basis
-                alone = (part.restrained if is_slow else part.free).solve(frequency + self.shift(order), pushed)
+                alone = (part.restrained if is_restrained[order] else part.free).solve(w, pushed)
                 motions.append(alone)
                 # Deflections of all directions; the columns are complex, and not conjugated.
                 seen_by = mix[:, reach.seen].T @ (basis.T @ alone)
                 # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
-                between[np.ix_(reach.deflected, reach.acted)] += seen_by[:, :rank] @ mix[:, reach.acting]
+                seen = sought[reach.deflected]
+                between[np.ix_(sought[reach.acted], seen)] += (seen_by[:, :rank] @ mix[:, reach.acting]).T
                 if order in loads:
-                    free[reach.deflected] += seen_by[:, rank:]
+                    deflections[seen] += seen_by[:, rank:]
             if order in asked:
                 moved[order] = motions
-        first = self.orders.index(self.still) * width
-        free[first : first + width] -= np.array([self._error(errors) for _, errors in excitations]).T
-        sought, law = np.flatnonzero(is_sought), self._law(frequency)
-        matrix = np.asarray(between[sought] @ law)[:, sought]
-        matrix[np.diag_indices(sought.size)] += 1.0
-        deflections = np.zeros(free.shape, dtype=np.complex128)
+        errors = np.array([self._error(errors) for _, errors in excitations]).T
+        deflections[unknowns[self.still]] -= errors[_last(unknowns[self.still], self._width)]
+        for order, w in at.items():
+            own = unknowns[order]
+            between[own] = self._law(w, own).T @ between[own]
+        between[np.diag_indices(end)] += 1.0
         if stands:
             # What is constant in time leaves the train's own turning open.
-            deflections[sought] = np.linalg.lstsq(matrix, free[sought], rcond=_STANDSTILL)[0]
+            solved = np.linalg.lstsq(between.T, deflections, rcond=_STANDSTILL)[0]
         else:
-            deflections[sought] = np.linalg.solve(matrix, free[sought])
-        forces = np.asarray(law @ deflections)
+            solved = np.linalg.solve(between.T, deflections)
+        forces = np.concatenate([self._law(w, unknowns[order]) @ solved[unknowns[order]] for order, w in at.items()])
         motion = {}
         for order, motions in moved.items():
             total = np.zeros((self.system.size, len(excitations)), dtype=np.complex128)
-            for part, reach, alone in zip(self._parts, self._reached[order], motions, strict=True):
+            reaches = self._reached[order, is_restrained[order]]
+            for part, reach, alone in zip(self._parts, reaches, motions, strict=True):
                 rank = part.basis.shape[1]
-                own = -alone[:, :rank] @ (part.mix[:, reach.acting] @ forces[reach.acted])
-                total[part.coordinates] = own + alone[:, rank:] if order in loads else own
+                own_motion = -alone[:, :rank] @ (part.mix[:, reach.acting] @ forces[sought[reach.acted]])
+                total[part.coordinates] = own_motion + alone[:, rank:] if order in loads else own_motion
             motion[order] = total.T
         return motion
 
@@ -496,14 +514,22 @@ class TurningResponse:
         near = [order for order in self.orders if abs(self.shift(order) - shift) <= _SAME_SHIFT * scale]
         return min(near, key=lambda order: sum(map(abs, order)), default=None)
 
-    def _law(self, frequency: complex) -> sparse.csr_array:
-        """Laws k + i ω_m c of the connectors that turn, order by order, (m d, m d)."""
-        blocks = [
-            one.stiffness + 1j * (frequency + self.shift(order)) * one.damping
-            for order in self.orders
-            for one in self._turning
-        ]
-        return sparse.csr_array(sparse.block_diag(blocks))
+    @cached_property
+    def _law_matrices(self) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping of the connectors that turn, (d, d) both."""
+        stiffness, damping = np.zeros((self._width, self._width)), np.zeros((self._width, self._width))
+        begin = 0
+        for one in self._turning:
+            own = slice(begin, begin + len(one.stiffness))
+            stiffness[own, own], damping[own, own] = one.stiffness, one.damping
+            begin = own.stop
+        return stiffness, damping
+
+    def _law(self, w: complex, unknowns: slice) -> ComplexArray:
+        """Law k + i ω_m c of the last connectors that turn, as many directions as there are unknowns."""
+        last = _last(unknowns, self._width)
+        stiffness, damping = (matrix[last, last] for matrix in self._law_matrices)
+        return np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
 
     def _error(self, errors: Mapping[int, complex]) -> ComplexArray:
         """Errors of the contacts that turn over the directions of the connectors that do, (d,)."""
@@ -516,6 +542,11 @@ class TurningResponse:
                 )
             found[self._width - len(turning) + turning.index(number)] = error
         return found
+
+
+def _last(unknowns: slice, width: int) -> slice:
+    """Last of all directions, as many as there are unknowns: those without the directions of free motions."""
+    return slice(width - (unknowns.stop - unknowns.start), width)
 
 
 def _minus(first: Order, second: Order) -> Order:
