@@ -66,7 +66,7 @@ def test_a_list_of_files_is_one_survey(tmp_path: Path) -> None:
     (tmp_path / "shapes.uff").write_text("".join(lines[:start] + lines[end:]), encoding="ascii")
     case = case_with(tmp_path, file=["points.uff", "shapes.uff"])
     np.testing.assert_allclose(read_measured(case.measured).shapes, a_survey().modes.shapes, atol=1e-5)
-    assert measured_document(case)["file"] == f"{tmp_path / 'points.uff'} and {tmp_path / 'shapes.uff'}"
+    assert document_of(MEASURED, case.measured)["file"] == f"{tmp_path / 'points.uff'} and {tmp_path / 'shapes.uff'}"
     assert parse_case(case_document(case), folder="/") == case
     alone = case_with(tmp_path, file="shapes.uff")
     assert not alone.measured.has_shapes
