@@ -13,6 +13,7 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response
+from gearwhine.coupling.periodic.settling import _States
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientOutputs
 from gearwhine.rotors import Unbalance
@@ -128,3 +129,17 @@ def test_machine_and_analysis_take_the_motion_that_settles() -> None:
         assert motion.residual < 1e-4
     with pytest.raises(CouplingError, match="one speed of a machine whose carriers turn"):
         solve_steady(described.assembled, over_speed=(200.0, 400.0))
+
+
+def test_motions_that_nothing_resists_have_no_place_and_no_mean_rate() -> None:
+    """A mass on a spring along x that drifts along y by 0.6 m in 2 s."""
+    zeros = np.zeros((2, 2))
+    spring = LinearConnector("spring", np.eye(2)[:, :1], np.array([[4.0]]), np.zeros((1, 1)))
+    system = CoupledSystem((Component("body", ("rotor",) * 2, zeros, zeros, zeros),), (0.0,), (spring,))
+    states = _States(system, period=2.0, rate_unit=10.0)
+    before, after = (
+        states.joined(np.array(q), np.array(v)) for q, v in (([0.0, 0.3], [0, 0.3]), ([0.1, 0.9], [0.2, 0.31]))
+    )
+    q, v = states.parted(states.held(before, after))
+    assert q == pytest.approx([0.1, 0.0], abs=1e-12)
+    assert v == pytest.approx([0.2, 0.01], abs=1e-12)
