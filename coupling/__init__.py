@@ -43,6 +43,7 @@ from gearwhine.coupling.description.gear_train import GivenSpeed as GivenSpeed
 from gearwhine.coupling.description.gear_train import Output as Output
 from gearwhine.coupling.description.parts import Shaft as Shaft
 from gearwhine.coupling.description.parts import ShaftGear as ShaftGear
+from gearwhine.coupling.description.parts import SupportBolt as SupportBolt
 from gearwhine.coupling.description.parts import TorqueSupport as TorqueSupport
 from gearwhine.coupling.description.planet_copies import planet_copies as planet_copies
 from gearwhine.coupling.description.planetary import PlanetarySet as PlanetarySet

@@ -352,7 +352,7 @@ class Machine:
         """Torque supports with a stiffness; behind a rigid one the shaft swings at twice the limit of its modes."""
         return [
             replace(support, stiffness=self.rotor(shaft.name).polar_inertia * (2.0 * shaft.mode_limit) ** 2)
-            if support.stiffness is None
+            if support.is_rigid
             else support
             for support in self.torque_supports
             for shaft in [self.shaft(support.shaft)]
