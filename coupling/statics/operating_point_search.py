@@ -29,6 +29,7 @@ from gearwhine.coupling.statics.operating_point import (
     PairLoad,
     ShaftDeflection,
     StaticTangent,
+    SupportLoad,
 )
 from gearwhine.coupling.statics.static_model import (
     ConnectorLaw,
@@ -140,6 +141,7 @@ class _StaticModel:
         torque_supports: Sequence[TorqueSupport],
     ) -> None:
         self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
+        self.torque_supports = torque_supports
         self.gravity = None if gravity is None else tuple(gravity)
         self.first: dict[str, int] = {}
         size = 0
@@ -192,7 +194,7 @@ class _StaticModel:
         self.laws: list[ConnectorLaw] = [bearing.placed_law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
-        held = [LinearLaw(np.array([[support.stiffness or 0.0]])) for support in torque_supports]
+        held = [LinearLaw(support.stiffness_matrix) for support in torque_supports]
         held += [LinearLaw(pin.stiffness) for _, pin in pins]
         self.laws += held
         nominal = [bearing.nominal for bearing in bearings]
@@ -285,12 +287,14 @@ class _StaticModel:
         return np.asarray(np.vstack([own, *walls]).T)
 
     def _torque_direction(self, support: TorqueSupport) -> FloatArray:
-        """Rotation of a shaft against the seat that holds it, (n, 1)."""
-        row = self._section(support.shaft, support.at)[5]
+        """Motions of a shaft against the seat that holds it, (n, d): its rotation, or all six where bolts do."""
+        rows = self._section(support.shaft, support.at)
         if support.seat is not None:
             assert self.housing is not None
-            row[self.housing_first : self.housing_first + self.housing.size] -= self.housing.seats[support.seat][:, 5]
-        return np.asarray(row[:, None])
+            z = self._part(support.shaft).start + support.at
+            own = slice(self.housing_first, self.housing_first + self.housing.size)
+            rows[:, own] -= self.housing.section_motions(support.seat, z)
+        return np.asarray(rows[support.held_motions].T)
 
     def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
         return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
@@ -450,6 +454,19 @@ class _StaticModel:
             free,
             tangent,
             self.gravity,
+            self._support_loads(states, deflections),
+        )
+
+    def _support_loads(
+        self, states: Sequence[tuple[float, FloatArray, FloatArray]], deflections: Sequence[FloatArray]
+    ) -> tuple[SupportLoad, ...]:
+        """Return the loads of the torque supports, whose laws stand after those of bearings, pairs and pedestals."""
+        first = len(self.bearings) + len(self.pairs) + len(self.pedestal_first)
+        return tuple(
+            SupportLoad(support, force, deflection)
+            for support, (_, force, _), deflection in zip(
+                self.torque_supports, states[first:], deflections[first:], strict=False
+            )
         )
 
     def _require_balance(

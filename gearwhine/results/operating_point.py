@@ -30,6 +30,7 @@ from gearwhine.results.planetary import MEMBER
 
 if TYPE_CHECKING:
     from gearwhine.coupling.assembly import CoupledMachine
+    from gearwhine.coupling.description.parts import SupportBolt
     from gearwhine.coupling.linear.line_sensitivity import Line
     from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
@@ -561,6 +562,35 @@ PLANETARY = (
 """Quantities of a planetary set at the operating point; a row is a :class:`PlanetaryLoad`."""
 
 
+BOLT = (
+    Quantity("shaft", heading="shaft"),
+    Quantity("angle_rad", "bolt.angle", heading="bolt at", shown=lambda row: f"{math.degrees(row['angle_rad']):.4g}°"),
+    Quantity("radial_force_n", "radial", heading="radial\n[N]", shown=".0f"),
+    Quantity("tangential_force_n", "tangential", heading="tangential\n[N]", shown=".0f"),
+    Quantity("axial_force_n", "axial", heading="axial\n[N]", shown=".0f"),
+)
+"""Quantities of a bolt of a torque support: force of the shaft on it; a row is a :class:`_Bolt`."""
+
+
+class _Bolt(NamedTuple):
+    """Bolt of a torque support, the shaft that it holds, and its force outwards, along the circle and along z [N]."""
+
+    shaft: str
+    bolt: "SupportBolt"
+    radial: float
+    tangential: float
+    axial: float
+
+
+def _bolts(solved: "SolvedLoad") -> Any:
+    """Bolts of all torque supports; absent where no support has any."""
+    return [
+        _Bolt(load.support.shaft, bolt, *force)
+        for load in solved.point.supports
+        for bolt, force in zip(load.support.bolts, load.bolt_forces.tolist(), strict=True)
+    ] or ABSENT
+
+
 def _over_turns(solved: "SolvedLoad") -> Any:
     """Load shares, mesh forces and misalignments over the turn of each carrier, where they are asked for."""
     return [
@@ -608,6 +638,7 @@ LOAD: Fields = (
     Rows("bearings", "bearings", BEARING, "loaded_bearing"),
     Rows("gear_pairs", "pairs", (Part("", "load", PAIR), *TAKEN), "loaded_pair"),
     Rows("planetary", lambda solved: list(solved.planetary) or ABSENT, PLANETARY),
+    Rows("support_bolts", _bolts, BOLT),
     Quantity("carrier_turns", _over_turns),
     _of_planets("loaded_planet", lambda planet: planet.shaft, "", ""),
     _of_planets("planet_load_share", lambda planet: planet.load_share, "1", "part of the set's torque"),
@@ -926,6 +957,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _misalignments(document)
     yield from _planetary(document)
+    yield from table_of(columns_of(BOLT), document.get("support_bolts", ()), "Forces on the bolts of torque supports")
     rows = [
         {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
         for point in document.get("over_torque", ())

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from gearwhine.coupling import CoupledMachine, PeriodicError
+from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import unbalance_responses
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
@@ -19,7 +19,7 @@ from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, find_resonanc
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import simulate
-from tests.machines.turning_set import TEETH, turning_machine, turning_set
+from tests.machines.turning_set import TEETH, turning_machine
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -251,16 +251,3 @@ def test_sweep_has_each_sideband_and_its_level_where_it_meets_a_mode() -> None:
         assert resonances.outputs[place] == sensor
         assert found == pytest.approx(expected, abs=0.2)
         assert found > resonances.line_levels[place, kept[0]] + 1.0
-
-
-@pytest.mark.parametrize(("in_housing", "reason"), [(True, "directions that turn"), (False, "Coriolis forces")])
-def test_periodic_response_of_planets_is_refused_with_what_to_do(in_housing: bool, reason: str) -> None:
-    described = turning_set(ANISOTROPIC)
-    if not in_housing:
-        grounded = [replace(one, seat=None) for one in described.bearings]
-        described = replace(described, housing=None, bearings=grounded)
-    assert described.assembled.system.turns == in_housing
-    with pytest.raises(PeriodicError, match=reason) as refused:
-        described.steady()
-    assert "`run`" in str(refused.value)
-    assert "`system`" in str(refused.value)
