@@ -95,7 +95,7 @@ def test_words_and_whole_numbers_are_written_as_they_stand(tmp_path: Path) -> No
 
 
 def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> None:
-    (tmp_path / "measured.csv").write_text("part,bore [mm]\na,40.01\nb,40.03\n\nc,40.02\n")
+    (tmp_path / "measured.csv").write_text("bore [mm],part\n40.01,1\n40.03,2\n\n40.02,3\n")
     (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv", column = "bore" } }')
     assert (one.unit, one.value(0.5), one.value(0.75)) == ("mm", 40.02, pytest.approx(40.025))
 
