@@ -666,9 +666,7 @@ class CaseStudy(Study):
             Where the processes do not start.
         """
         from gearwhine.analyses.variation_result import solve_variation
-        from gearwhine.case import require
 
-        require(self.case, "variation", command="vary")
         return solve_variation(
             self.case,
             self._source,

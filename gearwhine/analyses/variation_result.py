@@ -15,6 +15,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
 from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import UNSAID
+from gearwhine.case.model import lacking
 from gearwhine.case.variation import Variation
 from gearwhine.numerics.distributions import correlated
 from gearwhine.numerics.progress import Progress, silent
@@ -28,7 +29,6 @@ from gearwhine.variation.quantities import Wanted
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase
 from gearwhine.variation.statistics import VariedResult, require_known_limits
-from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -84,7 +84,8 @@ def solve_variation(
     """
     start = time.perf_counter()
     variation = case.variation
-    assert variation is not None
+    if variation is None:
+        raise lacking(case, "variation", command="vary")
     if not variation.vary:
         raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
     inputs = varied_inputs(source, variation)
@@ -109,7 +110,7 @@ def solve_variation(
         points,
         folder,
         progress,
-        workers=workers or default_workers(),
+        workers=workers,
         scheduler=scheduler,
         fresh=fresh,
     )

@@ -222,8 +222,7 @@ def in_one_unit(amounts: tuple[float | str, ...]) -> tuple[list[float], str]:
     parts = [(amount, "") if isinstance(amount, float) else units.split_quantity(amount) for amount in amounts]
     numbers, unit = list[float](), ""
     for place, part in enumerate(parts):
-        assert part is not None
-        number, own = part
+        number, own = part or (math.nan, "?")
         unit = own if place == 0 else unit
         ratio = units.unit_ratio(own, unit)
         if ratio is None:

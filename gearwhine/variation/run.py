@@ -17,7 +17,7 @@ from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Failure, Outcome, Record, VariedCase, solve_samples
-from gearwhine.workers import await_workers, code_digest, connected
+from gearwhine.workers import await_workers, code_digest, connected, default_workers
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -51,7 +51,7 @@ def run_samples(
     folder: Path,
     progress: Progress,
     *,
-    workers: int,
+    workers: int | None = None,
     scheduler: str | None = None,
     fresh: bool = False,
 ) -> Solved:
@@ -65,7 +65,9 @@ def run_samples(
     folder : path
         Results folder.
     progress : callable
-    workers, scheduler
+    workers : int, optional
+        Number of processes; by default as many as cores where that is worth their start.
+    scheduler
         See :func:`gearwhine.workers.connected`.
     fresh : bool
         Whether to solve samples that the folder holds as well.
@@ -92,7 +94,9 @@ def run_samples(
         record.append([(first, outcomes[first])])
         told.took([(first, outcomes[first])])
         rest = todo[1:]
-        alone = scheduler is None and (workers == 1 or each * len(rest) < _WORTH_WORKERS)
+        is_short = workers is None and each * len(rest) < _WORTH_WORKERS
+        alone = scheduler is None and (workers == 1 or is_short)
+        workers = workers or default_workers()
         size = max(1, min(_LARGEST_BATCH, int(_BATCH_TIME / max(each, 1e-3)), -(-len(rest) // (4 * workers))))
         batches = [rest[begin : begin + size] for begin in range(0, len(rest), size)]
         solve = _solved_here if alone else _solved_by_workers
