@@ -297,3 +297,10 @@ def test_a_stiffness_alone_is_a_static_housing() -> None:
         _ = free_frame(matrices=replace(made, stiffness=frame()[1])).modes
     with pytest.raises(HousingError, match="a mass of zero of a static housing"):
         replace(made, mass=np.eye(12))
+
+
+def test_numbers_beyond_all_quantities_are_refused_by_their_place() -> None:
+    mass, stiffness = frame()
+    stiffness[3, 3] = 1e200
+    with pytest.raises(HousingError, match="row 4, column 4"):
+        ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES))
