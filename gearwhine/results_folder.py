@@ -275,6 +275,7 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
     CaseError
         Where the ending is another one, a file stands there already, or the housing has no seats.
     """
+    from gearwhine import __version__
     from gearwhine.coupling.errors import CouplingError
     from gearwhine.coupling.machine.reduced_component import interface_matrices
     from gearwhine.from_case.reduced_housing import tables_of
@@ -288,7 +289,9 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
     with staging(target.parent, listed=False) as place:  # the files are the user's
         files = write_matrices(place / target.name, reduced.matrices)
         tables = place / f"{target.stem}.toml"
-        tables.write_text(tables_of(reduced, files, housing.complete_below), encoding="utf-8")
+        title = " ".join(case.title.split())
+        origin = f"# Reduced by Gearwhine {__version__}{f' from {title}' if title else ''}.\n\n"
+        tables.write_text(origin + tables_of(reduced, files, housing.complete_below), encoding="utf-8")
         names = sorted({path.name for path in (*files.values(), tables)})
         if standing := [name for name in names if (target.parent / name).exists()]:
             expected = "a place where no file of that name stands yet"

@@ -45,6 +45,12 @@ def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | N
         Where a file cannot be read, no bearing stands on the ground, or the matrices have too few nodes for them.
     """
     document: dict[str, Any] = json.loads(json.dumps(imported.document))
+    # These matrices take the place of a static stiffness that the file of the unit has.
+    of_file = {seat["name"] for seat in document.pop("housing", {}).get("seat", [])}
+    for bearing in document.get("bearing", []):
+        if bearing["seat"] in of_file:
+            bearing["seat"] = "ground"
+    kept = tuple(note for note in imported.notes if note.at[:1] != ("housing",))
     case = parse_case(document)
     rotors = {rotor.name: rotor for rotor in case.rotor}
     standing = [place for place, bearing in enumerate(case.bearing) if bearing.seat == "ground"]
@@ -94,9 +100,11 @@ def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | N
         notes.append(Note("assumed", "motion", text, ("transient",)))
     before = ("title", "notes", "unusual", "material")
     first = {key: document[key] for key in before if key in document}
-    first["notes"] += "".join(f"{note}\n" for note in notes)
+    gone = tuple(note.text for note in imported.notes if note not in kept)
+    told = [line for line in first["notes"].splitlines() if not (gone and line.endswith(gone))]
+    first["notes"] = "".join(f"{line}\n" for line in (*told, *notes))
     rest = {key: value for key, value in document.items() if key not in first}
-    return replace(imported, document={**first, "housing": housing, **rest}, notes=(*imported.notes, *notes))
+    return replace(imported, document={**first, "housing": housing, **rest}, notes=(*kept, *notes))
 
 
 def _read(stiffness: Path, mass: Path | None) -> Mapping[str, LabelledMatrix]:

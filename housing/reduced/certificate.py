@@ -119,11 +119,18 @@ def _following(stiffness: FloatArray, led: npt.NDArray[np.bool_]) -> FloatArray:
         return np.zeros((0, int(led.sum())))
     diagonal = np.diag(inner)
     per_row = np.divide(1.0, np.sqrt(diagonal), out=np.zeros(len(inner)), where=diagonal > 0.0)
-    loads = per_row[:, None] * stiffness[np.ix_(~led, led)]
-    values, vectors = linalg.eigh(scaled(inner))
-    resisted = values > _SINGULAR * values[-1]
-    taken = vectors[:, resisted].T @ loads
-    return np.asarray(-per_row[:, None] * (vectors[:, resisted] @ (taken / values[resisted, None])))
+    loads, ones = per_row[:, None] * stiffness[np.ix_(~led, led)], scaled(inner)
+    try:
+        factor = linalg.cholesky(ones, lower=True)
+    except linalg.LinAlgError:
+        factor = np.zeros((1, 1))
+    if np.diag(factor).min() ** 2 > _SINGULAR * len(ones):
+        following = linalg.cho_solve((factor, True), loads)
+    else:
+        values, vectors = linalg.eigh(ones)
+        resisted = values > _SINGULAR * values[-1]
+        following = vectors[:, resisted] @ (vectors[:, resisted].T @ loads / values[resisted, None])
+    return np.asarray(-per_row[:, None] * following)
 
 
 def static_difference(matrices: ReducedMatrices, given: StaticStiffness) -> float:
@@ -152,12 +159,17 @@ def _held_frequency(matrices: ReducedMatrices) -> float | None:
     mass, stiffness = matrices.mass[np.ix_(inner, inner)], matrices.stiffness[np.ix_(inner, inner)]
     if not mass.size:
         return None
-    values, vectors = np.linalg.eigh(mass)
-    heavy = values > MASSLESS * values[-1]
-    if values[-1] <= 0.0:
-        return None
-    basis = vectors[:, heavy] / np.sqrt(values[heavy])
-    return float(np.sqrt(max(float(np.linalg.eigvalsh(basis.T @ stiffness @ basis)[-1]), 0.0)))
+    last = len(mass) - 1
+    try:
+        (square,) = linalg.eigh(stiffness, mass, eigvals_only=True, subset_by_index=[last, last])
+    except linalg.LinAlgError:  # some have no mass: those that have some follow
+        values, vectors = np.linalg.eigh(mass)
+        heavy = values > MASSLESS * values[-1]
+        if values[-1] <= 0.0:
+            return None
+        basis = vectors[:, heavy] / np.sqrt(values[heavy])
+        square = np.linalg.eigvalsh(basis.T @ stiffness @ basis)[-1]
+    return float(np.sqrt(max(float(square), 0.0)))
 
 
 def certify(
@@ -168,7 +180,9 @@ def certify(
     """Certify reduced matrices with nodes at these places [m], and a static stiffness of their interface."""
     motions = rigid_motions(matrices, positions)
     center = np.mean(list(positions.values()), axis=0)
-    about_center = rigid_motions(matrices, {node: tuple(np.subtract(at, center)) for node, at in positions.items()})
+    # A rotation about the centre c displaces by θ × r - θ × c.
+    about_center = motions.copy()
+    about_center[:, 3:] -= motions[:, :3] @ np.cross(np.eye(3), center).T
     strain = np.einsum("ia,ij,ja->a", about_center, matrices.stiffness, about_center)
     sizes = np.einsum("ia,ij,ja->a", np.abs(about_center), np.abs(matrices.stiffness), np.abs(about_center))
     mass_eigenvalues = np.linalg.eigvalsh(scaled(matrices.mass))

@@ -20,6 +20,8 @@ from scipy.sparse import linalg as sparse_linalg
 from solver_text import write_abaqus_terms
 
 import gearwhine as gw
+from gearwhine.housing.reduced import read_matrix, read_row_labels, reduced_matrices
+from gearwhine.housing.reduced.certificate import certify
 from gearwhine.meshes import write_mesh
 
 MODES = 60
@@ -132,3 +134,42 @@ def test_the_machine_on_matrices_of_calculix(tmp_path: Path) -> None:
 def test_our_elements_give_the_frequencies_of_calculix() -> None:
     """Both integrate the same elements, by other rules: a fifth of the one percent that is asked for."""
     np.testing.assert_allclose(frequencies(gw.build(**document())), RECORDED_HZ, rtol=2e-3)
+
+
+BRICK = """\
+*NODE
+1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n101,0.5,0.5,1\n102,0.5,0.5,1
+*ELEMENT,TYPE=C3D8,ELSET=ALL
+1,1,2,3,4,5,6,7,8
+*NSET,NSET=TOP
+5,6,7,8
+*RIGID BODY,NSET=TOP,REF NODE=101,ROT NODE=102
+*MATERIAL,NAME=M
+*ELASTIC
+2.1e5,0.3
+*DENSITY
+7.85e-9
+*SOLID SECTION,ELSET=ALL,MATERIAL=M
+*STEP
+*FREQUENCY,SOLVER=MATRIXSTORAGE
+5
+*END STEP
+"""
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
+def test_a_rigid_body_of_calculix_is_a_node_with_six_motions(tmp_path: Path) -> None:
+    """A brick of 1 mm of steel whose upper face is a rigid body, nothing held: six free motions, and ρ V of mass."""
+    (tmp_path / "brick.inp").write_text(BRICK)
+    subprocess.run(["ccx", "brick"], cwd=tmp_path, check=True, capture_output=True, timeout=60)
+    rows = (tmp_path / "brick.dof").read_text().split()
+    turned = [f"101.{int(row[-1]) + 3}" if row.startswith("102.") else row for row in rows]
+    (tmp_path / "rows.dof").write_text("\n".join(turned))
+    labels = read_row_labels(tmp_path / "rows.dof")
+    read = {
+        kind: read_matrix(tmp_path / f"brick.{ending}").with_rows(labels, ending)
+        for kind, ending in (("stiffness", "sti"), ("mass", "mas"))
+    }
+    certificate = certify(reduced_matrices(read, units="mm-t-s"), {101: (0.5e-3, 0.5e-3, 1e-3)})
+    assert certificate.free_motions == 6
+    assert certificate.mass == pytest.approx(7.85e-6, rel=1e-9)

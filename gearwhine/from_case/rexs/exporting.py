@@ -17,7 +17,7 @@ from gearwhine.exchange.rexs.xml_writer import xml_text
 from gearwhine.from_case.rexs.bearings import add_bearings
 from gearwhine.from_case.rexs.casing import add_casing_stiffness
 from gearwhine.from_case.rexs.gears import add_gears, add_stages
-from gearwhine.from_case.rexs.loads import add_load_case, add_loads, gravity_of
+from gearwhine.from_case.rexs.loads import add_load_case, add_loads, add_sweep, gravity_of
 from gearwhine.from_case.rexs.shafts import Shafts, add_materials, add_shafts
 from gearwhine.from_case.rexs.sheet import Sheet, plain
 
@@ -83,6 +83,7 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None, housing: HousingC
     add_stages(case, shafts, gears)
     bearings = add_bearings(case, shafts)
     given = add_loads(case, shafts)
+    has_sweep = add_sweep(case, shafts, given)
     if load is not None:
         add_load_case(shafts, given, bearings, load)
         if case.housing is not None and load["seats"] == "rigid":
@@ -92,7 +93,7 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None, housing: HousingC
         stands = "its static stiffness at the seats is written" if has_stiffness else "bearings stand in the casing"
         sheet.notes.left_out("[housing]", f"the housing: {stands}")
     for key, text in _TABLES.items():
-        if getattr(case, key):
+        if getattr(case, key) and not (key == "sweep" and has_sweep):
             sheet.notes.left_out(f"[{key}]", text)
     made = datetime.now(UTC).isoformat(timespec="seconds")
     origin = ("Gearwhine", gearwhine.__version__, made)

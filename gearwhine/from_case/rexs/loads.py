@@ -12,6 +12,8 @@ from gearwhine.exchange.rexs.operation import FORCES, GRAVITY
 from gearwhine.from_case.rexs.shafts import Shafts
 from gearwhine.from_case.rexs.sheet import plain, quantities, quantity
 
+_SPEED = "rotational_speed"
+_SAME_SPEED = 1e-9  # part by which speeds may differ and are one
 _HELD = ("speed", "rotor", "torque", "at", "output", "force", "gravity")
 
 
@@ -37,7 +39,7 @@ def add_loads(case: Case, shafts: Shafts) -> dict[int, dict[str, Attribute]]:
     torques = case.parts.torques
     for rotor, speed in case.parts.speeds.items():
         for piece in shafts.pieces[rotor]:
-            given[piece.number] = {"rotational_speed": quantity(speed, "rad/s")}
+            given[piece.number] = {_SPEED: quantity(speed, "rad/s")}
     driven = torques[0].rotor if torques else operation.rotor or next(iter(case.parts.speeds))
     for place, torque in enumerate(torques):
         shaft, at = shafts.place(torque.rotor, torque.at)
@@ -60,8 +62,37 @@ def add_loads(case: Case, shafts: Shafts) -> dict[int, dict[str, Attribute]]:
 def _state_speed(shafts: Shafts, rotor: str, speed: float) -> None:
     """State the speed of the rotor where power comes in; those of others follow from the train."""
     number = shafts.first(rotor)
-    stated = {"rotational_speed": quantity(speed, "rad/s"), "defines_speed": plain(True)}
+    stated = {_SPEED: quantity(speed, "rad/s"), "defines_speed": plain(True)}
     shafts.sheet.components[number - 1] = shafts.sheet.components[number - 1].changed(stated)
+
+
+def add_sweep(case: Case, shafts: Shafts, given: Mapping[int, Mapping[str, Attribute]]) -> bool:
+    """Add a load case for the operation and one for each other speed of its sweep, with its torques; return whether.
+
+    A sweep without the speed of the operation is no spectrum of it, and is not written.
+    """
+    sheet, operation = shafts.sheet, case.operation
+    if case.sweep is None or operation is None or operation.speed == 0.0:
+        return False
+    ratios = [abs(speed / operation.speed) for speed in case.sweep.speeds]
+    if not any(abs(ratio - 1.0) < _SAME_SPEED for ratio in ratios):
+        return False
+    for number, attributes in given.items():
+        sheet.in_load_case(number, attributes)
+    for ratio in ratios:
+        if abs(ratio - 1.0) < _SAME_SPEED:
+            continue
+        sheet.further.append(
+            {
+                number: {name: _scaled(one, ratio) if name == _SPEED else one for name, one in attributes.items()}
+                for number, attributes in given.items()
+            }
+        )
+    return True
+
+
+def _scaled(attribute: Attribute, ratio: float) -> Attribute:
+    return Attribute(attribute.value * ratio, attribute.unit)
 
 
 def add_load_case(

@@ -46,12 +46,15 @@ class Sheet:
     notes : Notes
     changed : dict of int to dict
         Attributes that components have in the load case, by number.
+    further : list of dict
+        Those of further load cases.
     """
 
     components: list[Component] = field(default_factory=list)
     relations: list[Relation] = field(default_factory=list)
     notes: Notes = field(default_factory=Notes)
     changed: dict[int, dict[str, Attribute]] = field(default_factory=dict)
+    further: list[dict[int, dict[str, Attribute]]] = field(default_factory=list)
 
     def add(self, kind: str, name: str = "", attributes: Attributes | None = None) -> int:
         """Add a component; return its number."""
@@ -79,13 +82,18 @@ class Sheet:
 
     @property
     def load_cases(self) -> list[LoadCase]:
-        """The load case, where any component has attributes in it."""
+        """The load cases in which any component has attributes."""
         kinds = {one.number: one for one in self.components}
-        changed = tuple(
-            Component(number, kinds[number].kind, kinds[number].name, attributes)
-            for number, attributes in self.changed.items()
-        )
-        return [LoadCase(1, changed)] if changed else []
+        return [
+            LoadCase(
+                place,
+                tuple(
+                    Component(number, kinds[number].kind, kinds[number].name, attributes)
+                    for number, attributes in changed.items()
+                ),
+            )
+            for place, changed in enumerate(filter(None, (self.changed, *self.further)), start=1)
+        ]
 
     def left_out(self, about: str, table: Table, held: Iterable[str], prefix: str = "") -> None:
         """Note the keys of a table that differ from their default and are not held.

@@ -17,6 +17,9 @@ def test_the_matrices_and_their_tables_are_written(
     for words in ("of order", "input-back: node 101", "top: node 10001", "box.toml"):
         assert words in said
     assert sorted(path.name for path in (tmp_path / "made").iterdir()) == ["box.npz", "box.toml"]
+    first = (tmp_path / "made" / "box.toml").read_text("utf-8").splitlines()[0]
+    assert first.startswith("# Reduced by Gearwhine ")
+    assert "from Small gearbox" in first
 
 
 @pytest.mark.parametrize(

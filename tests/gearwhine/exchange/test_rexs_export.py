@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pytest
+from rexs_files import helical_stage
 
 from gearwhine.case import Case, CaseError, load_case, parse_case
 from gearwhine.case.load import imported_case
@@ -22,7 +23,6 @@ BUNDLED = (
 NOT_HELD = {
     "housing*": "[housing]",
     "transient*": "[transient]",
-    "sweep*": "[sweep]",
     "measured*": "[measured]",
     "provenance*": "[provenance]",
     "rotor.*.unbalance*": "unbalance",
@@ -55,6 +55,7 @@ SAID_OTHERWISE = {
     "material.cast-iron.*": "of the housing, referred to by the casing: no part that comes back has it",
     "planetary.*.fixed.member": "the gear's rotor in its place",
     "planetary.*.fixed.stiffness": "written, and beyond 1e7 N m/rad read as rigid",
+    "sweep.speed*": "the same speeds as a list, compared for themselves",
     "operation.rotor": "the default is named",
     "operation.at": "the default is named",
     "operation.output*": "the outputs in balance with the input are named",
@@ -108,6 +109,33 @@ def returned(case: Case, load: Mapping[str, Any] | None = None) -> tuple[Exporte
     """The case as it comes back from a file, and what was exported."""
     exported = rexs_of(case, load)
     return exported, parse_case(imported_case("unit.rexs", exported.xml.encode()).document)
+
+
+def test_a_load_spectrum_comes_back_as_the_sweep_that_it_became() -> None:
+    """Speeds, the chosen load case and its torque are the same; a sweep without the speed of operation is noted."""
+    case = parse_case(imported_case("unit.rexs", helical_stage().xml()).document)
+    assert case.sweep is not None
+    assert case.operation is not None
+    assert len(case.sweep.speeds) > 1
+    exported, back = returned(case)
+    assert back.sweep is not None
+    assert back.operation is not None
+    assert back.sweep.speeds == pytest.approx(case.sweep.speeds, rel=1e-12)
+    assert back.operation.speed == pytest.approx(case.operation.speed, rel=1e-12)
+    assert [torque.value for torque in back.parts.torques] == pytest.approx(
+        [torque.value for torque in case.parts.torques], rel=1e-9
+    )
+    assert not any("[sweep]" in note.about for note in exported.notes)
+    rig = load_case("nasa-gear-noise-rig").case
+    _, of_rig = returned(rig)
+    assert rig.sweep is not None
+    assert of_rig.sweep is not None
+    assert of_rig.sweep.speeds == pytest.approx(rig.sweep.speeds, rel=1e-12)
+    document = imported_case("unit.rexs", helical_stage().xml()).document
+    document["sweep"] = {"speed": ["100 rpm", "200 rpm"]}
+    exported, back = returned(parse_case(document))
+    assert back.sweep is None
+    assert any("[sweep]" in note.about for note in exported.notes)
 
 
 def differences(case: Case, back: Case) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from reduced_frames import FRAME_COORDINATES, LENGTH, PLACES, frame, write_dmig
-from rexs_files import POINTS, helical_stage
+from rexs_files import POINTS, _at, add_reduced_casing, helical_stage
 
 import gearwhine as gw
 from gearwhine.cli.command_line import run_command
@@ -93,6 +93,22 @@ def test_seats_stand_under_the_bearings_whatever_the_order_of_the_nodes(
     assert certificate["free_rigid_motions"] == 6
     assert certificate["mass_kg"] == pytest.approx(40.0)
     assert {bearing.seat for bearing in study.case.bearing} == {f"{name} seat" for name in POINTS}
+
+
+def test_the_matrices_take_the_place_of_a_static_stiffness_in_the_file_of_the_unit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written(tmp_path)
+    file = helical_stage()
+    add_reduced_casing(file, np.diag([2e5, 2e5, 2e5, 1e8, 1e8, 1e8] * 4).tolist(), _at(0.0))
+    (tmp_path / "unit.rexs").write_bytes(file.xml())
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["import", "unit.rexs", "--housing", "box.pch"]) == 0
+    assert "the schema states no unit" not in capsys.readouterr().out + (tmp_path / "unit.toml").read_text("utf-8")
+    table = gw.load("unit.toml").case.reduced_housing
+    assert table is not None
+    assert table.reduced.stiffness.name == "box.pch"
+    assert {seat.node for seat in table.seat} == set(NODES.values())
 
 
 @pytest.mark.parametrize(

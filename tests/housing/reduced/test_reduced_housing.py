@@ -238,6 +238,29 @@ def test_rigid_motions_by_one_node_of_known_place() -> None:
         assert certificate.rigid_mass[5, 5] == pytest.approx(2.0 * POLAR_INERTIA, rel=1e-9)
 
 
+def test_an_internal_coordinate_that_nothing_resists_stays_out_of_rigid_motions() -> None:
+    """A mass on no spring beside the frame: neither the mass of the motion nor its freedom changes."""
+    known = one_node_known().matrices
+    mass, stiffness = np.zeros((13, 13)), np.zeros((13, 13))
+    mass[:12, :12], stiffness[:12, :12], mass[12, 12] = known.mass, known.stiffness, 3.0
+    matrices = ReducedMatrices(mass, stiffness, (*known.coordinates, (99, 0)))
+    certificate = free_frame(matrices=matrices, seats=SEATS[:1], limit=6000.0).certificate
+    assert certificate is not None
+    assert certificate.is_free
+    assert certificate.mass == pytest.approx(2.0 * MASS, rel=1e-9)
+
+
+def test_internal_coordinates_without_mass_have_no_mode_with_the_nodes_held() -> None:
+    """A spring to a massless internal coordinate beside the frame: the last mode is that of the front body."""
+    known = one_node_known().matrices
+    mass, stiffness = np.zeros((13, 13)), np.zeros((13, 13))
+    mass[:12, :12], stiffness[:12, :12], stiffness[12, 12] = known.mass, known.stiffness, 1e12
+    matrices = ReducedMatrices(mass, stiffness, (*known.coordinates, (99, 0)))
+    certificate = free_frame(matrices=matrices, seats=SEATS[:1], limit=6000.0).certificate
+    assert certificate is not None
+    assert certificate.held_frequency == pytest.approx(np.sqrt(YOUNGS_MODULUS * AREA / (LENGTH * MASS)), rel=1e-9)
+
+
 def test_the_last_mode_with_the_nodes_held_bounds_the_band() -> None:
     """The front body on the beam whose back is held moves along at √(EA/(L m)), above its tilt and its twist."""
     housing = one_node_known()
@@ -297,3 +320,10 @@ def test_a_stiffness_alone_is_a_static_housing() -> None:
         _ = free_frame(matrices=replace(made, stiffness=frame()[1])).modes
     with pytest.raises(HousingError, match="a mass of zero of a static housing"):
         replace(made, mass=np.eye(12))
+
+
+def test_numbers_beyond_all_quantities_are_refused_by_their_place() -> None:
+    mass, stiffness = frame()
+    stiffness[3, 3] = 1e200
+    with pytest.raises(HousingError, match="row 4, column 4"):
+        ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES))
