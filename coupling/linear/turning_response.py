@@ -10,9 +10,8 @@ that turn, of directions D(t) = Σ D_l e^{i l·f t} and laws φ = k δ + c δ', 
 F the loads and e the transmission errors of the connectors that turn. Only the few φ are sought: with the compliances
 D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. Without the connectors that turn, parts of a train turn
 freely: at orders where ω_m is all but zero, springs κ on these motions are added to Z, and springs -κ to the connectors
-sought. Z falls into parts that connectors that turn alone couple. Where standing connectors and gyroscopic terms act in
-few directions U of a part beside its diagonal, Z = D + U E Uᵀ, its inverse is that of Sherman, Morrison and Woodbury,
-D⁻¹ - D⁻¹ U (I + E Uᵀ D⁻¹ U)⁻¹ E Uᵀ D⁻¹.
+sought. Z falls into parts that connectors that turn alone couple, each solved on its own
+(:mod:`gearwhine.coupling.linear.dynamic_stiffness`).
 
 It is the amplitudes of the sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the carrier would
 put all of them into one line.
@@ -27,6 +26,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.dynamic_stiffness import DynamicStiffness
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState
@@ -49,9 +49,6 @@ _RESTRAINT = 17.3  # frequency of a free motion on its spring, over the largest 
 _FREE_MOTION = 1e-9  # part of the largest stiffness up to which a motion is free
 _STANDSTILL = 1e-9  # part of the largest rate up to which a frequency is zero
 _SLOW = 0.1  # part of the largest rate up to which free motions have springs
-_FEW = 0.4  # part of the coordinates up to which the directions between them are few
-_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
-_NEAR_RESONANCE = 1e-6  # part of its terms to which the dynamic stiffness of one coordinate may cancel
 _SAME_SHIFT = 1e-6  # part of the largest rate by which shifts of one order differ from rounding
 
 
@@ -62,49 +59,6 @@ class _Turning:
     stiffness: FloatArray
     damping: FloatArray
     directions: Mapping[Order, ComplexArray]
-
-
-@dataclass(frozen=True, eq=False)
-class _DynamicStiffness:
-    """Z = K + iω C - ω² I of some coordinates, with diagonals (2, n) of K and C without connectors, (n, n) both."""
-
-    stiffness: FloatArray
-    damping: FloatArray
-    diagonals: FloatArray
-
-    @cached_property
-    def _beside_diagonal(self) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-        """Directions U (n, r) in which K and C act beside the diagonals, and these parts in them; None of many."""
-        matrices = zip((self.stiffness, self.damping), self.diagonals, strict=True)
-        parts = [matrix - np.diag(diagonal) for matrix, diagonal in matrices]
-        scaled = [part / largest for part in parts if (largest := np.abs(part).max(initial=0.0)) > 0.0]
-        if not scaled:
-            none = np.zeros((0, 0))
-            return np.zeros((len(self.stiffness), 0)), none, none
-        left, sizes, _ = np.linalg.svd(np.hstack([half for part in scaled for half in (part, part.T)]))
-        rank = int(np.count_nonzero(sizes > _ROUNDING * sizes[0]))
-        if rank > _FEW * len(left):
-            return None
-        directions = left[:, :rank]
-        return directions, *(directions.T @ part @ directions for part in parts)
-
-    def solve(self, w: complex, loads: FloatArray | ComplexArray) -> ComplexArray:
-        """Coordinates (n, i) under loads (n, i) at a frequency [rad/s]."""
-        terms = self.diagonals[0], 1j * w * self.diagonals[1], -(w**2)
-        diagonal = terms[0] + terms[1] + terms[2]
-        is_clear = np.all(np.abs(diagonal) > _NEAR_RESONANCE * (np.abs(terms[0]) + np.abs(terms[1]) + abs(terms[2])))
-        if self._beside_diagonal is None or not is_clear:
-            dynamic = np.asarray(self.stiffness + 1j * w * self.damping, dtype=np.complex128)
-            dynamic[np.diag_indices(len(dynamic))] -= w**2
-            return np.asarray(np.linalg.solve(dynamic, loads))
-        directions, stiffness, damping = self._beside_diagonal
-        moved = loads / diagonal[:, None]
-        if directions.shape[1]:
-            held = stiffness + 1j * w * damping
-            along = directions / diagonal[:, None]
-            between = np.eye(len(held)) + held @ (directions.T @ along)
-            moved = moved - along @ np.linalg.solve(between, held @ (directions.T @ moved))
-        return np.asarray(moved, dtype=np.complex128)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +74,7 @@ class _Part:
         Basis of the columns: many are sums of others.
     mix : ndarray of complex, shape (r, c)
         The columns as sums of the basis.
-    free, restrained : _DynamicStiffness
+    free, restrained : DynamicStiffness
         Without the connectors that turn, and with springs on free motions too.
     """
 
@@ -128,8 +82,8 @@ class _Part:
     columns: IntArray
     basis: FloatArray
     mix: ComplexArray
-    free: _DynamicStiffness
-    restrained: _DynamicStiffness
+    free: DynamicStiffness
+    restrained: DynamicStiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -342,7 +296,7 @@ class TurningResponse:
             basis = left[:, : int(np.count_nonzero(values > _DEPENDENT * values.max(initial=0.0)))]
             square = np.ix_(block, block)
             diagonals = np.array([np.diag(self.system.own_stiffness)[block], np.diag(self.system.own_damping)[block]])
-            dynamic = _DynamicStiffness(stiffness[square], damping[square], diagonals)
+            dynamic = DynamicStiffness(stiffness[square], damping[square], diagonals)
             restrained = replace(dynamic, stiffness=dynamic.stiffness + spring * free[block] @ free[block].T)
             parts.append(_Part(block, touching, basis, basis.T @ own, dynamic, restrained))
         return parts

@@ -22,7 +22,7 @@ from gearwhine.coupling import (
     periodic_response,
     simulate,
 )
-from gearwhine.coupling.connector_forces.kernel_arrays import Bearings, bearing_arrays
+from gearwhine.coupling.connector_forces.kernel_arrays import Bearings, bearing_arrays, spans
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
@@ -401,3 +401,9 @@ def test_static_modes_of_planets_ask_for_no_steps(monkeypatch: pytest.MonkeyPatc
     np.testing.assert_allclose(few.mean_force, many.mean_force, rtol=1e-4)
     np.testing.assert_allclose(few.peak_force, many.peak_force, rtol=1e-3)
     assert few.energy.error < 1e-3
+
+
+def test_spans_begin_and_end_where_rows_do() -> None:
+    rows = np.array([[0.0, 2.0, 0.0, -1.0, 0.0], [0.0] * 5, [1e-300, 0.0, 0.0, 0.0, 3.0]])
+    assert spans(rows).tolist() == [[1, 4], [0, 0], [0, 5]]
+    assert spans(np.zeros((2, 0))).tolist() == [[0, 0], [0, 0]]
