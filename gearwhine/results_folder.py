@@ -289,8 +289,8 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
     with staging(target.parent, listed=False) as place:  # the files are the user's
         files = write_matrices(place / target.name, reduced.matrices)
         tables = place / f"{target.stem}.toml"
-        title = " ".join(case.title.split())
-        origin = f"# Reduced by Gearwhine {__version__}{f' from {title}' if title else ''}.\n\n"
+        origin_title = " ".join(title.split())
+        origin = f"# Reduced by Gearwhine {__version__}{f' from {origin_title}' if origin_title else ''}.\n\n"
         tables.write_text(origin + tables_of(reduced, files, housing.complete_below), encoding="utf-8")
         names = sorted({path.name for path in (*files.values(), tables)})
         if standing := [name for name in names if (target.parent / name).exists()]:
