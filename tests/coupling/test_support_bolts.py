@@ -8,6 +8,7 @@ import pytest
 
 from gearwhine.coupling import CouplingError, Machine, SupportBolt, TorqueSupport
 from gearwhine.coupling.statics.operating_point import OperatingPoint, SupportLoad
+from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from tests.machines.plane_planetary_set import STEEL, equal_angles, plane_set
 
 FloatArray = npt.NDArray[np.float64]
@@ -94,6 +95,16 @@ def test_modes_on_unequal_bolts_are_those_of_a_rigid_ring() -> None:
             expected += k * np.outer(row, row)
     assert connector.stiffness == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
     assert connector.directions.shape[1] == 6
+
+
+def test_the_motion_rests_where_the_equilibrium_is() -> None:
+    """Assembled from modes, the machine at rest loads the bolts as the exact shafts of the operating point do."""
+    machine = bolted(UNEQUAL)
+    system, expected = machine.assembled.system, support_of(machine.operating_point()).force
+    (connector,) = (one for one in system.linear if one.name == "torque support of ring")
+    force = connector.stiffness @ connector.directions.T @ static_equilibrium(system)
+    assert force[[0, 1]] == pytest.approx(expected[[0, 1]], abs=0.01 * abs(expected[5]) / RADIUS)
+    assert force[5] == pytest.approx(expected[5], rel=1e-6)
 
 
 def test_a_stiffness_beside_bolts_and_a_bolt_without_one_are_refused() -> None:

@@ -37,6 +37,10 @@ LESS_EFFORT = {
         "transient.discard=0",
         "transient.tolerance=5e-2",
     ),
+    "planetary-helical": (
+        "housing.cad.mesh_size=26 mm",
+        "housing.frequency_limit=600 Hz",
+    ),
     "steel-box": (),
     "friswell-rotor": (),
 }

@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearwhine.case import load_case
 from gearwhine.cli import run_command
+from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 ROOT = Path(__file__).parents[2]
@@ -145,3 +147,18 @@ def test_bearings_carry_both_stages(capsys: pytest.CaptureFixture[str], out: Pat
         assert left == pytest.approx(np.zeros(2), abs=0.01 * 0.084 * np.linalg.norm(mesh)), (shaft, left)
     assert offsets[0] == pytest.approx(offsets[1], abs=2e-4), offsets
     assert abs(offsets[0]) < 0.042 / 6.0  # within the core of the face, all of which carries
+
+
+@pytest.mark.slow
+def test_lines_of_both_stages_have_their_names() -> None:
+    """Multiples of the carrier's turns: every 22nd of the helical pair, the 90th and its neighbours of the planets."""
+    machine = load_case(NAME).case.parts.machine
+    assert machine is not None
+    assembled = machine.at_operating_point().assembled
+    turns = (PINION, 2 * PINION, RING, RING + 1, RING - 1)
+    names = [one.name for one in line_names(assembled, [turn * CARRIER_TURN for turn in turns], 0.01)]
+    assert names[0] == "1× pinion -> wheel"
+    assert names[1] == "2× pinion -> wheel"
+    assert names[2].startswith("1× planets' meshes of carrier")
+    for name, side in zip(names[3:], ("+ 1×", "- 1×"), strict=True):
+        assert f"1× planets' meshes of carrier {side} carrier" in name
