@@ -434,7 +434,8 @@ class Transient(Table):
     revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)] | None = None
     """Revolutions of the first driver's rotor. One of this and `run`. Lines at a steady speed are sharpest where the
     record, these less `discard`, holds whole turns of all shafts but planets: multiples of 19 where a carrier is slower
-    by 19/4. Else they are taken under a window, which spreads each over its neighbours."""
+    by 19/4, and one more for the filter of a long record. Else they are taken under a window, which spreads each over
+    its neighbours."""
     run: Run | None = None
     """Run-up, run-down or free run, in place of `revolutions`."""
     discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)

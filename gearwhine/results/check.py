@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -407,7 +408,7 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
 
 
 _WIDTH = 12  # of the column with the names of parts
-_WHOLE_TURNS = 1e-6  # distance of the turns in a record from whole ones that is rounding
+_MOST_TURNS = 10_000  # of the first driver until a carrier has made whole turns
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -600,13 +601,13 @@ def _measured_lines(measured: Document) -> list[str]:
 
 
 def _carrier_turns(document: Document, recorded: float) -> Iterator[str]:
-    """Yield the turns of each carrier in a record, whose lines are sharpest where they are whole."""
+    """Yield the turns of each carrier in a record, and after how many revolutions they are whole."""
     for one in document.get("planetary", ()):
         speeds = {member["role"]: abs(member["speed_rpm"]) for member in one["members"]}
         if speeds.get("carrier") and (lead := abs(document["operation"]["speed_rpm"])):
-            turns = recorded * speeds["carrier"] / lead
-            whole = abs(turns - round(turns)) < _WHOLE_TURNS
-            yield f", {turns:.5g} turns of {one['carrier']}" + ("" if whole else ", not whole ones")
+            ratio = speeds["carrier"] / lead
+            whole = Fraction(ratio).limit_denominator(_MOST_TURNS).denominator
+            yield f", {recorded * ratio:.5g} turns of {one['carrier']}, whole ones in multiples of {whole} revolutions"
 
 
 def _transient_line(document: Document) -> str:

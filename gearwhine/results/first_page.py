@@ -199,6 +199,12 @@ def _under_load(summaries: Sequence[Summary]) -> list[str]:
         life = min(float(format(shortest["life_h"], ".3g")), LONGEST_LIFE)
         hours = ("over " if shortest["life_h"] > LONGEST_LIFE else "") + f"{life:,.0f}".replace(",", " ")
         clauses.append(f"shortest bearing life L10 {hours} h, of {shortest['name']}")
+    for one in load.get("planetary", ()):
+        most = max(one["planets"], key=lambda planet: float(planet["load_share"]))
+        clauses.append(
+            f"mesh load factor K_γ {one['mesh_load_factor']:.4g} of planetary set {one['name']}, whose {most['name']} "
+            f"carries {percent(most['load_share'])} of the torque"
+        )
     return [f"Under load: {'; '.join(clauses)}."] if clauses else []
 
 

@@ -63,6 +63,16 @@ def test_check_tells_members_and_mesh_frequency(capsys: pytest.CaptureFixture[st
     assert {round(pair["mesh_frequency_hz"], 6) for pair in document["gear_pairs"]} == {round(90.0 * carrier / 60.0, 6)}
 
 
+def test_check_tells_the_turns_of_the_carrier_in_a_record_and_the_outside_of_the_ring(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run_command(["check", NAME, "-q", "--verbose", "--set", "transient.revolutions=60"]) == 0
+    told = capsys.readouterr().out
+    # 41 revolutions by 24 / (24 + 90); a root circle of 185 mm with 6.5 mm around it.
+    assert "the last 41 recorded, 8.6316 turns of carrier, whole ones in multiples of 19 revolutions" in told
+    assert "root 185 mm; outside of the rim 198;" in told
+
+
 @pytest.mark.slow
 def test_planets_share_the_load_on_the_housing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     out = tmp_path / "out"
@@ -79,3 +89,9 @@ def test_planets_share_the_load_on_the_housing(capsys: pytest.CaptureFixture[str
     (turn,) = document["carrier_turns"]
     assert np.sum(turn["sets"][0]["load_share"], axis=0) == pytest.approx(np.ones(24), abs=1e-9)
     assert {"load-planetary-stage.png", "load-carrier-turn-carrier.png"} <= {path.name for path in out.iterdir()}
+    assert run_command(["report", str(out), "-q"]) == 0
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert f"mesh load factor K_γ {stage['mesh_load_factor']:.4g} of planetary set stage, whose planet " in page
+    assert "Front view of the set" in page
+    # The error of its pin is a part of the first planet's deflection, and tilts by the carrier are not the housing's.
+    assert any(pair["misalignment_by_cause_rad"]["carrier"] for pair in document["gear_pairs"])

@@ -6,6 +6,7 @@ import pytest
 
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
+from gearwhine.case.planetary import with_implied_pairs
 
 NAME = "planetary-stage"
 PAIRS = {("s", f"p {n}") for n in (1, 2, 3)} | {(f"p {n}", "r") for n in (1, 2, 3)}
@@ -44,6 +45,19 @@ def test_a_pair_by_its_number_is_that_of_all_planets(source: str) -> None:
     assert {ends for ends, friction in frictions.items() if friction == 0.07} == {(f"p {n}", "r") for n in (1, 2, 3)}
     with pytest.raises(CaseError, match="a place from 0 to 1"):
         load_case(source, ["gear_pair.2.friction=0.07"])
+
+
+def test_both_gears_of_a_stepped_planet_are_one_planet() -> None:
+    gears = [{"name": name, "rotor": rotor} for name, rotor in (("s", "sun"), ("a", "p"), ("b", "p"), ("r", "ring"))]
+    one = {"name": "set", "sun": "s", "planets": ["a", "b"], "ring": "r", "carrier": "c", "count": 3}
+    document = with_implied_pairs({"gear": gears, "planetary": [one]})
+    assert document["gear_pair"] == [{"driver": "s", "driven": "a"}, {"driver": "b", "driven": "r"}]
+    assert document["planetary"] == [one]
+    # Planets that are named each, on rotors of their own, are two.
+    gears[2]["rotor"] = "q"
+    document = with_implied_pairs({"gear": gears, "planetary": [{k: v for k, v in one.items() if k != "count"}]})
+    ends = {(pair["driver"], pair["driven"]) for pair in document["gear_pair"]}
+    assert ends == {("s", "a"), ("a", "r"), ("s", "b"), ("b", "r")}
 
 
 def test_a_star_reaches_parts_of_planets_that_are_written_once() -> None:
