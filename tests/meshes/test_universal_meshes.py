@@ -101,6 +101,10 @@ def test_the_unit_that_a_file_states_counts(tmp_path: Path) -> None:
         (points_2411(NODES) + elements(integers(9, 115, 1, 1, 7, 8), integers(11, 12)), "has 2 nodes; expected 8"),
         (points_2411(NODES) + elements(integers(9, 115, 1)), "data set 2412 from line 24 is cut short, or not of"),
         (points_2411(NODES) + elements() + dataset(2467, [integers(1, 0, 0, 0, 0, 0, 0, 9), "a"]), "expected 9"),
+        (
+            points_2411(NODES) + elements() + group("a", (8, 5), (8, 6)).replace("0         2\n", "0         1\n"),
+            "group 'a' has 2 members; expected 1",
+        ),
         (points_2411(NODES).replace("1.0000000000000000D+00", "x", 1) + elements(), "expected three coordinates"),
     ],
 )
