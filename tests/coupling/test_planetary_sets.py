@@ -160,6 +160,16 @@ def test_the_assembly_condition_is_that_of_the_phases(sun: int, planet: int, pla
         _ = Machine(**{**parts, "planetary_sets": []}).mesh_phases
 
 
+def test_planets_that_reach_over_the_axis_of_their_ring_leave_room_for_one() -> None:
+    """40 teeth in a ring of 60: the axes of two are 40 mm apart, the tips of each reach 42 mm from its own."""
+    carrier = shaft("c")
+    made = planets(40, 0.5 * MODULE * 20, carrier, [("p", "r")], count=2)
+    parts = _Parts([shaft("r"), carrier], [("r", -60)], made)
+    (touching, *_) = placed_set(PlanetarySet("stage", made.gear_names, "c", ring="r"), parts).findings()
+    assert "axes are 40 mm apart, and their tip circles need 84 mm" in touching.expected
+    assert "room for 1 of them" in touching.expected
+
+
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "touching": (
         {"count": 6},
