@@ -170,6 +170,14 @@ def test_planets_that_reach_over_the_axis_of_their_ring_leave_room_for_one() -> 
     assert "room for 1 of them" in touching.expected
 
 
+@pytest.mark.parametrize("attribute", ["name", "planets", "carrier", "sun", "ring"])
+def test_what_is_no_name_is_refused(attribute: str) -> None:
+    given: dict[str, Any] = {"name": "stage", "planets": ["p"], "carrier": "c", "sun": "s", "ring": "r"}
+    PlanetarySet(**given)
+    with pytest.raises(CouplingError, match=rf"{attribute} is .*; expected (a|names)"):
+        PlanetarySet(**given | {attribute: [3] if attribute == "planets" else 3})
+
+
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "touching": (
         {"count": 6},

@@ -12,6 +12,7 @@ import gearwhine as gw
 from gearwhine.case.box import FACES
 from gearwhine.case.model import housing_table
 from gearwhine.coupling import CouplingError
+from gearwhine.coupling.load_analysis.box_walls import wall_changes
 from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
 from gearwhine.coupling.load_analysis.line_model import turning_carriers
 from gearwhine.coupling.load_analysis.ranking import rank_parts
@@ -62,6 +63,18 @@ def test_walls_around_planets_are_ranked_without_lines_and_the_ranking_says_why(
     ports = bearing_ports(housing.housing, turning)
     carried = [*np.cross(spin, (*AXIS, 0.053)), spin[0], spin[1]]
     np.testing.assert_allclose(ports["s 0.05"] @ np.cross(spin, housing.mesh.points).ravel(), carried, rtol=1e-6)
+
+    # The outer faces of a wall that grows stand still, and its inner face moves inwards as much as it grows.
+    points = housing.mesh.points
+    middle, half = 0.5 * (points.min(axis=0) + points.max(axis=0)), np.array([0.07, 1.0, 0.025])
+    inside = (np.abs(points - middle) < half).all(axis=1)
+    walls = {change.parameter: change.rate.velocity for change in wall_changes(housing.housing, box, turning)}
+    for wall, inner, outer, way in (("bottom wall", 0.02, 0.0, 1.0), ("top wall", 0.13, 0.15, -1.0)):
+        for height, speed in ((inner, way), (outer, 0.0)):
+            face = inside & (np.abs(points[:, 1] - height) < 1e-9)
+            assert face.any()
+            moved = walls[wall][face]
+            np.testing.assert_allclose(moved, np.tile([0.0, speed, 0.0], (len(moved), 1)), atol=1e-6)
 
 
 @pytest.mark.slow

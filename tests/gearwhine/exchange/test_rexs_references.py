@@ -21,6 +21,16 @@ def test_flanks_that_gears_refer_to_are_those_of_their_sides() -> None:
     assert "tip_relief" in found.document["gear"][0]
 
 
+def test_a_gear_that_a_coupling_holds_stands_on_the_shaft_of_the_coupling() -> None:
+    file, expected = helical_stage(), imported(helical_stage()).document
+    wheel, output = file.number("wheel"), file.number("output")
+    file.relations = [one for one in file.relations if one["roles"] != [("assembly", output), ("part", wheel)]]
+    del file.of(wheel)["u_coordinate_on_shaft"]
+    key = file.add("coupling", "key", u_coordinate_on_shaft_inner_side=(45.0, "mm"))
+    file.relate("side", assembly=key, inner_part=output, outer_part=wheel)
+    assert imported(file).document["gear"] == expected["gear"]
+
+
 def test_a_note_is_about_a_component_and_its_text_about_a_value() -> None:
     file = helical_stage()
     file.named("6205")["bearing_type"] = ("angular_contact_ball_bearing", "none")
