@@ -1,8 +1,8 @@
 """Parts of a REXS file that refer to each other in another way than usual, and the components that notes are about."""
 
-from rexs_files import RexsFile, helical_stage, planetary_stage
+import pytest
+from rexs_files import RexsFile, Values, helical_stage, planetary_stage
 
-from gearwhine.case import parse_case
 from gearwhine.exchange.rexs import ImportedCase, case_of, read_content
 
 
@@ -31,19 +31,27 @@ def test_a_gear_that_a_coupling_holds_stands_on_the_shaft_of_the_coupling() -> N
     assert imported(file).document["gear"] == expected["gear"]
 
 
-def test_a_note_is_about_a_component_and_its_text_about_a_value() -> None:
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ({}, "no sense of its thrust"),
+        (
+            {"number_of_bearing_rows": (2, "none"), "distance_between_bearing_rows": (8.0, "mm")},
+            "its two rows stand back to back",
+        ),
+    ],
+)
+def test_a_note_is_about_a_component_and_its_text_about_a_value(rows: Values, words: str) -> None:
     file = helical_stage()
-    file.named("6205")["bearing_type"] = ("angular_contact_ball_bearing", "none")
-    del file.named("6205")["axial_force_absorption"]
-    bearing = next(one for one in parse_case(imported(file).document).bearing if one.name == "6205")
-    assert bearing.stiffness.rolling.carries == "+z"  # type: ignore[union-attr]
-    (assumed,) = [note for note in imported(file).notes if "no sense of its thrust" in str(note)]
-    assert (assumed.about, assumed.at[:1]) == (
-        f'rolling_bearing_with_catalog_geometry {file.number("6205")} "6205"',
-        ("bearing",),
-    )
+    bearing = file.named("6205")
+    bearing |= rows | {"bearing_type": ("angular_contact_ball_bearing", "none")}
+    del bearing["axial_force_absorption"]
+    made = next(one for one in imported(file).document["bearing"] if one["name"] == "6205")
+    taken = {key: value for key, value in made["stiffness"]["rolling"].items() if key in ("arrangement", "carries")}
+    assert taken == ({"arrangement": "back to back"} if rows else {"carries": "+z"})
+    (assumed,) = [note for note in imported(file).notes if words in str(note)]
+    about = f'rolling_bearing_with_catalog_geometry {file.number("6205")} "6205"'
+    assert (assumed.about, assumed.at[:1]) == (about, ("bearing",))
     for other in (file, planetary_stage()):
-        components = read_content(other.xml()).components
-        labels = tuple(component.label for component in components.values())
-        for note in imported(other).notes:
-            assert not note.text.startswith(labels), note
+        labels = tuple(component.label for component in read_content(other.xml()).components.values())
+        assert not [note for note in imported(other).notes if note.text.startswith(labels)]
