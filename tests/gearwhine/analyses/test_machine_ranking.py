@@ -68,13 +68,18 @@ def test_walls_around_planets_are_ranked_without_lines_and_the_ranking_says_why(
     points = housing.mesh.points
     middle, half = 0.5 * (points.min(axis=0) + points.max(axis=0)), np.array([0.07, 1.0, 0.025])
     inside = (np.abs(points - middle) < half).all(axis=1)
-    walls = {change.parameter: change.rate.velocity for change in wall_changes(housing.housing, box, turning)}
+    changes = wall_changes(housing.housing, box, turning)
+    walls = {change.parameter: change.rate.velocity for change in changes}
     for wall, inner, outer, way in (("bottom wall", 0.02, 0.0, 1.0), ("top wall", 0.13, 0.15, -1.0)):
         for height, speed in ((inner, way), (outer, 0.0)):
             face = inside & (np.abs(points[:, 1] - height) < 1e-9)
             assert face.any()
             moved = walls[wall][face]
             np.testing.assert_allclose(moved, np.tile([0.0, speed, 0.0], (len(moved), 1)), atol=1e-6)
+    # A housing that only shifts carries all along alike, whatever its walls.
+    for change in changes:
+        for port in (*change.bearings.values(), *change.sensors.values()):
+            assert np.abs(port @ np.ones(points.size)).max() < 1e-6
 
 
 @pytest.mark.slow
