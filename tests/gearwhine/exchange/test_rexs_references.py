@@ -31,6 +31,32 @@ def test_a_gear_that_a_coupling_holds_stands_on_the_shaft_of_the_coupling() -> N
     assert imported(file).document["gear"] == expected["gear"]
 
 
+def test_a_brake_on_the_carrier_makes_it_the_fixed_member() -> None:
+    """The ring then turns against the sun, by their teeth alone."""
+    file = planetary_stage()
+    brake, carrier, ring, load = (file.number(name) for name in ("brake", "carrier shaft", "ring shaft", "machine"))
+    places = {
+        (("assembly", brake), ("inner_part", ring), ("outer_part", 2)): ("inner_part", carrier),
+        (("assembly", carrier), ("part", load)): ("assembly", ring),
+    }
+    for relation in file.relations:
+        if (place := places.get(tuple(relation["roles"]))) is not None:
+            relation["roles"] = [(role, place[1] if role == place[0] else number) for role, number in relation["roles"]]
+    file.of(load)["u_coordinate_on_shaft"] = (20.0, "mm")
+    document = imported(file).document
+    assert document["planetary"][0]["fixed"]["member"] == document["planetary"][0]["carrier"]
+
+
+def test_the_load_case_that_is_taken_is_told_where_none_is_chosen() -> None:
+    told = {
+        choice: [note.text for note in case_of(read_content(helical_stage().xml()), "unit.rexs", choice).notes]
+        for choice in ("", "1", "2")
+    }
+    assumed = [text for text in told[""] if text.startswith("2 load cases: the first, load case 1")]
+    assert len(assumed) == 1
+    assert not [text for choice in ("1", "2") for text in told[choice] if "load cases: the first" in text]
+
+
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
