@@ -31,6 +31,17 @@ def test_a_gear_that_a_coupling_holds_stands_on_the_shaft_of_the_coupling() -> N
     assert imported(file).document["gear"] == expected["gear"]
 
 
+def test_teeth_without_a_pressure_angle_have_twenty_degrees() -> None:
+    file, expected = helical_stage(), imported(helical_stage())
+    for component in file.components:
+        component["attributes"].pop("normal_pressure_angle", None)
+    found = imported(file)
+    assert found.document["gear"] == expected.document["gear"]
+    assumed = [str(note) for note in found.notes if note not in tuple(expected.notes)]
+    assert len(assumed) == 2
+    assert all(text.endswith("no normal_pressure_angle: 20 degrees") for text in assumed)
+
+
 def test_a_brake_on_the_carrier_makes_it_the_fixed_member() -> None:
     """The ring then turns against the sun, by their teeth alone."""
     file = planetary_stage()
