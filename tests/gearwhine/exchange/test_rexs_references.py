@@ -31,6 +31,17 @@ def test_a_gear_that_a_coupling_holds_stands_on_the_shaft_of_the_coupling() -> N
     assert imported(file).document["gear"] == expected["gear"]
 
 
+def test_rows_of_numbers_stay_rows() -> None:
+    rows = ((1.5, 2.5), (3.5, 4.5, 5.5))
+    cells = "".join(f"<array>{''.join(f'<c>{number}</c>' for number in row)}</array>" for row in rows)
+    attribute = f'<attribute id="table" unit="mm"><array_of_arrays>{cells}</array_of_arrays></attribute>'
+    text = helical_stage().xml().decode()
+    at = text.index("</component>")
+    found = read_content((text[:at] + attribute + text[at:]).encode())
+    value = found.components[1].attributes["table"].value
+    assert tuple(tuple(map(float, row)) for row in value) == rows
+
+
 def test_teeth_without_a_pressure_angle_have_twenty_degrees() -> None:
     file, expected = helical_stage(), imported(helical_stage())
     for component in file.components:
