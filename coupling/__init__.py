@@ -9,7 +9,8 @@
 - :func:`coupled_modes` finds the complex natural modes, :func:`stability` which of them grow,
   :func:`system_campbell` their course over speed, and :func:`receptance` the frequency response.
 - :func:`simulate` integrates a transient by Newmark's method or by exact exponential steps.
-- :func:`periodic_response` finds the steady state by shooting, :func:`response_curve` its branch over speed.
+- :func:`periodic_response` finds the steady state by shooting, :func:`response_curve` its branch over speed;
+  :func:`settled_response` that of a machine whose carriers turn.
 - :func:`amplitude_spectrum` evaluates signals.
 
 Sub-packages and modules, each of which imports only those before it:
@@ -42,6 +43,7 @@ from gearwhine.coupling.description.gear_train import GivenSpeed as GivenSpeed
 from gearwhine.coupling.description.gear_train import Output as Output
 from gearwhine.coupling.description.parts import Shaft as Shaft
 from gearwhine.coupling.description.parts import ShaftGear as ShaftGear
+from gearwhine.coupling.description.parts import SupportBolt as SupportBolt
 from gearwhine.coupling.description.parts import TorqueSupport as TorqueSupport
 from gearwhine.coupling.description.planet_copies import planet_copies as planet_copies
 from gearwhine.coupling.description.planetary import PlanetarySet as PlanetarySet
@@ -74,6 +76,8 @@ from gearwhine.coupling.machine.speed_profile import SpeedRun as SpeedRun
 from gearwhine.coupling.machine.speed_profile import TorqueLine as TorqueLine
 from gearwhine.coupling.machine_description import Machine as Machine
 from gearwhine.coupling.periodic.continuation import response_curve as response_curve
+from gearwhine.coupling.periodic.settling import SettledMotion as SettledMotion
+from gearwhine.coupling.periodic.settling import settled_response as settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response as periodic_response
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum as amplitude_spectrum
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium as static_equilibrium

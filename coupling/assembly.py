@@ -463,7 +463,12 @@ def _bearing(
     elif bearing.pedestal is not None:
         relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
     elif frames.of(rotor.name) != 0.0 and alike_all_round(mounted):
-        stiffness = stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
+        resting, stiffness = stiffness, stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
+        if speed_range[0] != speed_range[1] and np.any(damping):
+            # The dashpot's part is proportional to the speed of the frame.
+            ends = np.array(speed_range)
+            over_speed = resting + ends[:, None, None] * (stiffness - resting)
+            table = SpeedTable(ends, over_speed, np.stack([damping, damping]))
     nonlinear = None
     if mounted.law is not None:
         moving = axes[np.any(relative[axes] != 0.0, axis=1)]
@@ -485,17 +490,19 @@ def _bearing(
 def _torque_support(
     coordinates: MachineCoordinates, housing: HousingComponent | None, support: TorqueSupport
 ) -> LinearConnector:
-    """Assemble the spring that holds a shaft from rotation against a seat or the ground."""
-    row = coordinates.rotation(support.shaft, support.at)
+    """Assemble the spring or the bolts that hold a shaft from rotation against a seat or the ground."""
+    rotor = coordinates.rotor(support.shaft)
+    rows = coordinates.rows(rotor.name, rotor.motions(support.at))
+    rows = np.vstack([rows[:5], coordinates.rotation(support.shaft, support.at)])
     if support.seat is not None:
         if housing is None or support.seat not in housing.seats:
             raise CouplingError(f"torque support of {support.shaft!r}: no seat {support.seat!r} in the housing")
-        row = row - coordinates.rows(housing.name, housing.seats[support.seat].T[5])
-    if support.stiffness is None:
+        rows = rows - coordinates.rows(housing.name, housing.section_motions(support.seat, rotor.start + support.at))
+    if support.is_rigid:
         raise CouplingError(f"torque support of {support.shaft!r} without a stiffness; expected one [N m/rad]")
-    stiffness = np.array([[support.stiffness]])
+    stiffness = support.stiffness_matrix
     name = f"torque support of {support.shaft}"
-    return LinearConnector(name, row[:, None], stiffness, support.damping_time * stiffness)
+    return LinearConnector(name, rows[support.held_motions].T, stiffness, support.damping_time * stiffness)
 
 
 def _transports(

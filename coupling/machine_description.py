@@ -102,6 +102,7 @@ from gearwhine.coupling.machine.pins import MountedPin, stiff_pin
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.operating_point_search import solve_operating_point
@@ -351,7 +352,7 @@ class Machine:
         """Torque supports with a stiffness; behind a rigid one the shaft swings at twice the limit of its modes."""
         return [
             replace(support, stiffness=self.rotor(shaft.name).polar_inertia * (2.0 * shaft.mode_limit) ** 2)
-            if support.stiffness is None
+            if support.is_rigid
             else support
             for support in self.torque_supports
             for shaft in [self.shaft(support.shaft)]
@@ -838,13 +839,16 @@ class Machine:
         """
         return mesh_error_response(self.assembled, frequencies, mesh=mesh)
 
-    def steady(self, *, tolerance: float = 1e-8) -> PeriodicResponse:
+    def steady(self, *, tolerance: float | None = None) -> PeriodicResponse | SettledMotion:
         """Periodic steady state under the excitation of all meshes and unbalances, by shooting.
+
+        Of a machine whose carriers turn it is the motion that the machine settles in.
 
         Parameters
         ----------
-        tolerance : float
-            Relative tolerance of the state after a period, see :func:`gearwhine.coupling.periodic_response`.
+        tolerance : float, optional
+            Relative tolerance of the state after a period. Default: 1e-8, and 1e-5 where carriers turn; see
+            :func:`gearwhine.coupling.periodic_response` and :func:`gearwhine.coupling.settled_response`.
 
         Raises
         ------
@@ -853,7 +857,10 @@ class Machine:
         PeriodicError
             Where no periodic motion is found.
         """
-        return periodic_response(self.assembled.system, tolerance=tolerance)
+        system = self.assembled.system
+        if circles(system):
+            return settled_response(system) if tolerance is None else settled_response(system, closure=tolerance)
+        return periodic_response(system) if tolerance is None else periodic_response(system, tolerance=tolerance)
 
     def simulate(
         self,

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling import Shaft as Shaft
     from gearwhine.coupling import ShaftForce as ShaftForce
     from gearwhine.coupling import ShaftGear as ShaftGear
+    from gearwhine.coupling import SupportBolt as SupportBolt
     from gearwhine.coupling import TorqueSupport as TorqueSupport
     from gearwhine.coupling import planet_copies as planet_copies
     from gearwhine.coupling.analyses.recording import TransientPlan as TransientPlan
@@ -87,6 +88,7 @@ _HOMES = {
         "Shaft",
         "ShaftForce",
         "ShaftGear",
+        "SupportBolt",
         "TorqueSupport",
         "planet_copies",
     ),

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
+    from gearwhine.variation.statistics import VariedResult
 
 # Tables that a command needs of a case.
 _NEEDS = {
@@ -624,6 +625,61 @@ class CaseStudy(Study):
             progress=self.progress,
         )
 
+    def vary(
+        self,
+        samples: Annotated[int | None, _AtLeastOne] = None,
+        *,
+        indices: bool = False,
+        seed: Annotated[int | None, _NotNegative] = None,
+        folder: str | os.PathLike[str],
+        workers: Annotated[int | None, _AtLeastOne] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> "Result[VariedResult]":
+        """Many gearboxes as production makes them, by the distributions of [variation]: scatter, causes and yield.
+
+        A study in the same folder is resumed, with more gearboxes, too.
+
+        Parameters
+        ----------
+        samples : int, optional
+            Number of gearboxes (default: that of [variation]).
+        indices : bool
+            Find Sobol' indices, the parts of the variance by each input, with their intervals. Of d inputs and n
+            samples, n (d + 2) gearboxes are solved.
+        seed : int, optional
+            Seed of the samples (default: that of [variation]).
+        folder : path
+            Folder of the samples; those that it holds already are not solved again.
+        workers : int, optional
+            Number of processes (default: number of cores).
+        scheduler : str, optional
+            Address of a running Dask scheduler; its workers replace the local ones.
+        fresh : bool
+            Solve again the samples and modes that the folder holds.
+
+        Raises
+        ------
+        CaseError
+            Where a key cannot be varied, or a distribution or a limit cannot be.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.variation_result import solve_variation
+
+        return solve_variation(
+            self.case,
+            self._source,
+            Path(folder),
+            samples=samples,
+            indices=indices,
+            seed=seed,
+            workers=workers,
+            scheduler=scheduler,
+            fresh=fresh or self.fresh,
+            progress=self.progress,
+        )
+
     def export(
         self,
         folder: str | os.PathLike[str],
@@ -672,7 +728,7 @@ class CaseStudy(Study):
         Parameters
         ----------
         file : path
-            File to write, which ends in ``.npz``, ``.pch``, ``.op4`` or ``.mtx``.
+            File to write, which ends in ``.npz``, ``.nc``, ``.pch``, ``.op4`` or ``.mtx``.
 
         Returns
         -------

@@ -169,7 +169,8 @@ def export_rexs(case: Case, target: Path, folder: Path | None = None) -> dict[st
     target : path
         File to write, which ends in ``.rexs``.
     folder : path, optional
-        Results folder; the operating point in it is taken where ``gearwhine load`` solved it of this very case.
+        Results folder; the operating point in it is taken where ``gearwhine load`` solved it of this very case, and the
+        static stiffness of the housing where it holds its modes. That of a reduced housing is always taken.
 
     Returns
     -------
@@ -190,7 +191,7 @@ def export_rexs(case: Case, target: Path, folder: Path | None = None) -> dict[st
     if target.exists():
         raise CaseError([Problem("export --rexs", str(target), "a place where no file of that name stands yet")])
     load = None if folder is None else _solved_load(folder, case)
-    exported = rexs_of(case, load)
+    exported = rexs_of(case, load, _solved_component(case, folder))
     with staging(target.parent, listed=False) as place:  # the file is the user's
         (place / target.name).write_text(exported.xml, encoding="utf-8")
     model = exported.model
@@ -207,6 +208,18 @@ def export_rexs(case: Case, target: Path, folder: Path | None = None) -> dict[st
     }
     add_warnings(document)
     return document
+
+
+def _solved_component(case: Case, folder: Path | None) -> HousingComponent | None:
+    """Return the housing of a case as a component of its machine; None where it would have to be solved first."""
+    from gearwhine.coupling.machine.components import component_of_housing
+    from gearwhine.from_case.reduced_housing import reduced_component
+    from gearwhine.solve.housing_modes import kept_housing
+
+    if case.reduced_housing is not None:
+        return reduced_component(case.reduced_housing, case.input_files)
+    housing = kept_housing(case, folder)
+    return None if housing is None else component_of_housing(housing, participates=False, with_coarser=False)
 
 
 def _solved_load(folder: Path, case: Case) -> Document | None:
@@ -250,7 +263,7 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
     housing : HousingComponent
         The solved housing of the case.
     target : path
-        File to write, ``.npz``, ``.mtx``, ``.op4`` or ``.pch``; the tables stand beside it in a ``.toml`` of its name.
+        File to write, ``.npz``, ``.nc``, ``.mtx``, ``.op4`` or ``.pch``; the tables stand beside it as ``.toml``.
 
     Returns
     -------
@@ -269,9 +282,7 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
 
     refuse_ending(target)
     try:
-        # The rows of files without names are those of whole nodes.
-        named = target.suffix.lower() in (".npz", ".pch")
-        reduced = interface_matrices(housing, with_sensors=named)
+        reduced = interface_matrices(housing)
     except CouplingError as error:
         raise CaseError([Problem("export --reduced", title or str(target), str(error))]) from error
     with staging(target.parent, listed=False) as place:  # the files are the user's
@@ -311,7 +322,7 @@ def reduced_sections(document: Document) -> tuple[Section, ...]:
     nodes = [f"{name}: node {node}" for part in ("seats", "sensors") for name, node in reduced[part].items()]
     left = []
     if reduced["left_out"]:
-        why = "their directions are along no axis, other nodes move them, or the format has whole nodes alone"
+        why = "their directions are along no axis, or other nodes move them"
         left = [f"sensors {', '.join(reduced['left_out'])} are left out: {why}"]
     note = f" mass, stiffness and damping of order {reduced['order']}, supports included, in SI"
     return (Section("Exported", (*nodes, *left), note=note),)

@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import in_thread, uninterrupted
+from gearwhine.numerics.source_digest import source_digest
+from gearwhine.output.files import PRESENTATION, ROOMS
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster, WorkerPlugin
@@ -40,6 +42,28 @@ _FILES, _FILES_OF_WORKER = 20, 12
 def default_workers() -> int:
     """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def code_digest() -> str:
+    """SHA-256 of all our code that makes numbers: points and workers of other code are not used."""
+    return source_digest(*ROOMS, "gearwhine", without=PRESENTATION)
+
+
+class OtherCodeError(RuntimeError):
+    """A worker runs another version of this code."""
+
+
+def require_same_code(code: str) -> None:
+    """Refuse work on a worker whose code is not that of the digest, the caller's: it could give other numbers.
+
+    Raises
+    ------
+    OtherCodeError
+    """
+    if code_digest() != code:
+        raise OtherCodeError(
+            "the worker has another version of gearwhine than the command; install the same one on every worker"
+        )
 
 
 @contextmanager

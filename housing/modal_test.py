@@ -188,9 +188,23 @@ def compare_test(
     return ComparedTest(test, comparison, survey, responses)
 
 
-def comparison_warnings(comparison: Comparison, modes: ModeSet) -> list[ResultWarning]:
-    """Warn of measured modes without a partner, and of pairs that are weak evidence or hang on the mesh."""
+def comparison_warnings(
+    comparison: Comparison, modes: ModeSet, measured: MeasuredModes | None = None
+) -> list[ResultWarning]:
+    """Warn of measured modes without a partner, of pairs that are weak evidence or hang on the mesh, and of edges.
+
+    Measured modes that were identified from responses are cut by an edge of the responses' band where it lies within
+    their half-power width.
+    """
     warnings = _mesh_dependence(comparison, modes)
+    if measured is not None and measured.cut_by_band:
+        cut = [mode + 1 for mode in measured.cut_by_band]
+        listed = ", ".join(f"{number} ({measured.frequencies[number - 1] / _TWO_PI:.5g} Hz)" for number in cut)
+        message = (
+            f"an edge of the measured band cuts the half-power width of measured mode{'s' * (len(cut) > 1)} {listed}, "
+            "whose shape and damping are less sure; responses measured further tell"
+        )
+        warnings.append(warning("edge of the band", message, modes=cut))
     if comparison.unpaired_measured:
         numbers = ", ".join(
             f"{mode.number} ({mode.frequency / _TWO_PI:.5g} Hz)" for mode in comparison.unpaired_measured

@@ -179,6 +179,8 @@ def value_of(hint: Any, link: dict[type[Table], str]) -> Value:
     origin, parts = get_origin(hint), get_args(hint)
     if origin is Annotated:
         for rule in parts[1:]:
+            if rule == get_args(fields.CaseFile)[1]:
+                return Value("file")
             if isinstance(rule, Quantity):
                 return _quantity(rule)
             if isinstance(rule, OverSpeed):

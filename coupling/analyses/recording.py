@@ -309,7 +309,7 @@ def _whole_stretch(
     varies in the record.
     """
     if orders is not None:
-        turns = [abs(float(ratio)) for ratio in machine.speed_ratios.values()]
+        turns = [abs(float(ratio)) for ratio in _felt_turns(machine)]
         whole = whole_period_samples(samples, 1.0 / per_revolution, [*turns, *orders])
         if whole is not None:
             return whole, "uniform"
@@ -318,9 +318,19 @@ def _whole_stretch(
     return whole or samples, "hann"
 
 
+def _felt_turns(machine: CoupledMachine) -> list[Fraction]:
+    """Speeds of the shafts over the leading one's, but for planets.
+
+    A planet's rotation is felt by its unbalance and its teeth alone, which have orders of their own; with it, few
+    records of a planetary set would hold whole periods.
+    """
+    carried = {rotor.name for rotor in machine.rotors if rotor.carrier is not None}
+    return [ratio for name, ratio in machine.speed_ratios.items() if name not in carried]
+
+
 def _period(machine: CoupledMachine, orders: list[float]) -> int | None:
     """Fewest revolutions of the first driver in which all shafts and orders repeat; None where there are none."""
-    whole = math.lcm(*(ratio.denominator for ratio in machine.speed_ratios.values()))
+    whole = math.lcm(*(ratio.denominator for ratio in _felt_turns(machine)))
     for order in orders:
         periods = Fraction(whole * order).limit_denominator(_MOST_TURNS)
         whole *= periods.denominator

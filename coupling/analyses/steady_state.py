@@ -13,6 +13,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
 from gearwhine.coupling.periodic.continuation import ResponseCurve, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response
 from gearwhine.coupling.periodic.superposition import (
     ExcitationGroup,
@@ -56,7 +57,7 @@ class SteadyMotion:
     ----------
     speed : float
         Speed of the first driver's rotor [rad/s].
-    response : PeriodicResponse
+    response : PeriodicResponse or SettledMotion
     histories : Histories
         Histories of one period.
     trusted_limit : float
@@ -66,7 +67,7 @@ class SteadyMotion:
     """
 
     speed: float
-    response: PeriodicResponse
+    response: PeriodicResponse | SettledMotion
     histories: Histories
     trusted_limit: float
     excitation: str = ""
@@ -255,6 +256,9 @@ def solve_steady(
 ) -> SolvedSteady:
     """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
 
+    Where carriers turn, the motion is the one in which the machine settles, see
+    :mod:`gearwhine.coupling.periodic.settling`.
+
     If the common period of all excitations is long, such as that of hunting teeth, each group of excitations has its
     own motion and these are superposed, see :mod:`gearwhine.coupling.periodic.superposition`.
 
@@ -281,6 +285,13 @@ def solve_steady(
     if speed == 0.0:
         raise CouplingError("a speed of 0; expected a speed: what stands still has no motion that repeats")
     progress("compiling the search for periodic motions (the first time takes longer)")
+    if circles(machine.system):
+        if over_speed is not None:
+            raise CouplingError(_NO_BRANCH_OF_CARRIERS)
+        settled = settled_response(
+            machine.system, progress=lambda fraction: progress("settling in a motion that repeats", fraction)
+        )
+        return SolvedSteady(machine, (_motion(machine, speed, settled),))
     groups = () if exact else excitation_groups(machine.system)
     if len(groups) > 1 and over_speed is not None:
         cycles = common_cycles(machine.system)
@@ -349,6 +360,10 @@ def _loudest(machine: CoupledMachine, curve: ResponseCurve, rms: dict[str, Float
             )
 
 
+_NO_BRANCH_OF_CARRIERS = (
+    "expected one speed of a machine whose carriers turn: its motion is settled in time, which no branch follows; "
+    "`gearwhine sweep` solves speed by speed; or leave --curve out"
+)
 _NO_BRANCH = (
     "excitations with a short common period, for a branch over speed follows one periodic motion; theirs {}; "
     "`gearwhine sweep` solves speed by speed, and names the peaks between them; or leave unbalance, runout or a stage "
@@ -381,7 +396,7 @@ def _superposed(
     return SolvedSteady(machine, motions, superposed=superposed)
 
 
-def _motion(machine: CoupledMachine, speed: float, response: PeriodicResponse) -> SteadyMotion:
+def _motion(machine: CoupledMachine, speed: float, response: PeriodicResponse | SettledMotion) -> SteadyMotion:
     """Motion of a machine at its speed; it carries some harmonics of the meshes where no housing limits the model."""
     limit = _HARMONICS * max((abs(contact.mesh_frequency) for contact in machine.system.contacts), default=250.0)
     if machine.housing is not None and machine.housing.complete_below is not None:

@@ -284,9 +284,9 @@ def linear_part(
         free = np.linalg.svd(within)[2][-1]
         if abs(free @ resisting @ free) <= _NO_WORK * np.linalg.norm(resisting @ free):
             raise PeriodicError(
-                "the train's own turning meets Coriolis forces of planets that circle, so that it has no mean that the "
-                "periodic response could start from; integrate in time by Newmark's method until the motion is steady "
-                "(`run`), or take the linear lines (`system`)"
+                "the train's own turning meets Coriolis forces of planets that circle, so that it has no mean that "
+                "shooting could start from; settled_response finds the motion in which such a machine settles "
+                "(`steady`)"
             )
         raise PeriodicError(
             "a motion has no stiffness but meets damping, or a contact that is apart in the mean: nothing says where "

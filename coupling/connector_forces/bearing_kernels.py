@@ -220,6 +220,20 @@ def bearing_force(
     return energy - preload * q[2], slope
 
 
+@inner()
+def _linear_law(linear: FloatArray, delta: FloatArray, force: FloatArray, tangent: FloatArray) -> float:
+    """Force -K δ (d,) of a law without rolling elements, and its tangent; returns its energy -½ δᵀ K δ [J]."""
+    energy = 0.0
+    for i in range(delta.size):
+        value = 0.0
+        for j in range(delta.size):
+            value += linear[i, j] * delta[j]
+            tangent[i, j] = -linear[i, j]
+        force[i] = -value
+        energy -= 0.5 * delta[i] * value
+    return energy
+
+
 @uncounted()
 def evaluate_bearings(
     bearings: Bearings,
@@ -239,6 +253,15 @@ def evaluate_bearings(
     q, push, tangent = room[1], room[2], room[3:]
     for number in range(bearings.preload.size):
         first, end = bearings.first[number], bearings.first[number + 1]
+        if bearings.first_row[number] == bearings.first_row[number + 1] and bearings.preload[number] == 0.0:
+            energy = _linear_law(
+                bearings.linear[number],
+                delta[offset + first : offset + end],
+                force[offset + first : offset + end],
+                tangents[number],
+            )
+            room[BEARING_ENERGY] += energy
+            continue
         for i in range(5):
             q[i] = bearings.fixed[number, i]
         for k in range(first, end):

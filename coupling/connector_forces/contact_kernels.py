@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.bearing_kernels import evaluate_bearings
-from gearwhine.coupling.connector_forces.dense_kernels import solve_in_place
+from gearwhine.coupling.connector_forces.dense_kernels import largest_row_sum, project, solve_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Bearings, Contacts, Scratch
 from gearwhine.coupling.gears.contact.tooth_force_kernels import (
     friction_shares,
@@ -247,14 +247,11 @@ def solve_contact_forces(
         last, change = push[j], push[j] - scratch.push_before[j]
         push[j] += 2.0 * change - scratch.push_change[j]
         scratch.push_before[j], scratch.push_change[j] = last, change
-    most = 0.0
+    of_deflections, yielded = flexibility[:u], scratch.yielded
+    most = largest_row_sum(of_deflections)
+    project(of_deflections, push, yielded)
     for k in range(u):
-        delta[k] = free[k]
-        total = 0.0
-        for j in range(directions):
-            delta[k] -= by_displacement * flexibility[k, j] * push[j]
-            total += abs(flexibility[k, j])
-        most = max(most, total)
+        delta[k] = free[k] - by_displacement * yielded[k]
     for _ in range(_NEWTON_STEPS):
         for k in range(with_rates):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
@@ -262,10 +259,9 @@ def solve_contact_forces(
         if damped:
             _add_damping_tangents(bearings, per, tangents)
         largest, scale = 0.0, 1e-300
+        project(of_deflections, push, yielded)
         for k in range(u):
-            residual[k, 0] = free[k] - delta[k]
-            for j in range(directions):
-                residual[k, 0] -= by_displacement * flexibility[k, j] * push[j]
+            residual[k, 0] = free[k] - delta[k] - by_displacement * yielded[k]
             scale = max(scale, abs(free[k]) + abs(delta[k]))
             largest = max(largest, abs(residual[k, 0]))
         if largest <= _CONVERGED * scale:
@@ -280,16 +276,16 @@ def solve_contact_forces(
                         flexibility[k, row] * (drag[j, 0] + drag[j, 2] * per)
                         + flexibility[k, row + 1] * (drag[j, 1] + drag[j, 3] * per)
                     )
-            for number in range(bearings.preload.size):
-                first, end = bearings.first[number], bearings.first[number + 1]
-                for j in range(first, end):
-                    jacobian[k, c + j] = 0.0
-                for i in range(first, end):
-                    flexible = flexibility[k, c + i]
-                    for j in range(first, end):
-                        jacobian[k, c + j] += flexible * tangents[number, i - first, j - first]
-                for j in range(first, end):
-                    jacobian[k, c + j] *= by_displacement
+        for number in range(bearings.preload.size):
+            among = slice(c + bearings.first[number], c + bearings.first[number + 1])
+            flexible, columns, tangent = of_deflections[:, among], jacobian[:, among], tangents[number]
+            for k in range(u):
+                for j in range(columns.shape[1]):
+                    value = 0.0
+                    for i in range(columns.shape[1]):
+                        value += flexible[k, i] * tangent[i, j]
+                    columns[k, j] = by_displacement * value
+        for k in range(u):
             jacobian[k, k] += 1.0
         solve_in_place(jacobian, residual)
         farthest = 0.0

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from gearwhine.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 # Sums may be taken in any order, so that they vectorise; the compiled order is always the same.
 SUMS = {"reassoc", "contract", "nsz"}
@@ -25,6 +26,29 @@ def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
         for i in range(rows.shape[1]):
             value += rows[j, i] * x[i]
         out[j] = value
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def project_spans(rows: FloatArray, spans: IntArray, x: FloatArray, out: FloatArray) -> None:
+    """Multiply rows (k, n) that are zero outside their spans (k, 2) with x (n,) into ``out`` (k,)."""
+    for j in range(rows.shape[0]):
+        row, part = rows[j, spans[j, 0] : spans[j, 1]], x[spans[j, 0] : spans[j, 1]]
+        value = 0.0
+        for i in range(row.size):
+            value += row[i] * part[i]
+        out[j] = value
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def largest_row_sum(rows: FloatArray) -> float:
+    """Largest sum of absolute values of a row."""
+    largest = 0.0
+    for j in range(rows.shape[0]):
+        value = 0.0
+        for i in range(rows.shape[1]):
+            value += abs(rows[j, i])
+        largest = max(largest, value)
+    return largest
 
 
 @inner(fastmath={"contract"}, forceinline=True)
@@ -66,12 +90,14 @@ def solve_part_in_place(matrix: FloatArray, right: FloatArray, n: int, columns: 
                 matrix[column, j], matrix[pivot, j] = matrix[pivot, j], matrix[column, j]
             for j in range(columns):
                 right[column, j], right[pivot, j] = right[pivot, j], right[column, j]
+        upper = matrix[column, column:n]
         for row in range(column + 1, n):
-            factor = matrix[row, column] / matrix[column, column]
+            lower = matrix[row, column:n]
+            factor = lower[0] / upper[0]
             if factor == 0.0:
                 continue
-            for j in range(column, n):
-                matrix[row, j] -= factor * matrix[column, j]
+            for j in range(lower.size):
+                lower[j] -= factor * upper[j]
             for j in range(columns):
                 right[row, j] -= factor * right[column, j]
     for row in range(n - 1, -1, -1):

@@ -94,6 +94,7 @@ class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
     direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included; (m, n) their columns where they turn
+    spans: IntArray  # (m, 2) first coordinate of each row of ``direction`` that is not zero, and the one after its last
     law: FloatArray  # numbers of all laws, one after another: `gearwhine.coupling.gears.contact.lookup_tables`
     law_at: IntArray  # (c,) offset of the law of each contact
     shares_at: IntArray  # (c,) offset of the friction law of each contact; -1 where lines of contact slide as one
@@ -180,6 +181,7 @@ class Scratch(NamedTuple):
     dq: FloatArray  # (m,) dq to dv_free: projections Dᵀ of q, v, a, q*, v*, and q and v without the laws' forces
     dv: FloatArray  # (m,)
     da: FloatArray  # (m,)
+    da_before: FloatArray  # (m,) at the step's start
     dq_predicted: FloatArray  # (m,)
     dv_predicted: FloatArray  # (m,)
     dq_free: FloatArray  # (m,)
@@ -212,6 +214,7 @@ class Scratch(NamedTuple):
     drag: FloatArray  # (c, 4) slopes of friction
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
+    yielded: FloatArray  # (e + c,) flexibility times the forces of the laws
     stiffest: FloatArray  # (1,): `gearwhine.coupling.connector_forces.contact_kernels._stiffest`
     tangents: FloatArray  # (b, 5, 5) of bearings
     bearing_work: FloatArray  # (8, 5): `gearwhine.coupling.connector_forces.bearing_kernels.evaluate_bearings`
@@ -228,6 +231,9 @@ class Outputs(NamedTuple):
     displacement: FloatArray  # (k0, n)
     velocity: FloatArray  # (k1, n)
     acceleration: FloatArray  # (k2, n)
+    displacement_spans: IntArray  # (k0, 2) first coordinate of each row, and the one after its last; likewise below
+    velocity_spans: IntArray  # (k1, 2)
+    acceleration_spans: IntArray  # (k2, 2)
 
 
 class Samples(NamedTuple):
@@ -241,6 +247,15 @@ class Samples(NamedTuple):
     acceleration: FloatArray  # (samples, k2)
     compression: FloatArray  # (samples, c)
     force: FloatArray  # (samples, c)
+
+
+def spans(rows: FloatArray) -> IntArray:
+    """First number that is not zero in each row, and the one after its last, shape (k, 2); zeros of a zero row."""
+    moving = rows != 0.0
+    width = rows.shape[1]
+    last = np.where(moving.any(axis=1), width - np.argmax(moving[:, ::-1], axis=1), 0) if width else np.zeros(len(rows))
+    first = np.argmax(moving, axis=1) if width else last
+    return np.column_stack([first, last]).astype(np.int64)
 
 
 def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:

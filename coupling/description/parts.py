@@ -2,8 +2,11 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import hypot, pi
+from math import cos, hypot, pi, sin
 from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
 
 from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, pin_findings, seat_findings
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain, GivenSpeed, Output
@@ -37,6 +40,8 @@ from gearwhine.rotors import Unbalance as ShaftUnbalance
 from gearwhine.rotors.model.loads import Bow
 from gearwhine.rotors.model.profile import StiffnessDiameter
 from gearwhine.rotors.model.shaft import inertia_findings
+
+FloatArray = npt.NDArray[np.float64]
 
 LATERAL_LIMIT_HZ = 8000.0
 """Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
@@ -223,8 +228,58 @@ class ShaftGear:
 
 
 @dataclass(frozen=True)
+class SupportBolt:
+    """A bolt, pin or bush of a torque support, on a circle about the shaft's axis.
+
+    Attributes
+    ----------
+    radius : float
+        Distance from the axis [m].
+    angle : float
+        Angle from x about the axis [rad].
+    tangential, radial, axial : float
+        Stiffness along the circle, outwards and along z [N/m].
+    """
+
+    radius: float
+    angle: float
+    tangential: float
+    radial: float = 0.0
+    axial: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check that all are numbers."""
+        stiffness = Number(at_least=0.0, unit="N/m")
+        rules: dict[str, Rule] = {
+            "radius": Number(above=0.0, unit="m"),
+            "angle": Number(unit="rad"),
+            "tangential": Number(above=0.0, unit="N/m"),
+            "radial": stiffness,
+            "axial": stiffness,
+        }
+        refuse(attribute_findings(("support bolt", ""), self, **rules), CouplingError)
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """Stiffness radially, tangentially and axially, shape (3,) [N/m]."""
+        return np.array([self.radial, self.tangential, self.axial])
+
+    @property
+    def motions(self) -> FloatArray:
+        """Motion of the bolt outwards, along the circle and along z by that of the section, shape (3, 6).
+
+        A section that moves by d and turns by θ moves its point p by d + θ × p.
+        """
+        c, s, r = cos(self.angle), sin(self.angle), self.radius
+        return np.array([[c, s, 0, 0, 0, 0], [-s, c, 0, 0, 0, r], [0, 0, 1, r * s, -r * c, 0]], dtype=np.float64)
+
+
+@dataclass(frozen=True)
 class TorqueSupport:
     """A support that holds a shaft from turning, such as the spline or the bolts of a ring gear.
+
+    A support by bolts holds the section in all directions in which they are stiff: unequal ones couple its rotation
+    with its shift and tilt.
 
     Attributes
     ----------
@@ -233,11 +288,13 @@ class TorqueSupport:
     at : float
         Distance from the shaft's left end [m].
     stiffness : float, optional
-        Torque about z over rotation [N m/rad]; None: rigid.
+        Torque about z over rotation [N m/rad]; None: rigid, or that of the bolts.
     seat : str, optional
         Seat of the housing that takes the torque; None: the ground.
     damping_time : float
         Damping over stiffness [s].
+    bolts : sequence of SupportBolt
+        Bolts in place of a stiffness.
     """
 
     shaft: str
@@ -245,9 +302,11 @@ class TorqueSupport:
     stiffness: float | None = None
     seat: str | None = None
     damping_time: float = 0.0
+    bolts: Sequence[SupportBolt] = ()
 
     def __post_init__(self) -> None:
         """Check every number; "ground", the word of a case, is no seat."""
+        keep_tuples(self, "bolts")
         if self.seat == "ground":
             object.__setattr__(self, "seat", None)
         rules: dict[str, Rule] = {
@@ -257,7 +316,29 @@ class TorqueSupport:
             "seat": Text(optional=True),
             "damping_time": Number(at_least=0.0, unit="s"),
         }
-        refuse(attribute_findings(("torque support", str(self.shaft)), self, **rules), CouplingError)
+        part = ("torque support", str(self.shaft))
+        findings = [*attribute_findings(part, self, **rules), *kind_findings(part, self, bolts=SupportBolt)]
+        if self.bolts and self.stiffness is not None:
+            findings.append(Finding(part, "stiffness", self.stiffness, "none beside bolts, which have their own"))
+        refuse(findings, CouplingError)
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether it has neither a stiffness nor bolts."""
+        return self.stiffness is None and not self.bolts
+
+    @property
+    def held_motions(self) -> list[int]:
+        """Motions of the section that it resists, among x, y, z and the rotations about them (0 to 5)."""
+        return list(range(6)) if self.bolts else [5]
+
+    @property
+    def stiffness_matrix(self) -> FloatArray:
+        """Stiffness over these motions: Σ Bᵀ k B of the bolts' motions B."""
+        if not self.bolts:
+            return np.array([[self.stiffness or 0.0]])
+        parts = [bolt.motions.T @ (bolt.stiffness[:, None] * bolt.motions) for bolt in self.bolts]
+        return np.asarray(sum(parts), dtype=np.float64)
 
 
 class MachineParts(Protocol):
@@ -559,6 +640,39 @@ def carrier_findings(machine: MachineParts) -> Iterator[Finding]:
                 yield Finding(("shaft", side.name), "axis", side.axis, expected)
 
 
+def rim_findings(shaft: Shaft, gears: Sequence[ShaftGear], rings: Sequence[str]) -> Iterator[Finding]:
+    """Yield a seat for the rim of a ring gear that has no bore to follow, and rims and seats that miss each other.
+
+    Parameters
+    ----------
+    shaft : Shaft
+    gears : sequence of ShaftGear
+        Gears on it.
+    rings : sequence of str
+        Seats of the housing with ``ring_orders``.
+    """
+    part, seat = ("shaft", shaft.name), shaft.rim_seat
+    if seat is not None and seat not in rings:
+        names = ", ".join(map(repr, rings)) or "none"
+        expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
+        yield Finding(part, "rim_seat", seat, expected)
+    if seat is not None and not any(mounted.gear.is_internal for mounted in gears):
+        yield Finding(part, "rim_seat", seat, "None: no ring gear on this shaft, whose rim would follow the bore")
+    for mounted in gears:
+        support = mounted.gear.ring_support
+        if support is None:
+            continue
+        if seat is not None and support.kind in ("springs", "bolts", "pins"):
+            expected = f'a ring_support of the housing, as the rim follows the bore of "{seat}"'
+            yield Finding(("gear", mounted.name), "ring_support", support.kind, expected)
+        if seat is None and support.kind == "housing":
+            expected = (
+                f'a rim_seat of "{shaft.name}", the seat whose bore the rim is to follow; without one the '
+                "outside of the ring is clamped to its shaft, and the bore's deformation is left out"
+            )
+            yield Finding(("gear", mounted.name), "ring_support", support.kind, expected, "warning")
+
+
 def bearing_findings(machine: MachineParts, housing: HousingComponent | None) -> Iterator[Finding]:
     """Yield bearings and supports in seats that the housing does not have or that they miss, and pedestals in seats.
 
@@ -573,17 +687,7 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
     shafts = {shaft.name: shaft for shaft in machine.shafts}
     rings = () if housing is None else tuple(housing.ring_motions)
     for shaft in machine.shafts:
-        if shaft.rim_seat is not None and shaft.rim_seat not in rings:
-            names = ", ".join(map(repr, rings)) or "none"
-            expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
-            yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
-        for on_it in machine.gears:
-            rim = on_it.gear.ring_support
-            if shaft.rim_seat is None or on_it.shaft != shaft.name or rim is None:
-                continue
-            if rim.kind in ("springs", "bolts", "pins"):
-                expected = f'a ring_support of the housing, as the rim follows the bore of "{shaft.rim_seat}"'
-                yield Finding(("gear", on_it.name), "ring_support", rim.kind, expected)
+        yield from rim_findings(shaft, [gear for gear in machine.gears if gear.shaft == shaft.name], rings)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:

@@ -284,6 +284,13 @@ def _ring_fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]
                 f"a ring around its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the ring a tip circle of "
                 f"{in_mm(-2.0 * gear.tip_radius)}"
             )
+            if inner > -gear.root_circle_radius:
+                # A sleeve around the ring: it is the rim that stands in it.
+                expected += (
+                    f"; or a sleeve around the ring, whose bore of {in_mm(2.0 * inner)} leaves room for a rim of "
+                    f"{in_mm(inner + gear.root_circle_radius)} at most behind the root circle of "
+                    f"{in_mm(-2.0 * gear.root_circle_radius)}; this one reaches to {in_mm(2.0 * gear.outer_radius)}"
+                )
             yield Finding(("gear", gear.name), "at", None, expected)
             return
 

@@ -1,12 +1,11 @@
 """Sidebands of mesh harmonics by planet carriers: lines n f_m + k f_c of a machine whose directions turn, by name.
 
 The meshes of planets circle with their carrier at f_c. A sensor that stands still sees the motion at the harmonic n of
-their mesh frequency f_m, in the carrier's frame, at all n f_m + k f_c
-(:mod:`gearwhine.coupling.linear.turning_response`). Each planet moves the sensor alike, but by its angle ψ and its mesh
-phase γ earlier or later: equal planets add with the phases n γ + k ψ, so that of N planets at equal angles every N-th
-line stays and the others are suppressed (McFadden & Smith, Proc. IMechE C 199, 65, 1985). Errors, loads and stiffness
-that differ between planets leave a part of them. How far a line is suppressed is measured here, as the size of the
-housing's motion by all meshes over the sum of its sizes by each alone.
+their mesh frequency f_m, in the carrier's frame, at n f_m + k f_c. How large k is follows from what turns: a shaft in a
+housing of rigid bores has k = ±1, the rim of a ring that follows a bore by its orders up to m has k = ±m, and parts
+that hand a motion on to each other have sums of these (:mod:`gearwhine.coupling.linear.turning_response`, which all
+analyses follow). Equal planets add in some of the lines and cancel in the others
+(:mod:`gearwhine.coupling.linear.planet_phasing`); errors, loads and stiffness that differ between planets leave a part.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.linear.planet_phasing import PlanetPhasing
 from gearwhine.coupling.linear.turning_response import Order, TurningResponse
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
@@ -30,10 +30,6 @@ ComplexArray = npt.NDArray[np.complex128]
 LINE_KINDS = ("mesh harmonic", "planet pass", "carrier sideband")
 """Kinds of lines by their place beside a mesh harmonic."""
 
-SUPPRESSED = 0.05
-"""Part of the sum of the sizes by each mesh alone below which a line is suppressed by phasing."""
-
-_WHOLE = 1e-6  # distance from a whole number of turns that is rounding
 _SAME_SPEED = 1e-9  # relative difference of speeds that are one
 
 
@@ -46,21 +42,20 @@ class Sideband:
     turns : tuple of (str, float)
         Carriers by whose turns the line's frequency differs from the excitation's, and their numbers; none of the
         excitation's own frequency.
-    planets : tuple of int
-        Number of planets of each of these carriers.
+    ideal : float or None
+        Phasing of equal planets in the line: 1 where they add, 0 where they cancel, None where neither follows from
+        their angles and teeth alone, or the excitation is no mesh.
     """
 
     turns: tuple[tuple[str, float], ...] = ()
-    planets: tuple[int, ...] = ()
+    ideal: float | None = None
 
     @property
     def kind(self) -> str:
-        """One of `LINE_KINDS`: a planet pass is off by whole multiples of the planets' passing."""
+        """One of `LINE_KINDS`: in a planet pass, off the harmonic, equal planets add."""
         if not self.turns:
             return "mesh harmonic"
-        passes = [number / count for (_, number), count in zip(self.turns, self.planets, strict=True)]
-        whole = all(abs(one - round(one)) < _WHOLE for one in passes)
-        return "planet pass" if whole else "carrier sideband"
+        return "planet pass" if self.ideal == 1.0 else "carrier sideband"
 
     @property
     def words(self) -> str:
@@ -94,17 +89,31 @@ class CarrierSidebands:
         speeds = frame_speeds(machine.rotors, machine.bearings, machine.meshes, machine.speeds)
         return Frames(machine.system.components, speeds)
 
-    def sideband(self, order: Order) -> Sideband:
-        """Name an order by the carriers that turn at its rates."""
+    @cached_property
+    def planets(self) -> PlanetPhasing:
+        """Phasing of the planets."""
+        return PlanetPhasing(self.machine)
+
+    def sideband(self, order: Order, cause: tuple[int, int] | None = None) -> Sideband:
+        """Name an order by the carriers that turn at its rates.
+
+        Parameters
+        ----------
+        order : Order
+        cause : tuple of (int, int), optional
+            Number of the contact whose mesh harmonic the line is off, and that harmonic; by default no mesh.
+        """
         turns: list[tuple[str, float]] = []
-        planets = []
         for number, rate in zip(order, self.model.rates, strict=True):
-            if number == 0:
-                continue
-            carrier, turn = self._carrier(rate)
-            turns.append((carrier, round(number * turn, 9)))
-            planets.append(max(1, sum(rotor.carrier == carrier for rotor in self.machine.rotors)))
-        return Sideband(tuple(turns), tuple(planets))
+            if number != 0:
+                carrier, turn = self._carrier(rate)
+                turns.append((carrier, round(number * turn, 9)))
+        return Sideband(tuple(turns), None if cause is None else self.planets.ideal(*cause, dict(turns)))
+
+    @property
+    def followed(self) -> tuple[Sideband, ...]:
+        """Sidebands that an excitation has, but for its own frequency."""
+        return tuple(self.sideband(order) for order in self.model.orders if order != self.model.still)
 
     def _carrier(self, rate: float) -> tuple[str, float]:
         """Name of the carrier whose turns make a rate, and the number of turns that the rate is."""
@@ -132,7 +141,19 @@ class CarrierSidebands:
         return self.model.respond(frequency, [(load, {}) for load in loads])
 
 
-def phasing(parts: ComplexArray) -> float:
-    """Size of the sum of motions (i, n) over the sum of their sizes; 1 where nothing moves."""
-    sizes = float(np.linalg.norm(parts, axis=1).sum())
-    return float(np.linalg.norm(parts.sum(axis=0))) / sizes if sizes > 0.0 else 1.0
+def forced_sidebands(machine: CoupledMachine) -> tuple[Sideband, ...]:
+    """Sidebands that a machine's turning frames and bores give each excitation; none where no directions turn."""
+    if not machine.system.turns:
+        return ()
+    # Which orders there are follows from the directions alone, at any stiffness of the contacts.
+    apart = np.zeros(len(machine.system.contacts))
+    return CarrierSidebands(machine, ContactState(apart, apart)).followed
+
+
+def farthest_turns(sidebands: Sequence[Sideband]) -> dict[str, float]:
+    """Largest number of turns of each carrier among some sidebands."""
+    farthest: dict[str, float] = {}
+    for one in sidebands:
+        for carrier, number in one.turns:
+            farthest[carrier] = max(farthest.get(carrier, 0.0), abs(number))
+    return farthest

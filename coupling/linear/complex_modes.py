@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from gearwhine.coupling.linear.frozen_directions import FROZEN_MODES, frozen_warnings
+from gearwhine.coupling.linear.modal_superposition import SUM_RULE
 from gearwhine.coupling.linear.planetary_modes import planetary_kinds
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
@@ -200,6 +201,11 @@ class ModesCertificate:
     zeros: int
     max_residual: float
     sum_rule: float
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all eigenvalues are there, and the sum rule proves each of them to be there once."""
+        return self.found == self.expected and self.sum_rule <= SUM_RULE
 
 
 @dataclass(frozen=True)

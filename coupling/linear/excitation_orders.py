@@ -13,6 +13,7 @@ from typing import Literal
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.carrier_sidebands import Sideband
 from gearwhine.coupling.machine.base_motion import BaseHarmonic
 from gearwhine.coupling.machine.driving_frequencies import element_passes as passing_frequencies
 from gearwhine.coupling.machine.loads import TorqueRipple
@@ -42,7 +43,7 @@ class ExcitationLine:
     name: str
     kind: Literal["shaft", "mesh", "sideband", "bearing", "load"]
     order: float
-    steps: int = 0
+    steps: float = 0
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ def excitation_lines(
     element_passes: Sequence[int] = (),
     load_multiples: Sequence[int] = (),
     excited: Mapping[str, ExcitedOrders] | None = None,
+    by_carriers: Sequence[Sideband] | None = None,
 ) -> tuple[ExcitationLine, ...]:
     """Orders of all shafts, meshes and rolling elements in motion; shafts of equal speed share a line.
 
@@ -95,6 +97,10 @@ def excitation_lines(
     excited : mapping of str to ExcitedOrders, optional
         Rotations that something excites, see :func:`excited_shaft_orders`: only their orders and sidebands are listed,
         those by a gear and by its carrier together among them. By default those of each rotor alone are.
+    by_carriers : sequence of Sideband, optional
+        Sidebands that each excitation has by the turning of carriers, as of
+        :func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`; those of the mean load are orders of the
+        carriers. By default each mesh of planets has ``sidebands`` by its own carrier.
 
     Raises
     ------
@@ -116,6 +122,14 @@ def excitation_lines(
             names = [name for name in together_names if excited is None or _holds(excited, name, multiple)]
             if names:
                 lines.append(ExcitationLine(f"{multiple:g}× {', '.join(names)}", "shaft", multiple * ratios[names[0]]))
+    by_turning: list[_Steps] = [
+        [(carrier, abs(speeds[carrier]) / leading, number) for carrier, number in one.turns]
+        for one in by_carriers or ()
+    ]
+    for parts in by_turning:
+        order = sum(number * ratio for _, ratio, number in parts)
+        if order > _STANDSTILL:
+            lines.append(ExcitationLine(_in_words(parts).removeprefix("+ "), "shaft", order))
     loads = tuple(_harmonic_loads(machine, leading)) if load_multiples else ()
     lines += [
         ExcitationLine(f"{multiple}× {name}", "load", multiple * order)
@@ -134,20 +148,23 @@ def excitation_lines(
             if ratio > 0.0 and (excited is None or rotor in excited or in_carrier(rotor, mesh, frame) in excited)
         }
         modulations = [*shafts.values(), *loads]
-        steps = [[(source, ratio, number)] for source, ratio in modulations for number in _signed(sidebands)]
-        if frame != 0.0 and mesh.carrier is not None:
-            # A mesh that circles modulates what stands still, whatever the quality of its teeth.
-            passing = [(mesh.carrier, abs(frame) / leading, number) for number in _signed(sidebands)]
-            both = [] if excited is None else [[*of_gear, by] for of_gear in steps for by in passing]
-            steps = [*([by] for by in passing), *steps, *(of for of in both if _count(of) <= sidebands)]
+        steps: list[_Steps] = [
+            [(source, ratio, number)] for source, ratio in modulations for number in _signed(sidebands)
+        ]
+        # A mesh that circles modulates what stands still, whatever the quality of its teeth.
+        passing = by_turning
+        if by_carriers is None and frame != 0.0 and mesh.carrier is not None:
+            passing = [[(mesh.carrier, abs(frame) / leading, number)] for number in _signed(sidebands)]
+        both = [] if excited is None else [[*of_gear, *by] for of_gear in steps for by in passing]
+        farthest = max([sidebands, *(_count(by) for by in by_turning)])
+        steps = [*passing, *steps, *(of for of in both if _count(of) <= farthest)]
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
             for parts in steps:
                 # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
                 order = abs(harmonic * teeth + sum(number * ratio for _, ratio, number in parts))
                 if order > _STANDSTILL * teeth:
-                    words = [f"{'-' if number < 0 else '+'} {abs(number)}× {source}" for source, _, number in parts]
-                    text = " ".join([f"{harmonic}× {name}", *words])
+                    text = f"{harmonic}× {name} {_in_words(parts)}"
                     lines.append(ExcitationLine(text, "sideband", order, _count(parts)))
     lines += [
         ExcitationLine(f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading)
@@ -158,9 +175,10 @@ def excitation_lines(
     return tuple(lines)
 
 
-def meshes_of_planets(carrier: str) -> str:
-    """Name of the meshes of all planets on a carrier."""
-    return f"planets' meshes of {carrier}"
+def meshes_of_planets(machine: CoupledMachine, carrier: str) -> str:
+    """Name of the meshes of all planets on a carrier, which is named where the machine has several."""
+    carriers = {mesh.carrier for mesh in machine.meshes if mesh.carrier is not None}
+    return "planets' meshes" if len(carriers) == 1 else f"planets' meshes of {carrier}"
 
 
 def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
@@ -172,12 +190,12 @@ def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
             before, _, after = name.partition(meshes[0])
             alike = [f"{before}{mesh}{after}" for mesh in meshes]
             if all(one in left for one in alike):
-                left[left.index(name)] = f"{before}{meshes_of_planets(carrier)}{after}"
+                left[left.index(name)] = f"{before}{meshes_of_planets(machine, carrier)}{after}"
                 left = [one for one in left if one not in alike]
     return ", ".join(left)
 
 
-_Steps = Sequence[tuple[str, float, int]]
+_Steps = Sequence[tuple[str, float, float]]
 """Causes of a sideband: name, order of its frequency, signed number of the sideband."""
 
 
@@ -185,8 +203,12 @@ def _signed(sidebands: int) -> list[int]:
     return [sign * number for number in range(1, sidebands + 1) for sign in (-1, 1)]
 
 
-def _count(steps: _Steps) -> int:
+def _count(steps: _Steps) -> float:
     return sum(abs(number) for _, _, number in steps)
+
+
+def _in_words(steps: _Steps) -> str:
+    return " ".join(f"{'-' if number < 0 else '+'} {abs(number):g}× {source}" for source, _, number in steps)
 
 
 def in_carrier(rotor: str, mesh: GearMesh, frame: float) -> str:

@@ -31,7 +31,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
     mesh_period_phases,
     transmission_error_phasors,
 )
-from gearwhine.coupling.linear.carrier_sidebands import SUPPRESSED, CarrierSidebands, Sideband, phasing
+from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands, Sideband
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
 from gearwhine.coupling.linear.turning_response import Order
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
@@ -65,8 +65,8 @@ class Response:
     sidebands : tuple of Sideband
         Place of the motion beside the mesh harmonic of each cause; empty of a machine whose directions stand still.
     phasing : float
-        Size of the housing's motion over the sum of its sizes by each mesh alone, see
-        :mod:`gearwhine.coupling.linear.carrier_sidebands`; 1 of a machine whose directions stand still.
+        Size of the housing's motion over the sum of its sizes by the meshes of each planet alone: 1 where planets add,
+        0 where they cancel. 1 of a machine whose directions stand still.
     """
 
     frequency: float
@@ -84,9 +84,32 @@ class Response:
         )
 
     @property
+    def harmonic(self) -> int | None:
+        """Mesh harmonic of all causes; None where they differ."""
+        harmonics = {harmonic for _, harmonic in self.causes}
+        return harmonics.pop() if len(harmonics) == 1 else None
+
+    @property
+    def turns(self) -> dict[str, float] | None:
+        """Turns of carriers by which the line is off the harmonics of all causes; None where they differ."""
+        places = {one.turns for one in self.sidebands}
+        return dict(places.pop()) if len(places) == 1 else None
+
+    @property
+    def ideal_phasing(self) -> float | None:
+        """The phasing, were all planets of a carrier equal: 1 where they add, 0 where they cancel.
+
+        None where neither follows from their angles and teeth alone; of several causes, 0 where all have it.
+        """
+        ideals = [one.ideal for one in self.sidebands]
+        if not ideals or None in ideals:
+            return None
+        return max(ideal for ideal in ideals if ideal is not None)
+
+    @property
     def is_suppressed(self) -> bool:
-        """Whether the meshes nearly cancel each other at the housing."""
-        return self.phasing < SUPPRESSED
+        """Whether equal planets would cancel each other: what the line has is of differences between planets."""
+        return self.ideal_phasing == 0.0
 
     def cause(self, machine: CoupledMachine) -> str:
         """Return the mesh harmonics that drive the line in words, with the turns of carriers that it is off them."""
@@ -117,7 +140,7 @@ def causes_in_words(
         together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(name)
     words = []
     for (harmonic, carrier, off), names in together.items():
-        meshes = names if carrier is None or len(names) == 1 else [meshes_of_planets(carrier)]
+        meshes = names if carrier is None or len(names) == 1 else [meshes_of_planets(machine, carrier)]
         words += [f"{harmonic}× {name}{off}" for name in meshes]
     return words
 
@@ -241,8 +264,8 @@ class MeshHarmonicModel:
                     by_error + by_shuttling,
                     by_error,
                     by_shuttling,
-                    sidebands=(turning.sideband(order),) * count,
-                    phasing=phasing((q[:count] + q[count:])[:, seen]),
+                    sidebands=tuple(turning.sideband(order, cause) for cause in causes),
+                    phasing=turning.planets.solved([number for number, _ in causes], (q[:count] + q[count:])[:, seen]),
                 )
             )
         return lines

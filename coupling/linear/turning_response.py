@@ -9,22 +9,24 @@ that turn, of directions D(t) = Σ D_l e^{i l·f t} and laws φ = k δ + c δ', 
 
 F the loads and e the transmission errors of the connectors that turn. Only the few φ are sought: with the compliances
 D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. Without the connectors that turn, parts of a train turn
-freely: springs κ on these motions are added to Z, and springs -κ to the connectors sought. It is the amplitudes of the
-sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the carrier would put all of them into one
-line.
+freely: at orders where ω_m is all but zero, springs κ on these motions are added to Z, and springs -κ to the connectors
+sought. Z falls into parts that connectors that turn alone couple. Where standing connectors and gyroscopic terms act in
+few directions U of a part beside its diagonal, Z = D + U E Uᵀ, its inverse is that of Sherman, Morrison and Woodbury,
+D⁻¹ - D⁻¹ U (I + E Uᵀ D⁻¹ U)⁻¹ E Uᵀ D⁻¹.
+
+It is the amplitudes of the sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the carrier would
+put all of them into one line.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from gearwhine.coupling.errors import CouplingError, ModesError
-from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState
@@ -46,6 +48,10 @@ _DEPENDENT = 1e-14  # singular value of columns of size one that is rounding
 _RESTRAINT = 17.3  # frequency of a free motion on its spring, over the largest rate
 _FREE_MOTION = 1e-9  # part of the largest stiffness up to which a motion is free
 _STANDSTILL = 1e-9  # part of the largest rate up to which a frequency is zero
+_SLOW = 0.1  # part of the largest rate up to which free motions have springs
+_FEW = 0.4  # part of the coordinates up to which the directions between them are few
+_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
+_NEAR_RESONANCE = 1e-6  # part of its terms to which the dynamic stiffness of one coordinate may cancel
 _SAME_SHIFT = 1e-6  # part of the largest rate by which shifts of one order differ from rounding
 
 
@@ -56,6 +62,88 @@ class _Turning:
     stiffness: FloatArray
     damping: FloatArray
     directions: Mapping[Order, ComplexArray]
+
+
+@dataclass(frozen=True, eq=False)
+class _DynamicStiffness:
+    """Z = K + iω C - ω² I of some coordinates, with diagonals (2, n) of K and C without connectors, (n, n) both."""
+
+    stiffness: FloatArray
+    damping: FloatArray
+    diagonals: FloatArray
+
+    @cached_property
+    def _beside_diagonal(self) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+        """Directions U (n, r) in which K and C act beside the diagonals, and these parts in them; None of many."""
+        matrices = zip((self.stiffness, self.damping), self.diagonals, strict=True)
+        parts = [matrix - np.diag(diagonal) for matrix, diagonal in matrices]
+        scaled = [part / largest for part in parts if (largest := np.abs(part).max(initial=0.0)) > 0.0]
+        if not scaled:
+            none = np.zeros((0, 0))
+            return np.zeros((len(self.stiffness), 0)), none, none
+        left, sizes, _ = np.linalg.svd(np.hstack([half for part in scaled for half in (part, part.T)]))
+        rank = int(np.count_nonzero(sizes > _ROUNDING * sizes[0]))
+        if rank > _FEW * len(left):
+            return None
+        directions = left[:, :rank]
+        return directions, *(directions.T @ part @ directions for part in parts)
+
+    def solve(self, w: complex, loads: FloatArray | ComplexArray) -> ComplexArray:
+        """Coordinates (n, i) under loads (n, i) at a frequency [rad/s]."""
+        terms = self.diagonals[0], 1j * w * self.diagonals[1], -(w**2)
+        diagonal = terms[0] + terms[1] + terms[2]
+        is_clear = np.all(np.abs(diagonal) > _NEAR_RESONANCE * (np.abs(terms[0]) + np.abs(terms[1]) + abs(terms[2])))
+        if self._beside_diagonal is None or not is_clear:
+            dynamic = np.asarray(self.stiffness + 1j * w * self.damping, dtype=np.complex128)
+            dynamic[np.diag_indices(len(dynamic))] -= w**2
+            return np.asarray(np.linalg.solve(dynamic, loads))
+        directions, stiffness, damping = self._beside_diagonal
+        moved = loads / diagonal[:, None]
+        if directions.shape[1]:
+            held = stiffness + 1j * w * damping
+            along = directions / diagonal[:, None]
+            between = np.eye(len(held)) + held @ (directions.T @ along)
+            moved = moved - along @ np.linalg.solve(between, held @ (directions.T @ moved))
+        return np.asarray(moved, dtype=np.complex128)
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Coordinates that connectors that turn alone couple to all others, and the columns that touch them.
+
+    Attributes
+    ----------
+    coordinates : ndarray of int, shape (n,)
+    columns : ndarray of int, shape (c,)
+        Numbers of the columns among all.
+    basis : ndarray, shape (n, r)
+        Basis of the columns: many are sums of others.
+    mix : ndarray of complex, shape (r, c)
+        The columns as sums of the basis.
+    free, restrained : _DynamicStiffness
+        Without the connectors that turn, and with springs on free motions too.
+    """
+
+    coordinates: IntArray
+    columns: IntArray
+    basis: FloatArray
+    mix: ComplexArray
+    free: _DynamicStiffness
+    restrained: _DynamicStiffness
+
+
+@dataclass(frozen=True, eq=False)
+class _Reach:
+    """Columns of a part by which its motion of an order deflects connectors, and by which their forces act on it.
+
+    With each column, a number among those of the part, stands the place of the connector's direction and order among
+    the unknowns: of the order m + l that a motion of m deflects, and of m - l whose force acts on it.
+    """
+
+    seen: IntArray
+    deflected: IntArray
+    acting: IntArray
+    acted: IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,13 +242,6 @@ class TurningResponse:
         return np.concatenate(free_motions, axis=1), (_RESTRAINT * max(self.rates, default=1.0)) ** 2
 
     @cached_property
-    def _constant(self) -> tuple[FloatArray, FloatArray]:
-        """Stiffness and damping without the connectors that turn, with springs on free motions, (n, n) both."""
-        stiffness, damping = self._unrestrained
-        free, spring = self._restraint
-        return stiffness + spring * free @ free.T, damping
-
-    @cached_property
     def _laws(self) -> list[tuple[FloatArray, FloatArray, FloatArray, tuple[TurningPart, ...]]]:
         """Directions at t = 0, stiffness, damping and turning parts of linear connectors, then of contacts."""
         laws = []
@@ -196,11 +277,8 @@ class TurningResponse:
         still = self.still
         found: dict[Order, ComplexArray] = {still: directions.astype(np.complex128)}
         for part in turning:
-            base = next(place for place, rate in enumerate(self.rates) if self._multiple(abs(part.rate), rate))
-            number = self._multiple(abs(part.rate), self.rates[base]) * (1 if part.rate > 0.0 else -1)
             found[still] = found[still] - part.cosine
-            for sense in (1, -1):
-                order = tuple(sense * number if place == base else 0 for place in range(len(self.rates)))
+            for order, sense in self._pair(part):
                 half = np.asarray(0.5 * (part.cosine - 1j * sense * part.sine), dtype=np.complex128)
                 found[order] = found.get(order, np.zeros_like(half)) + half
         return found
@@ -220,43 +298,67 @@ class TurningResponse:
         return np.concatenate(columns, axis=1), orders, np.array(numbers, dtype=np.int64)
 
     @cached_property
-    def _reached(self) -> dict[Order, tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray]]]:
-        """Columns by which a motion of each order deflects connectors, and by which their forces act on it.
+    def _reached(self) -> dict[tuple[Order, bool], list[_Reach]]:
+        """Columns of each part by which motions of an order and connectors meet, with those of free motions or not.
 
-        With each column stands the place of the connector's direction and order among the unknowns, of the order m + l
-        that a motion of m deflects, and of m - l whose force acts on it.
+        Directions of free motions stand still, and meet the motion of their own order alone.
         """
         _, orders, numbers = self._columns
         places = {order: number for number, order in enumerate(self.orders)}
 
-        def reached(order: Order, step: Callable[[Order, Order], Order]) -> tuple[IntArray, IntArray]:
-            found = [(n, places.get(step(order, gap), -1)) for n, gap in enumerate(orders)]
-            columns = np.array([n for n, place in found if place >= 0], dtype=np.int64)
-            at = np.array([place for _, place in found if place >= 0], dtype=np.int64)
-            return columns, at * self._width + numbers[columns]
+        def reached(
+            order: Order, step: Callable[[Order, Order], Order], part: _Part, first: int
+        ) -> tuple[IntArray, IntArray]:
+            meeting = [(n, column) for n, column in enumerate(part.columns.tolist()) if numbers[column] >= first]
+            at = [(n, places.get(step(order, orders[column]), -1)) for n, column in meeting]
+            columns = np.array([n for n, place in at if place >= 0], dtype=np.int64)
+            places_of = np.array([place for _, place in at if place >= 0], dtype=np.int64)
+            return columns, places_of * self._width + numbers[part.columns[columns]]
 
-        return {order: (reached(order, _plus), reached(order, _minus)) for order in self.orders}
+        return {
+            (order, restrained): [
+                _Reach(*reached(order, _plus, part, first), *reached(order, _minus, part, first))
+                for part in self._parts
+            ]
+            for restrained, first in ((True, 0), (False, self._restraint[0].shape[1]))
+            for order in self.orders
+        }
 
     @cached_property
-    def _basis(self) -> tuple[ComplexArray, ComplexArray]:
-        """Basis B (n, r) of the columns and their parts M (r, c): many columns are sums of others."""
+    def _parts(self) -> list[_Part]:
+        """Parts of the machine that connectors that turn alone couple; coordinates without any coupling are one."""
+        stiffness, damping = self._unrestrained
+        free, spring = self._restraint
         columns = self._columns[0]
-        sizes = np.linalg.norm(columns, axis=0)
-        sizes[sizes == 0.0] = 1.0
-        bases, parts = [], []
-        for block in self._blocks:
-            left, values, right = np.linalg.svd(columns[block] / sizes, full_matrices=False)
-            rank = int(np.count_nonzero(values > _DEPENDENT))
-            basis = np.zeros((len(columns), rank), dtype=np.complex128)
-            basis[block] = left[:, :rank]
-            bases.append(basis)
-            parts.append(values[:rank, None] * right[:rank] * sizes)
-        return np.concatenate(bases, axis=1), np.concatenate(parts)
+        blocks = [block for block in self._blocks if block.size > 1]
+        alone = [block for block in self._blocks if block.size == 1]
+        parts = []
+        for block in [*blocks, *([np.concatenate(alone)] if alone else [])]:
+            touching = np.flatnonzero(np.any(columns[block] != 0.0, axis=0))
+            own = columns[np.ix_(block, touching)]
+            sizes = np.linalg.norm(own, axis=0)
+            # With each column its conjugate is one too, so that the real and imaginary parts have no larger span.
+            left, values, _ = np.linalg.svd(np.concatenate([own.real / sizes, own.imag / sizes], axis=1))
+            basis = left[:, : int(np.count_nonzero(values > _DEPENDENT * values.max(initial=0.0)))]
+            square = np.ix_(block, block)
+            diagonals = np.array([np.diag(self.system.own_stiffness)[block], np.diag(self.system.own_damping)[block]])
+            dynamic = _DynamicStiffness(stiffness[square], damping[square], diagonals)
+            restrained = replace(dynamic, stiffness=dynamic.stiffness + spring * free[block] @ free[block].T)
+            parts.append(_Part(block, touching, basis, basis.T @ own, dynamic, restrained))
+        return parts
 
     @cached_property
     def _offsets(self) -> list[Order]:
         """Orders l of the directions."""
-        return sorted({order for one in self._turning for order in one.directions})
+        turning = [*(one.turning for one in self.system.linear), *(one.turning for one in self.system.contacts)]
+        return sorted({self.still, *(order for parts in turning for part in parts for order, _ in self._pair(part))})
+
+    def _pair(self, part: TurningPart) -> Iterator[tuple[Order, int]]:
+        """Yield both orders of a part of directions that turns, each with its sense."""
+        base = next(place for place, rate in enumerate(self.rates) if self._multiple(abs(part.rate), rate))
+        number = self._multiple(abs(part.rate), self.rates[base]) * (1 if part.rate > 0.0 else -1)
+        for sense in (1, -1):
+            yield tuple(sense * number if place == base else 0 for place in range(len(self.rates))), sense
 
     @cached_property
     def _width(self) -> int:
@@ -264,41 +366,11 @@ class TurningResponse:
         return sum(len(one.stiffness) for one in self._turning)
 
     @cached_property
-    def _pairs(self) -> Eigenpairs | None:
-        """Eigenpairs without the connectors that turn; None where they cannot be superposed."""
-        try:
-            pairs = quadratic_eigenpairs(*self._constant)
-        except ModesError:
-            return None
-        return pairs if pairs.sum_rule <= SUM_RULE else None
-
-    def _dynamic(self, w: complex) -> ComplexArray:
-        """Z at a frequency without the connectors that turn, (n, n)."""
-        stiffness, damping = self._constant
-        dynamic = np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
-        dynamic[np.diag_indices(len(dynamic))] -= w**2
-        return dynamic
-
-    @cached_property
     def _blocks(self) -> list[IntArray]:
         """Coordinates of parts that are coupled by connectors that turn alone, or not at all."""
         coupled = sparse.csr_array(np.any([part != 0.0 for part in self._unrestrained], axis=0))
         count, labels = sparse.csgraph.connected_components(coupled, directed=False)
         return [np.flatnonzero(labels == number) for number in range(count)]
-
-    def _moved(self, w: complex, loads: ComplexArray) -> ComplexArray:
-        """Coordinates (n, i) under loads (n, i) at a frequency, without the connectors that turn."""
-        if self._pairs is not None and w != 0.0:
-            return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
-        dynamic, moved = self._dynamic(w), np.zeros(loads.shape, dtype=np.complex128)
-        alone = np.array([block[0] for block in self._blocks if block.size == 1], dtype=np.int64)
-        moved[alone] = loads[alone] / dynamic[alone, alone, None]
-        for block in self._blocks:
-            if block.size == 1:
-                continue
-            pushed = np.flatnonzero(np.any(loads[block] != 0.0, axis=0))
-            moved[np.ix_(block, pushed)] = np.linalg.solve(dynamic[np.ix_(block, block)], loads[np.ix_(block, pushed)])
-        return moved
 
     def mesh_error(self, number: int, frequency: float) -> Excitation:
         """Load of a unit transmission error of a contact at ω [rad/s]: on coordinates by order, or as its own error.
@@ -342,51 +414,65 @@ class TurningResponse:
         unknown = {order for loads, _ in excitations for order in loads} - set(self.orders)
         if unknown:
             raise CouplingError(f"loads of orders {sorted(unknown)}; expected orders among those that are followed")
-        count, width = len(self.orders), self._width
-        law = self._law(frequency)
-        free = np.zeros((count * width, len(excitations)), dtype=np.complex128)
-        between = np.zeros((count * width, count * width), dtype=np.complex128)
         loads = {
             order: np.array([one.get(order, np.zeros(self.system.size)) for one, _ in excitations]).T.astype(complex)
             for order in self.orders
             if any(order in one for one, _ in excitations)
         }
-        # Motions under unit forces along the columns' basis, and under the loads, of each order that is asked for.
-        basis, mix = self._basis
-        rank = basis.shape[1]
-        moved: dict[Order, ComplexArray] = {}
-        asked = set(self.orders if orders is None else orders)
-        for order in self.orders:
-            pushed = np.concatenate([basis, loads[order]], axis=1) if order in loads else basis
-            alone = self._moved(frequency + self.shift(order), pushed)
-            if order in asked:
-                moved[order] = alone
-            # Deflections of all directions; the columns are complex, and not conjugated.
-            seen_by = mix.T @ (basis.T @ alone)
-            # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
-            (seen, deflected), (acting, acted) = self._reached[order]
-            between[np.ix_(deflected, acted)] += seen_by[seen, :rank] @ mix[:, acting]
-            if order in loads:
-                free[deflected] += seen_by[seen, rank:]
-        first = self.orders.index(self.still) * width
-        free[first : first + width] -= np.array([self._error(errors) for _, errors in excitations]).T
-        split = between.reshape(count * width, count, width)
-        matrix = np.einsum("apq,pqr->apr", split, law, optimize=True).reshape(count * width, count * width)
-        matrix += np.eye(count * width)
         scale = max(self.rates, default=0.0)
-        if any(abs(frequency + self.shift(order)) <= _STANDSTILL * scale for order in self.orders):
+        at = {order: frequency + self.shift(order) for order in self.orders}
+        stands = min(map(abs, at.values())) <= _STANDSTILL * scale
+        # Free motions have springs, which are undone, where nothing else but little inertia resists them.
+        is_restrained = {order: bool(stands or abs(w) <= _SLOW * scale) for order, w in at.items()}
+        unknowns, sought = {}, np.full(len(self.orders) * self._width, -1, dtype=np.int64)
+        end = 0
+        for place, order in enumerate(self.orders):
+            free = 0 if is_restrained[order] else self._restraint[0].shape[1]
+            unknowns[order] = slice(end, end + self._width - free)
+            end += self._width - free
+            sought[place * self._width + free : (place + 1) * self._width] = np.arange(end)[unknowns[order]]
+        deflections = np.zeros((end, len(excitations)), dtype=np.complex128)
+        # Transposed: compliances by force and deflection.
+        between = np.zeros((end, end), dtype=np.complex128)
+        # Motions under unit forces along each part's basis, and under the loads, of each order that is asked for.
+        moved: dict[Order, list[ComplexArray]] = {}
+        asked = set(self.orders if orders is None else orders)
+        for order, w in at.items():
+            motions = []
+            for part, reach in zip(self._parts, self._reached[order, is_restrained[order]], strict=True):
+                basis, mix, rank = part.basis, part.mix, part.basis.shape[1]
+                pushed = np.concatenate([basis, loads[order][part.coordinates]], axis=1) if order in loads else basis
+                alone = (part.restrained if is_restrained[order] else part.free).solve(w, pushed)
+                motions.append(alone)
+                # Deflections of all directions; the columns are complex, and not conjugated.
+                seen_by = mix[:, reach.seen].T @ (basis.T @ alone)
+                # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
+                seen = sought[reach.deflected]
+                between[np.ix_(sought[reach.acted], seen)] += (seen_by[:, :rank] @ mix[:, reach.acting]).T
+                if order in loads:
+                    deflections[seen] += seen_by[:, rank:]
+            if order in asked:
+                moved[order] = motions
+        errors = np.array([self._error(errors) for _, errors in excitations]).T
+        deflections[unknowns[self.still]] -= errors[_last(unknowns[self.still], self._width)]
+        for order, w in at.items():
+            own = unknowns[order]
+            between[own] = self._law(w, own).T @ between[own]
+        between[np.diag_indices(end)] += 1.0
+        if stands:
             # What is constant in time leaves the train's own turning open.
-            deflections = np.linalg.lstsq(matrix, free, rcond=_STANDSTILL)[0]
+            solved = np.linalg.lstsq(between.T, deflections, rcond=_STANDSTILL)[0]
         else:
-            deflections = np.linalg.solve(matrix, free)
-        forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
-        forces = forces.reshape(count * width, -1)
+            solved = np.linalg.solve(between.T, deflections)
+        forces = np.concatenate([self._law(w, unknowns[order]) @ solved[unknowns[order]] for order, w in at.items()])
         motion = {}
-        for order, alone in moved.items():
-            acting, acted = self._reached[order][1]
-            total = -alone[:, :rank] @ (mix[:, acting] @ forces[acted])
-            if order in loads:
-                total += alone[:, rank:]
+        for order, motions in moved.items():
+            total = np.zeros((self.system.size, len(excitations)), dtype=np.complex128)
+            reaches = self._reached[order, is_restrained[order]]
+            for part, reach, alone in zip(self._parts, reaches, motions, strict=True):
+                rank = part.basis.shape[1]
+                own_motion = -alone[:, :rank] @ (part.mix[:, reach.acting] @ forces[sought[reach.acted]])
+                total[part.coordinates] = own_motion + alone[:, rank:] if order in loads else own_motion
             motion[order] = total.T
         return motion
 
@@ -433,16 +519,22 @@ class TurningResponse:
         near = [order for order in self.orders if abs(self.shift(order) - shift) <= _SAME_SHIFT * scale]
         return min(near, key=lambda order: sum(map(abs, order)), default=None)
 
-    def _law(self, frequency: complex) -> ComplexArray:
-        """Laws k + i ω_m c of the connectors that turn by order, (m, d, d)."""
-        law = np.zeros((len(self.orders), self._width, self._width), dtype=np.complex128)
-        for number, order in enumerate(self.orders):
-            w, begin = frequency + self.shift(order), 0
-            for one in self._turning:
-                own = slice(begin, begin + len(one.stiffness))
-                law[number, own, own] = one.stiffness + 1j * w * one.damping
-                begin = own.stop
-        return law
+    @cached_property
+    def _law_matrices(self) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping of the connectors that turn, (d, d) both."""
+        stiffness, damping = np.zeros((self._width, self._width)), np.zeros((self._width, self._width))
+        begin = 0
+        for one in self._turning:
+            own = slice(begin, begin + len(one.stiffness))
+            stiffness[own, own], damping[own, own] = one.stiffness, one.damping
+            begin = own.stop
+        return stiffness, damping
+
+    def _law(self, w: complex, unknowns: slice) -> ComplexArray:
+        """Law k + i ω_m c of the last connectors that turn, as many directions as there are unknowns."""
+        last = _last(unknowns, self._width)
+        stiffness, damping = (matrix[last, last] for matrix in self._law_matrices)
+        return np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
 
     def _error(self, errors: Mapping[int, complex]) -> ComplexArray:
         """Errors of the contacts that turn over the directions of the connectors that do, (d,)."""
@@ -455,6 +547,11 @@ class TurningResponse:
                 )
             found[self._width - len(turning) + turning.index(number)] = error
         return found
+
+
+def _last(unknowns: slice, width: int) -> slice:
+    """Last of all directions, as many as there are unknowns: those without the directions of free motions."""
+    return slice(width - (unknowns.stop - unknowns.start), width)
 
 
 def _minus(first: Order, second: Order) -> Order:

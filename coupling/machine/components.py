@@ -189,6 +189,10 @@ class HousingComponent(Component):
         # A rotation about y moves a point beyond the centre towards +z along +x, one about x along -y.
         return np.array([x + arm * about_y, y - arm * about_x, along, about_x, about_y])
 
+    def section_motions(self, seat: str, z: float) -> FloatArray:
+        """Return a seat's rigid motion at z along the shaft [m] with its rotation about z too, shape (6, n)."""
+        return np.vstack([self.seat_motions(seat, z), self.seats[seat].T[5]])
+
     def ring_harmonics(self, seat: str, push: Sequence[float], angle: float) -> list[tuple[FloatArray, FloatArray]]:
         """Motion of ring teeth along a push that turns, by the deformation of their bore: (n,) and (n,) of each order.
 

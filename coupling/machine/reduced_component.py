@@ -54,7 +54,7 @@ class InterfaceMatrices:
     seats : tuple of NodeSeat
     sensors : tuple of NodeSensor
     left_out : tuple of str
-        Sensors that are no node: none is asked for, their direction is along no axis, or other nodes move them.
+        Sensors that are no node: their direction is along no axis, or other nodes move them.
     """
 
     matrices: ReducedMatrices
@@ -63,7 +63,7 @@ class InterfaceMatrices:
     left_out: tuple[str, ...]
 
 
-def interface_matrices(component: HousingComponent, *, with_sensors: bool = True) -> InterfaceMatrices:
+def interface_matrices(component: HousingComponent) -> InterfaceMatrices:
     """Reduce a housing to its seats and sensors, without a loss: its own basis in other coordinates.
 
     With the motions B q of the nodes, q = T (b, η) has B T = (I, 0): the columns of T are the motions N of the modes η
@@ -92,7 +92,7 @@ def interface_matrices(component: HousingComponent, *, with_sensors: bool = True
         axis, row = int(np.argmax(np.abs(place.direction))), component.sensors[name]
         alone = row - rows.T @ np.linalg.lstsq(rows.T, row, rcond=None)[0]
         is_along_axis = abs(place.direction[axis]) > 1.0 - _ALONG
-        if not with_sensors or not is_along_axis or np.linalg.norm(alone) <= _DEPENDENT * np.linalg.norm(row):
+        if not is_along_axis or np.linalg.norm(alone) <= _DEPENDENT * np.linalg.norm(row):
             left_out.append(name)
             continue
         node, sense = _FIRST_SENSOR + number, float(np.sign(place.direction[axis]))

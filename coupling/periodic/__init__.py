@@ -2,6 +2,8 @@
 
 - :func:`periodic_response` -- the motion with the period of the excitation, stable or not, as a
   :class:`PeriodicResponse` with its Floquet multipliers.
+- :func:`settled_response` -- the same of a machine whose carriers turn, by integration in time, as a
+  :class:`SettledMotion`.
 - :func:`response_curve` -- its branch over speed, through folds, as a :class:`ResponseCurve`.
 - :func:`superposed_response` -- for excitations without a short common period, the sum of the motions of each, as a
   :class:`SuperposedResponse` with the force that it neglects.
@@ -12,6 +14,7 @@ numba is imported only when a response is computed.
 
 from gearwhine.coupling.periodic.continuation import Bifurcation, ResponseCurve, response_curve
 from gearwhine.coupling.periodic.response import FloquetMultipliers, PeriodicResponse
+from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import common_period, periodic_response
 from gearwhine.coupling.periodic.superposition import (
     LONGEST_COMMON_PERIOD,
@@ -31,11 +34,14 @@ __all__ = [
     "GroupMotion",
     "PeriodicResponse",
     "ResponseCurve",
+    "SettledMotion",
     "SuperposedResponse",
+    "circles",
     "common_cycles",
     "common_period",
     "excitation_groups",
     "periodic_response",
     "response_curve",
+    "settled_response",
     "superposed_response",
 ]

@@ -57,6 +57,8 @@ _LONGEST_STRIDE, _SHORTEST_STRIDE = 0.7, 0.02  # largest and least change of the
 def common_period(system: CoupledSystem, period: float | None = None) -> float:
     """Return the common period: the shortest time in which every driving frequency makes whole cycles [s].
 
+    The rates at which directions turn with planet carriers are among them.
+
     Parameters
     ----------
     system : CoupledSystem
@@ -69,6 +71,8 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
         Where the frequencies have no common period, nothing varies, or the given period is not one.
     """
     frequencies = driving_frequencies(system)
+    for rate in system.turning_rates:
+        frequencies[f"the turn of a carrier, {len(frequencies) + 1}"] = abs(rate) / (2.0 * np.pi)
     if period is not None:
         if not 0.0 < period < np.inf:
             raise CouplingError(f"a period of {period} s; expected a positive number")
@@ -169,9 +173,8 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     """
     if system.turning_names:
         raise PeriodicError(
-            f"the periodic response does not know directions that turn, those of {', '.join(system.turning_names)}; "
-            "integrate in time by Newmark's method until the motion is steady (`run`), or take the linear lines with "
-            "their sidebands (`system`)"
+            f"shooting does not know directions that turn, those of {', '.join(system.turning_names)}; "
+            "settled_response finds the motion in which such a machine settles (`steady`)"
         )
     if not system.is_smooth:
         nonlinearity = "nonlinear bearings" if system.nonlinear else "friction between its teeth"

@@ -2,7 +2,9 @@
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a harmonic torque or motion of the base, the passing of the elements of a rolling bearing whose
-law follows them, a sideband, any other whole order. Orders of a shaft and their sidebands count where something
+law follows them, a sideband, any other whole order. Sidebands by the turning of planet carriers are those that the
+machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`), and those of the mean load are
+orders of the carrier. Orders of a shaft and their sidebands count where something
 excites them (:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to
 the line. A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given
 apart from the cause.
@@ -17,6 +19,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.carrier_sidebands import forced_sidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.excitation_orders import (
     ExcitedOrders,
@@ -29,7 +32,7 @@ from gearwhine.coupling.linear.excitation_orders import (
 LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 
 _SHAFT_ORDERS = 4  # highest shaft order that takes precedence over a sideband of the same frequency
-_SIDEBANDS = 4
+_SIDEBANDS = 4  # by gears and loads; those by turning carriers are as many as the machine has
 _ELEMENT_PASSES = 4
 _LOAD_MULTIPLES = 4
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
@@ -45,7 +48,7 @@ class LineName:
         ``mean``, ``mesh``, ``shaft``, ``load``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
     name : str
         Name such as ``1× pinion -> wheel``; coinciding causes are joined by commas, but for the meshes of all planets
-        on a carrier, ``1× planets' meshes of carrier``.
+        on a carrier, ``1× planets' meshes``.
     order : float
         Cycles per revolution of the leading shaft.
     mode : int or None
@@ -95,7 +98,10 @@ def line_names(
     meshes = [
         abs(contact.mesh_frequency) for contact in machine.system.contacts if contact.loaded and contact.mesh_frequency
     ]
-    excited = excited_shaft_orders(machine)
+    excited, by_carriers = excited_shaft_orders(machine), forced_sidebands(machine) or None
+    # A sideband below the highest line may belong to a harmonic above it.
+    off = [sum(number * abs(machine.speeds[carrier]) for carrier, number in one.turns) for one in by_carriers or ()]
+    highest += max(map(abs, off), default=0.0) / (2.0 * np.pi)
     lines = excitation_lines(
         machine,
         shaft_orders=range(1, _SHAFT_ORDERS + 1),
@@ -104,7 +110,9 @@ def line_names(
         element_passes=range(1, _ELEMENT_PASSES + 1),
         load_multiples=range(1, _LOAD_MULTIPLES + 1),
         excited=excited,
+        by_carriers=by_carriers,
     )
+    at = shaft_frequency * np.array([line.order for line in lines])
     named = []
     for frequency, within in zip(frequencies, tolerances.tolist(), strict=True):
         order = frequency / shaft_frequency
@@ -117,10 +125,11 @@ def line_names(
             # Excited or not, an order of a shaft that is further off than the mode is not the line's cause.
             of_shafts = min(within, abs(float(modes.eigenvalues[mode].imag) / (2.0 * np.pi) - frequency))
         reach = {"mesh": within, "shaft": of_shafts, "load": within, "bearing": within, "sideband": of_shafts}
+        near_it = [lines[place] for place in np.flatnonzero(np.abs(at - frequency) <= within).tolist()]
         causes = {
             kind: [
                 line
-                for line in lines
+                for line in near_it
                 if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= distance
             ]
             for kind, distance in reach.items()

@@ -22,6 +22,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.gears.loaded.face_load import FaceLoad, face_load_factor
@@ -124,9 +125,9 @@ class BearingLoad:
 # face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
 _EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
 
-CAUSES = ("shafts", "bearings", "housing", "bodies")
-"""Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, and the twist of
-shaft and gear body over the face."""
+CAUSES = ("shafts", "bearings", "housing", "carrier", "bodies")
+"""Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, of planets that of
+their pins on the carrier with the pins' bending and errors, and the twist of shaft and gear body over the face."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,6 +313,37 @@ class StaticTangent:
     pairs: tuple[FloatArray, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class SupportLoad:
+    """Load on a torque support.
+
+    Attributes
+    ----------
+    support : TorqueSupport
+    force : ndarray, shape (d,)
+        Load of the shaft on the support: its torque about z [N m]; by bolts forces [N] and moments along and about x,
+        y, z.
+    deflection : ndarray, shape (d,)
+        Motion of the shaft against the seat, along and about the same [m, rad].
+    """
+
+    support: TorqueSupport
+    force: FloatArray
+    deflection: FloatArray
+
+    @property
+    def torque(self) -> float:
+        """Torque of the shaft on the support about z [N m]."""
+        return float(self.force[-1])
+
+    @property
+    def bolt_forces(self) -> FloatArray:
+        """Force on each bolt outwards, along the circle and along z, shape (b, 3) [N]; none without bolts."""
+        bolts = self.support.bolts
+        forces = [bolt.stiffness * (bolt.motions @ self.deflection) for bolt in bolts]
+        return np.array(forces, dtype=np.float64).reshape(len(bolts), 3)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class OperatingPoint:
     """Static equilibrium of a machine under its mean load.
@@ -334,6 +366,8 @@ class OperatingPoint:
         For its sensitivities (:mod:`gearwhine.coupling.statics.sensitivity`).
     gravity : tuple of float or None
         Acceleration of free fall along x, y, z [m/s²].
+    supports : tuple of SupportLoad
+        Loads on the torque supports.
     """
 
     shafts: tuple[ShaftDeflection, ...]
@@ -345,6 +379,7 @@ class OperatingPoint:
     free: tuple[str, ...]
     tangent: StaticTangent
     gravity: tuple[float, ...] | None = None
+    supports: tuple[SupportLoad, ...] = ()
 
     def __repr__(self) -> str:
         """Return the loads on the bearings and the misalignment of the gear pairs; the rest is arrays."""

@@ -23,11 +23,13 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.coupling.statics.connector_equilibrium import ConnectedStructure
 from gearwhine.coupling.statics.operating_point import (
+    CAUSES,
     BearingLoad,
     OperatingPoint,
     PairLoad,
     ShaftDeflection,
     StaticTangent,
+    SupportLoad,
 )
 from gearwhine.coupling.statics.static_model import (
     ConnectorLaw,
@@ -139,6 +141,7 @@ class _StaticModel:
         torque_supports: Sequence[TorqueSupport],
     ) -> None:
         self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
+        self.torque_supports = torque_supports
         self.gravity = None if gravity is None else tuple(gravity)
         self.first: dict[str, int] = {}
         size = 0
@@ -191,7 +194,7 @@ class _StaticModel:
         self.laws: list[ConnectorLaw] = [bearing.placed_law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
-        held = [LinearLaw(np.array([[support.stiffness or 0.0]])) for support in torque_supports]
+        held = [LinearLaw(support.stiffness_matrix) for support in torque_supports]
         held += [LinearLaw(pin.stiffness) for _, pin in pins]
         self.laws += held
         nominal = [bearing.nominal for bearing in bearings]
@@ -284,12 +287,14 @@ class _StaticModel:
         return np.asarray(np.vstack([own, *walls]).T)
 
     def _torque_direction(self, support: TorqueSupport) -> FloatArray:
-        """Rotation of a shaft against the seat that holds it, (n, 1)."""
-        row = self._section(support.shaft, support.at)[5]
+        """Motions of a shaft against the seat that holds it, (n, d): its rotation, or all six where bolts do."""
+        rows = self._section(support.shaft, support.at)
         if support.seat is not None:
             assert self.housing is not None
-            row[self.housing_first : self.housing_first + self.housing.size] -= self.housing.seats[support.seat][:, 5]
-        return np.asarray(row[:, None])
+            z = self._part(support.shaft).start + support.at
+            own = slice(self.housing_first, self.housing_first + self.housing.size)
+            rows[:, own] -= self.housing.section_motions(support.seat, z)
+        return np.asarray(rows[support.held_motions].T)
 
     def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
         return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
@@ -449,6 +454,19 @@ class _StaticModel:
             free,
             tangent,
             self.gravity,
+            self._support_loads(states, deflections),
+        )
+
+    def _support_loads(
+        self, states: Sequence[tuple[float, FloatArray, FloatArray]], deflections: Sequence[FloatArray]
+    ) -> tuple[SupportLoad, ...]:
+        """Return the loads of the torque supports, whose laws stand after those of bearings, pairs and pedestals."""
+        first = len(self.bearings) + len(self.pairs) + len(self.pedestal_first)
+        return tuple(
+            SupportLoad(support, force, deflection)
+            for support, (_, force, _), deflection in zip(
+                self.torque_supports, states[first:], deflections[first:], strict=False
+            )
         )
 
     def _require_balance(
@@ -542,20 +560,21 @@ class _StaticModel:
         weights; it is linear in the motions of the seats and the deflections of the bearings. The rest is elastic.
         `_pair` separates the twist.
         """
-        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing", "bodies")}
+        parts = {cause: np.zeros(self.size) for cause in CAUSES}
         parts["bodies"][self.rims_first :] = x[self.rims_first :]
         for part in self.shafts:
             columns = self._indices_of(part.name)
             places = part.shaft.places
             bearings_of_shaft = [bearing for bearing in bearings if bearing.mounted.rotor == part.name]
-            rigid_by = {"bearings": np.zeros(5), "housing": np.zeros(5)}
+            of_seats = "housing" if part.carrier is None else "carrier"
+            rigid_by = {"bearings": np.zeros(5), of_seats: np.zeros(5)}
             matrix = np.zeros((5, 5))
             for bearing in bearings_of_shaft:
                 moved = _rigid_rows(bearing.mounted.bearing.at)
                 metric = 0.5 * (bearing.stiffness + bearing.stiffness.T)
                 matrix += moved.T @ metric @ moved
                 rigid_by["bearings"] += moved.T @ metric @ bearing.deflection
-                rigid_by["housing"] += moved.T @ metric @ bearing.seat_motion
+                rigid_by[of_seats] += moved.T @ metric @ bearing.seat_motion
             whole = np.zeros((places.size, 6))
             for cause, side in rigid_by.items():
                 rigid = np.linalg.lstsq(matrix, side, rcond=1e-12)[0]

@@ -54,7 +54,7 @@ _STRETCHES, _ELEMENTS = 256, 1024  # approximate largest numbers between two che
 _FIRST_STRETCHES = 8  # number before the first check, where most failing attempts fail
 _SIZES = 64  # number of element sizes with exact matrices, in addition to the ladder's
 _SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
-_MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
+_MUCH_BETTER = 0.08  # part of the tolerance up to which elements may grow
 _CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
@@ -202,6 +202,7 @@ class CollocationStepper:
 
     steps_in_one = ORDER  # an element has this many places and stands for as many steps
     order = 6.0  # at least, kinks in the laws' tables included
+    levels = 2
     too_fine = "elements below {step:.1e} s; raise the tolerance"
 
     def __init__(
@@ -209,7 +210,7 @@ class CollocationStepper:
     ) -> None:
         self.system, self._part, self._settings = part.system, part, settings
         self.arrays = kernel_arrays(part.system, outputs, settings.beta, settings.gamma)
-        self.coarsen_below = _MUCH_BETTER * settings.tolerance
+        self.grow_to = _MUCH_BETTER * settings.tolerance
         self._coarsest = ORDER * coarsest_step(part.system, profile, settings.largest_step)
         self._record = CollocationRecord(part, outputs, self.arrays.contacts)
         self._steps = empty_steps(part.reference, np.zeros(_SIZES), self._coarsest, inner=True)

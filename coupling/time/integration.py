@@ -107,7 +107,7 @@ def _known_times(system: CoupledSystem, profile: SpeedProfile) -> Iterator[Float
         yield load.times
 
 
-_FINEST_LEVEL = 24  # 4096 times finer than the coarsest step
+_FINEST = 12  # number of times that the coarsest step may be halved
 _RUNAWAY = 1e4  # motion over the motion at rest beyond which the machine counts as unstable
 _GONE = 20.0  # number of mesh periods without contact after which separated teeth count as lost
 
@@ -134,7 +134,7 @@ class Checkpoint:
     contact_totals : ndarray, shape (c, 4)
         Impulse [N s], time apart [s], largest force [N] since the record began, and time of the last touch [s].
     level : int
-        Refinement of the steps: each level is finer by √2.
+        Refinement of the steps, in levels of the stepper.
     steps, rejected, unsettled : int
         Steps taken, repeated, and taken without convergence of Newton's iteration on the contact forces.
     worst : float
@@ -219,8 +219,10 @@ class Stepper(Protocol):
         Number of Newmark steps that one step of this method stands for.
     order : float
         Power of the step size with which the local error falls.
-    coarsen_below : float
-        Local error below which steps may grow.
+    levels : int
+        Number of levels of refinement by which a step halves.
+    grow_to : float
+        Local error up to which steps may grow, by that order.
     too_fine : str
         End of the message where the tolerance asks for steps that are too small, with the field ``step`` [s].
     """
@@ -229,7 +231,8 @@ class Stepper(Protocol):
     system: CoupledSystem
     steps_in_one: int
     order: float
-    coarsen_below: float
+    levels: int
+    grow_to: float
     too_fine: str
 
     def begin_block(self, state: Checkpoint, bounds: FloatArray, samples: Samples, *, compiles: bool) -> None:
@@ -298,7 +301,7 @@ class Integration:
         clock = time.perf_counter() - before.seconds
         state, position = before, 0
         while position < len(bounds) - 1:
-            step = self.base * 2.0 ** (-0.5 * state.level)
+            step = self.base * 2.0 ** (-state.level / stepper.levels)
             last = position + stepper.chunk(bounds[position:], step)
             if position < first_record < last:
                 last = first_record
@@ -324,7 +327,7 @@ class Integration:
                 steps=state.steps + attempt.steps,
                 worst=max(state.worst, attempt.error),
                 smallest=min(state.smallest, attempt.smallest),
-                level=max(state.level - 1, 0) if attempt.error < stepper.coarsen_below else state.level,
+                level=self._coarser(state.level, attempt.error),
                 energy=energy,
                 highest=max(state.highest, energy),
                 lowest=min(state.lowest, energy),
@@ -335,12 +338,18 @@ class Integration:
 
     def _finer(self, state: Checkpoint, begin: float, attempt: Attempt) -> Checkpoint:
         """Smaller steps for the next attempt, by the order of the local error."""
-        needed = 2.0 * np.log2(attempt.error / self.settings.tolerance) / self.stepper.order
+        needed = self.stepper.levels * np.log2(attempt.error / self.settings.tolerance) / self.stepper.order
         level = state.level + max(1, int(np.ceil(needed)))
-        if level > _FINEST_LEVEL:
-            finest = self.stepper.too_fine.format(step=self.base * 2.0 ** (-0.5 * _FINEST_LEVEL))
+        if level > _FINEST * self.stepper.levels:
+            finest = self.stepper.too_fine.format(step=self.base * 2.0**-_FINEST)
             raise TransientError(f"after t = {begin:.6g} s the tolerance {self.settings.tolerance:g} asks for {finest}")
         return replace(state, level=level, rejected=state.rejected + attempt.steps)
+
+    def _coarser(self, level: int, error: float) -> int:
+        """Level after an accepted error: by its order steps grow up to the error aimed at, by √2 at most."""
+        stepper = self.stepper
+        spare = stepper.levels * np.log2(stepper.grow_to / max(error, 1e-300)) / stepper.order
+        return level - min(max(int(np.floor(spare)), 0), stepper.levels // 2, level)
 
     def _require_possible(self, q: FloatArray, peaks: FloatArray, begin: float, now: float) -> None:
         """Refuse a motion that compresses teeth further than teeth can deflect, somewhere between two times [s].

@@ -45,7 +45,7 @@ from gearwhine.coupling.connector_forces.contact_kernels import (
     flank_gap,
     solve_contact_forces,
 )
-from gearwhine.coupling.connector_forces.dense_kernels import SUMS, add_rows, project
+from gearwhine.coupling.connector_forces.dense_kernels import SUMS, add_rows, project, project_spans
 from gearwhine.coupling.connector_forces.kernel_arrays import (
     APART,
     BEARING_ENERGY,
@@ -268,8 +268,7 @@ def write_samples(
         scratch.x,
         scratch.y,
     )
-    teeth, laws, work = contacts.direction[: contacts.phase.size], scratch.spare, scratch.delta_free
-    n = q.size
+    laws, rates, n = scratch.spare, scratch.delta_free, q.size
     while number - samples.offset < samples.force.shape[0]:
         time = samples.first + number * samples.interval
         if time > t + h:
@@ -282,38 +281,44 @@ def write_samples(
             q1, v1 = q_predicted[i] + displaced * a1[i], v_predicted[i] + moved * a1[i]
             x[i] = old * q[i] + slope_old * v[i] + new * q1 + slope_new * v1
             y[i] = old * v[i] + slope_old * a[i] + new * v1 + slope_new * a1[i]
-        project(outputs.displacement, x, samples.displacement[row])
-        project(outputs.velocity, y, samples.velocity[row])
+        project_spans(outputs.displacement, outputs.displacement_spans, x, samples.displacement[row])
+        project_spans(outputs.velocity, outputs.velocity_spans, y, samples.velocity[row])
         if contacts.phase.size > 0:
             after = s * h
             speed = speed0 + alpha * after
             nominal_time = nominal_time0 + after * (speed0 + 0.5 * alpha * after)
+            # The projections on the directions are interpolated as the coordinates are.
+            for k in range(scratch.dq.size):
+                q1 = scratch.dq_predicted[k] + displaced * scratch.da[k]
+                v1 = scratch.dv_predicted[k] + moved * scratch.da[k]
+                scratch.dq_free[k] = old * scratch.dq[k] + slope_old * scratch.dv[k] + new * q1 + slope_new * v1
+                a0, a_last = scratch.da_before[k], scratch.da[k]
+                scratch.dv_free[k] = old * scratch.dv[k] + slope_old * a0 + new * v1 + slope_new * a_last
+            compression = samples.compression[row]
             if turning.rates.size > 0:
-                _deflections_of_sample(contacts, turning, nominal_time, speed, samples.compression[row], scratch)
+                _deflections_of_sample(turning, nominal_time, speed, compression, scratch)
             else:
-                project(teeth, x, samples.compression[row])
-                project(teeth, y, work)
+                for k in range(compression.size):
+                    compression[k], rates[k] = scratch.dq_free[k], scratch.dv_free[k]
             for k in range(contacts.phase.size):
                 gone, slip = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
-                samples.compression[row, k] -= gone
-                evaluate_tangents(contacts, k, nominal_time, samples.compression[row, k], work[k] - slip, laws)
+                compression[k] -= gone
+                evaluate_tangents(contacts, k, nominal_time, compression[k], rates[k] - slip, laws)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]
-        project(outputs.acceleration, x, samples.acceleration[row])
+        project_spans(outputs.acceleration, outputs.acceleration_spans, x, samples.acceleration[row])
         number += 1
     return number
 
 
 @inner()
 def _deflections_of_sample(
-    contacts: Contacts, turning: Turning, nominal_time: float, speed: float, compression: FloatArray, scratch: Scratch
+    turning: Turning, nominal_time: float, speed: float, compression: FloatArray, scratch: Scratch
 ) -> None:
     """Compression of the contacts (c,) at the sample in ``scratch``, and its rate into its ``delta_free``, by D(s)."""
     mix, mix_rate, carried = scratch.sample_mix, scratch.sample_mix_rate, scratch.carried
     turn_directions(turning, nominal_time, speed, mix, mix_rate)
-    project(contacts.direction, scratch.x, scratch.dq_free)
-    project(contacts.direction, scratch.y, scratch.dv_free)
     mix_columns(turning, mix, scratch.dq_free, compression)
     mix_columns(turning, mix, scratch.dv_free, scratch.delta_free)
     mix_columns(turning, mix_rate, scratch.dq_free, carried)
@@ -459,8 +464,8 @@ def _start_segment(
     a, dq, dv, push = scratch.a, scratch.dq, scratch.dv, scratch.push
     project(dynamics.connectors, q, scratch.tq)
     project(dynamics.connectors, v, scratch.tv)
-    project(contacts.direction, q, dq)
-    project(contacts.direction, v, dv)
+    project_spans(contacts.direction, contacts.spans, q, dq)
+    project_spans(contacts.direction, contacts.spans, v, dv)
     _deflections(contacts, turning, nominal_time, speed, dq, dv, dq, scratch.delta, scratch.rate, scratch)
     evaluate_forces(contacts, bearings, nominal_time, scratch)
     for j in range(push.size):
@@ -481,7 +486,7 @@ def _start_segment(
         pushed = scratch.pushed
     add_rows(contacts.direction, pushed, -1.0, a)
     project(dynamics.connectors, a, scratch.ta)
-    project(contacts.direction, a, scratch.da)
+    project_spans(contacts.direction, contacts.spans, a, scratch.da)
     evaluate_powers(
         dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
     )
@@ -654,10 +659,12 @@ def _contact_response(
     if delta.size == 0:
         return True
     of_columns, turns = matrices.flexibility[slot], turning.rates.size > 0
+    for j in range(da.size):
+        scratch.da_before[j] = da[j]
     if turns:
         for j in range(da.size):
             scratch.dq_carried[j] = scratch.dq_predicted[j] + displaced * da[j]
-    project(contacts.direction, a_end, da)
+    project_spans(contacts.direction, contacts.spans, a_end, da)
     for j in range(da.size):
         scratch.dq_free[j] = scratch.dq_predicted[j] + displaced * da[j]
         scratch.dv_free[j] = scratch.dv_predicted[j] + moved * da[j]

@@ -27,6 +27,7 @@ from gearwhine.coupling.time.turning_directions import with_own_laws
 FloatArray = npt.NDArray[np.float64]
 
 _SEGMENTS_PER_CHUNK = 48  # number of stretches between two checks of the error
+_GROW_TO = 0.85  # part of the tolerance up to which steps grow
 
 
 class NewmarkStepper:
@@ -37,6 +38,7 @@ class NewmarkStepper:
 
     steps_in_one = 1
     order = 2.0
+    levels = 8  # a coarser ladder would hold steps far below the tolerance
     too_fine = "steps below {step:.1e} s; raise the tolerance or lower the frequency limit of a shaft"
 
     def __init__(
@@ -44,7 +46,7 @@ class NewmarkStepper:
     ) -> None:
         self.system, self._profile = system, profile
         self.arrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
-        self.coarsen_below = settings.tolerance / 3.0
+        self.grow_to = _GROW_TO * settings.tolerance
         self._cache = StepCache(self.arrays, profile)
         self._pushing = np.linalg.norm(system.load) + np.linalg.norm(timed_amplitude(system))
         self._quiet = 0.0

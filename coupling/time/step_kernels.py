@@ -19,7 +19,7 @@ B = S₀⁻¹, by Sherman, Morrison and Woodbury,
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.coupling.connector_forces.dense_kernels import add_rows, project, solve_in_place
+from gearwhine.coupling.connector_forces.dense_kernels import add_rows, project, project_spans, solve_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Contacts, Dynamics, StepMatrices
 from gearwhine.numerics.compiled import counted, inner
 
@@ -171,6 +171,6 @@ def build_steps(
                 matrices.contact[slot, k, i] = solved[i]
             for j in range(r):
                 matrices.contact_connectors[slot, k, j] = along[j]
-            project(contacts.direction, solved, seen)
+            project_spans(contacts.direction, contacts.spans, solved, seen)
             for j in range(c):
                 matrices.flexibility[slot, j, k] = seen[j]

@@ -25,6 +25,7 @@ from gearwhine.coupling.connector_forces.kernel_arrays import (
     StepMatrices,
     Turning,
     bearing_arrays,
+    spans,
 )
 from gearwhine.coupling.machine.connectors import SpeedTable
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
@@ -54,12 +55,13 @@ def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float,
     """Arrays of the system and of its output rows."""
     output_rows = outputs.displacement, outputs.velocity, outputs.acceleration
     # Rows are writable: a kernel is compiled anew for rows that are not.
-    rows = (np.require(rows, requirements=("C", "W")) for rows in output_rows)
+    displacement, velocity, acceleration = (np.require(rows, requirements=("C", "W")) for rows in output_rows)
     contacts = contact_arrays(system)
     turning, columns, bearings = turning_arrays(system, bearing_arrays(system.nonlinear))
     if columns is not None:
-        contacts = contacts._replace(direction=columns)
-    return KernelArrays(_dynamics(system, beta, gamma), contacts, turning, bearings, Outputs(*rows))
+        contacts = contacts._replace(direction=columns, spans=spans(columns))
+    written = Outputs(displacement, velocity, acceleration, spans(displacement), spans(velocity), spans(acceleration))
+    return KernelArrays(_dynamics(system, beta, gamma), contacts, turning, bearings, written)
 
 
 def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
@@ -125,10 +127,11 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         ("tq", "tv", "ta", "tq_predicted", "tv_predicted", "ta_end", "connector_force", "response", "correction"), (r,)
     )
     shapes |= dict.fromkeys(
-        ("dq", "dv", "da", "dq_predicted", "dv_predicted", "dq_free", "dv_free", "dq_carried"), (m,)
+        ("dq", "dv", "da", "da_before", "dq_predicted", "dv_predicted", "dq_free", "dv_free", "dq_carried"), (m,)
     )
     shapes |= dict.fromkeys(("push", "push_before", "push_change"), (k,))
-    shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "delta_before", "rate_before"), (u,))
+    of_deflections = "delta", "rate", "delta_free", "rate_free", "slip", "delta_before", "rate_before", "yielded"
+    shapes |= dict.fromkeys(of_deflections, (u,))
     room = {name: np.zeros(shape) for name, shape in shapes.items()}
     if not e:
         room["along_v"] = room["dv"]
@@ -337,8 +340,10 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
             if law.shares.size:
                 shares_at[k] = sum(map(len, numbers))
                 numbers.append(law.shares)
+    directions = np.ascontiguousarray(np.concatenate(rows))
     return Contacts(
-        direction=np.ascontiguousarray(np.concatenate(rows)),
+        direction=directions,
+        spans=spans(directions),
         law=np.concatenate([np.zeros(0), *numbers]),
         law_at=law_at.astype(np.int64),
         shares_at=shares_at,

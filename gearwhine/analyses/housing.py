@@ -105,7 +105,7 @@ def compare_result(housing: HousingModes, compared: ComparedTest, origin: Origin
     if survey is not None:
         document["survey"] = survey_document(survey)
     document |= {} if likeness is None else {"responses": responses_document(likeness)}
-    add_warnings(document, comparison_warnings(comparison, housing.modes))
+    add_warnings(document, comparison_warnings(comparison, housing.modes, compared.test.modes))
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:

@@ -292,7 +292,8 @@ class RingSupport(Table):
     """What holds the outside of an internal gear's rim."""
 
     kind: Literal["clamped", "housing", "springs", "bolts", "pins"] = "clamped"
-    """`clamped`: the whole outside stands still; `housing`: the same, but the outside moves with the housing;
+    """`clamped`: the whole outside stands still; `housing`: the same, but the outside moves with the housing,
+    by the `rim_seat` of its rotor;
     `springs`: an elastic bed all around; `bolts`: seats at equal angles that hold the ring, against rotation too;
     `pins`: seats without a moment. The mesh has the mean compliance over the places between two bolts."""
     count: Annotated[int, Whole(2, 360)] | None = None

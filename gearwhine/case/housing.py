@@ -185,8 +185,8 @@ class MeshFile(Turned):
     """`[housing.mesh]`: a finite-element mesh file and the unit of its coordinates."""
 
     file: CaseFile
-    """Mesh file of a format that meshio reads, or a deck of Abaqus or CalculiX (`.inp`) or Nastran (`.bdf`, `.fem`,
-    `.nas`), relative to the case file."""
+    """Mesh file of a format that meshio reads, a deck of Abaqus or CalculiX (`.inp`) or Nastran (`.bdf`, `.fem`,
+    `.nas`, `.dat`), or a universal file (`.unv`), relative to the case file."""
     unit: Literal["m", "mm", "cm", "in"] = "m"
     """Unit of its coordinates."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -72,19 +72,24 @@ class InputFiles:
         yield
         self._require(path)
 
-    def read(self, path: Path, reader: Callable[..., Made], **options: object) -> Made:
-        """Return what a reader makes of a file, which it reads once for the same options.
+    def read(self, path: Path | tuple[Path, ...], reader: Callable[..., Made], **options: object) -> Made:
+        """Return what a reader makes of a file, or of several together, which it reads once for the same options.
 
         Raises
         ------
         ChangedFileError
             As :meth:`unchanged`.
         """
-        self.add(path)
-        # By its content: a case that was changed to another file of this name has its own.
-        key = (str(path), repr(self.contents[str(path)]), reader.__qualname__, *sorted(options.items()))
+        paths = path if isinstance(path, tuple) else (path,)
+        for one in paths:
+            self.add(one)
+        # By their content: a case that was changed to another file of this name has its own.
+        contents = [repr(self.contents[str(one)]) for one in paths]
+        key = (*map(str, paths), *contents, reader.__qualname__, *sorted(options.items()))
         if key not in self._made:
-            with self.unchanged(path):
+            with ExitStack() as held:
+                for one in paths:
+                    held.enter_context(self.unchanged(one))
                 made = reader(path, **options)
             self._made[key] = made
         kept: Made = self._made[key]

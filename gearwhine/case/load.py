@@ -25,7 +25,7 @@ from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import KEY_OF_FORM, Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
-from gearwhine.case.planetary import with_planets
+from gearwhine.case.planetary import with_implied_pairs, with_planets
 from gearwhine.exchange.file_names import LARGEST_MODEL, is_rexs_file
 from gearwhine.numerics.names import did_you_mean
 
@@ -259,8 +259,22 @@ class CaseSource:
         CaseError
             With everything that is wrong.
         """
+        case, overrides = self.changed_case(changes), (*self.changes, *changes)
+        warnings = warnings_of(case) if self.imported is None else (self.imported.summary, *warnings_of(case))
+        return LoadedCase(case, warnings, replace(self, changes=overrides, files=case.input_files))
+
+    def changed_case(self, changes: Sequence[str] = ()) -> Case:
+        """Make the case with further changes, and check it; its warnings are not looked for.
+
+        Raises
+        ------
+        CaseError
+            With everything that is wrong.
+        """
         written = dict(self.written)
         overrides = (*self.changes, *changes)
+        if any(override.startswith("gear_pair") for override in overrides):
+            written = with_implied_pairs(written)
         files = self.files.copy()
 
         def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
@@ -271,9 +285,7 @@ class CaseSource:
 
         document, sources = apply_overrides(written, overrides, resolved)
         document = without_changed(document, written, sources.keys())
-        case = parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
-        warnings = warnings_of(case) if self.imported is None else (self.imported.summary, *warnings_of(case))
-        return LoadedCase(case, warnings, replace(self, changes=overrides, files=case.input_files))
+        return parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
 
 
 def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> LoadedCase:

@@ -45,9 +45,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Content:
-    """Content of a file at the time of reading; two cases are equal where its bytes are equal."""
+    """Content of the files at the time of reading; two cases are equal where their bytes are equal."""
 
-    digest: str
+    digests: tuple[str, ...]
     survey: SurveyData = field(compare=False)
 
 
@@ -98,6 +98,17 @@ def _table_or_word(value: Any) -> str:
     return "~table" if isinstance(value, (dict, Table)) else "~word"
 
 
+def _list_or_file(value: Any) -> str:
+    return "~list" if isinstance(value, (list, tuple)) else "~file"
+
+
+FileOrFiles = Annotated[
+    Annotated[CaseFile, Tag("~file")]
+    | Annotated[tuple[CaseFile, ...], Field(min_length=1, max_length=MOST_ENTRIES), Tag("~list")],
+    Discriminator(_list_or_file),
+]
+"""A file, or several of one survey."""
+
 FlagOrAlign = Annotated[
     Annotated[StrictBool, Tag("~flag")] | Annotated[Align, Tag("~table")], Discriminator(_table_or_flag)
 ]
@@ -123,13 +134,14 @@ class Measured(Table):
     """Frequencies of the measured modes, ascending. One of this and `file`."""
     damping_ratios: tuple[DampingRatio, ...] | None = Field(default=None, max_length=MOST_ENTRIES)
     """Damping ratio of each measured mode."""
-    file: CaseFile | None = None
-    """Survey: a universal file (`.uff`, `.unv`) or a table (`.csv`), relative to the case file. One of this and
-    `frequencies`."""
+    file: FileOrFiles | None = None
+    """Survey: a universal file (`.uff`, `.unv`), a list of those that hold its points, shapes and responses apart, or a
+    table (`.csv`), relative to the case file. One of this and `frequencies`."""
     unit: Literal["m", "mm", "cm", "in"] | None = None
     """Unit of the file's lengths, in place of the stated one. Default: the stated one, else m."""
-    shape_frame: Literal["local", "global"] = "local"
-    """Frame in which shapes (data set 55) stand at points with a displacement system of their own."""
+    shape_frame: Literal["local", "global"] | None = None
+    """Frame in which shapes stand at points with a displacement system of their own. Default: "local" of data set 55,
+    as programs for modal tests write it, "global" of 2414."""
     align: FlagOrAlign = False
     """true: bring the survey on to the model's surface; or landmarks; false: it stands in the model's frame."""
     tolerance: PositiveLength | None = None
@@ -174,7 +186,7 @@ class Measured(Table):
             raise wrong(f"a ratio for each of the {len(frequencies)} frequencies", "damping_ratios")
         return self
 
-    def _read(self, file: Path, files: InputFiles) -> Measured:
+    def _read(self, file: Path | tuple[Path, ...], files: InputFiles) -> Measured:
         from gearwhine.housing import HousingError
         from gearwhine.housing.measured import read_survey
 
@@ -188,8 +200,14 @@ class Measured(Table):
             raise wrong("a file of measured modes or responses; this one holds points alone", "file")
         if survey.geometry is None and self.align:
             raise wrong("no alignment: the file holds frequencies and no points", "align")
-        self._content = _Content(files.contents[str(self.file)]["sha256"], survey)
+        paths = file if isinstance(file, tuple) else (file,)
+        self._content = _Content(tuple(files.contents[str(path)]["sha256"] for path in paths), survey)
         return self
+
+    @property
+    def file_names(self) -> str:
+        """Paths of the files, in a line."""
+        return " and ".join(map(str, self.file)) if isinstance(self.file, tuple) else str(self.file)
 
     @property
     def survey(self) -> SurveyData | None:

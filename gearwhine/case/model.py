@@ -29,6 +29,7 @@ from gearwhine.case.operation import Operation, Sweep, Transient
 from gearwhine.case.planetary import Planetary, train_members
 from gearwhine.case.reduced_housing import ReducedHousing
 from gearwhine.case.rotors import Rotor, RotorAnalysis
+from gearwhine.case.variation import Variation
 
 if TYPE_CHECKING:
     from gearwhine.case.parts import Parts
@@ -97,6 +98,8 @@ class Case(Table):
     """Parameters that are fitted to the measured modes."""
     acoustics: Acoustics | None = None
     """Sound that the housing radiates."""
+    variation: Variation | None = None
+    """Distributions of keys, and limits of what follows from them."""
     unusual: tuple[Annotated[str, Field(max_length=1000)], ...] = Field(default=(), max_length=MOST_ENTRIES)
     """Key paths, `*` for any entry, whose unlikely values are meant: at them and below them no implausible value is
     warned of. What cannot be stays an error."""
@@ -319,6 +322,7 @@ _PURPOSES = {
     "sweep": "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }",
     "measured": "frequencies such as ['658 Hz', '1049 Hz'], or a file of them",
     "acoustics": "at least an empty table, for boundary elements in free air",
+    "variation": "distributions, such as [variation.vary] 'rotor.a.start' = { uniform = ['0 um', '20 um'] }",
     "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
 }
 

@@ -432,7 +432,9 @@ class Transient(Table):
     """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps."""
 
     revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)] | None = None
-    """Revolutions of the first driver's rotor. One of this and `run`."""
+    """Revolutions of the first driver's rotor. One of this and `run`. Lines at a steady speed are sharpest where the
+    record, these less `discard`, holds whole turns of all shafts but planets: multiples of 19 where a carrier is slower
+    by 19/4. Else they are taken under a window, which spreads each over its neighbours."""
     run: Run | None = None
     """Run-up, run-down or free run, in place of `revolutions`."""
     discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)

@@ -121,7 +121,9 @@ def _expanded(document: Any, steps: tuple[str, ...], resolved: Any, value: Any) 
     """Expand the wildcards of a path to the paths in a document or in the resolved one; a plain path gives itself."""
     if "*" not in steps:
         return [steps]
-    places = [place for searched in (resolved, document) for place in matching_places(searched, steps)]
+    found = [place for searched in (resolved, document) for place in matching_places(searched, steps)]
+    # Planets that are written once stand many times in the resolved document, the first in the place of the written.
+    places = [place for place in found if _is_written(document, place)]
     if not places and value is not NOTHING:
         # A key that no entry of a list has, such as a relief where no gear has one, is a new one for all of them.
         after = len(steps) - steps[::-1].index("*")
@@ -131,6 +133,19 @@ def _expanded(document: Any, steps: tuple[str, ...], resolved: Any, value: Any) 
     if not paths:
         raise _LeadsNowhereError((), ".".join(steps), "a path with * that some entries of the case have")
     return paths
+
+
+def _is_written(document: Any, place: Location) -> bool:
+    """Whether all entries of lists on the way to a location stand in a document; keys of tables may be new."""
+    node = document
+    for step in place:
+        if isinstance(node, list):
+            if not isinstance(step, int) or step >= len(node):
+                return False
+            node = node[step]
+        else:
+            node = node.get(step) if isinstance(node, dict) else None
+    return True
 
 
 def matching_places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:

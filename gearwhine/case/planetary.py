@@ -20,14 +20,25 @@ from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
 from gearwhine.case.errors import UNSAID, Finding, Location, look_up
-from gearwhine.case.fields import MOST_ENTRIES, Angle, Length, LengthFromZero, Name, Quantity, Table, Whole, wrong
+from gearwhine.case.fields import (
+    MOST_ENTRIES,
+    Angle,
+    Length,
+    LengthFromZero,
+    Name,
+    PositiveLength,
+    Quantity,
+    Table,
+    Whole,
+    wrong,
+)
 from gearwhine.case.gears import MOST_PLANETS, Gear, TrainMembers
 from gearwhine.case.operation import Operation
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.rotors import Rotor
 
 if TYPE_CHECKING:
-    from gearwhine.coupling import PlanetarySet, TorqueSupport
+    from gearwhine.coupling import PlanetarySet, SupportBolt, TorqueSupport
 
 _LENGTH, _ANGLE = Quantity(units.LENGTH), Quantity(units.ANGLE)
 _TORSION = Quantity(units.TILT_STIFFNESS, above=0.0)
@@ -43,6 +54,55 @@ PinError = Annotated[
 ]
 
 
+StiffnessAboveZero = Annotated[float, Quantity(units.STIFFNESS, above=0.0)]
+StiffnessFromZero = Annotated[float, Quantity(units.STIFFNESS, at_least=0.0)]
+TangentialStiffness = Annotated[
+    Annotated[StiffnessAboveZero, Tag("~length")] | Annotated[tuple[StiffnessAboveZero, ...], Tag("~list")],
+    Discriminator(_error_form),
+]
+OtherStiffness = Annotated[
+    Annotated[StiffnessFromZero, Tag("~length")] | Annotated[tuple[StiffnessFromZero, ...], Tag("~list")],
+    Discriminator(_error_form),
+]
+
+
+class Bolts(Table):
+    """Bolts, pins or bushes on a circle that hold a member from turning; a list of stiffness has one for each."""
+
+    circle: PositiveLength
+    """Diameter of their circle."""
+    angles: tuple[Angle, ...] = Field(min_length=2, max_length=360)
+    """Angle of each from x."""
+    tangential_stiffness: TangentialStiffness
+    """Stiffness along the circle, of each or a list."""
+    radial_stiffness: OtherStiffness = 0.0
+    """Radial stiffness, of each or a list."""
+    axial_stiffness: OtherStiffness = 0.0
+    """Stiffness along the axis, of each or a list."""
+
+    @model_validator(mode="after")
+    def _one_for_each(self) -> Bolts:
+        for key in ("tangential_stiffness", "radial_stiffness", "axial_stiffness"):
+            value = getattr(self, key)
+            if isinstance(value, tuple) and len(value) != len(self.angles):
+                raise wrong(f"one for each of {len(self.angles)} bolts, or one for all", key)
+        return self
+
+    def build(self) -> tuple[SupportBolt, ...]:
+        """Build the bolts."""
+        from gearwhine.coupling import SupportBolt
+
+        def each(value: float | tuple[float, ...]) -> tuple[float, ...]:
+            return value if isinstance(value, tuple) else (value,) * len(self.angles)
+
+        rows = zip(
+            self.angles,
+            *map(each, (self.tangential_stiffness, self.radial_stiffness, self.axial_stiffness)),
+            strict=True,
+        )
+        return tuple(SupportBolt(0.5 * self.circle, *row) for row in rows)
+
+
 class Fixed(Table):
     """`fixed` of a `[[planetary]]`: the member that is held from turning, and by what."""
 
@@ -50,12 +110,20 @@ class Fixed(Table):
     """Gear or rotor that is held, by its name."""
     stiffness: TorsionalStiffness | None = None
     """Torque over rotation. Default: rigid."""
+    bolts: Bolts | None = None
+    """Bolts in place of a stiffness; they hold the member in all directions in which they are stiff."""
     seat: Name | None = None
     """Seat of the housing that takes the torque. Default: the ground."""
     at: LengthFromZero | None = None
     """Station on the rotor. Default: that of the gear; of a rotor its left end."""
     damping_time: Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e-2)] = 0.0
     """Damping over stiffness."""
+
+    @model_validator(mode="after")
+    def _held_once(self) -> Fixed:
+        if self.bolts is not None and self.stiffness is not None:
+            raise wrong("none beside 'bolts', which have their own", "stiffness")
+        return self
 
 
 class Planetary(Table):
@@ -125,7 +193,8 @@ class Planetary(Table):
             return None
         of_gear = next((gear.at for gear in gears if gear.name == fixed.member), None)
         at = (of_gear or 0.0) if fixed.at is None else fixed.at
-        return TorqueSupport(rotor, at, fixed.stiffness, fixed.seat, fixed.damping_time)
+        bolts = () if fixed.bolts is None else fixed.bolts.build()
+        return TorqueSupport(rotor, at, fixed.stiffness, fixed.seat, fixed.damping_time, bolts)
 
 
 def train_members(
@@ -192,6 +261,19 @@ def with_planets(document: Mapping[str, Any], context: Mapping[str, Any]) -> tup
         for index, one in enumerate(sets):
             expansion.add(index, dict(one))
     return expansion.document, PlanetCopies(expansion.origins)
+
+
+def with_implied_pairs(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a document with the gear pairs that its sets imply written out, once of planets that are written once."""
+    written = _Expansion(document, {})
+    for index, entry in written.entries("planetary"):
+        one = {**entry, "fixed": written._fixed(entry)}
+        planets = one.get("planets")
+        if _are_names(planets) and planets:
+            written._pair_gears(index, one, len(planets) if {"count", "angles"} & one.keys() else 1)
+    if not written.document.get("gear_pair"):
+        written.document.pop("gear_pair", None)
+    return written.document
 
 
 _KINDS = ("rotor", "gear", "bearing", "gear_pair")

@@ -26,20 +26,24 @@ NodeNumber = Annotated[int, Whole(0, 999_999_999)]
 class ReducedFiles(Table):
     """`[housing.reduced]`: files of the matrices, and what these do not say."""
 
-    mass: CaseFile
-    """Mass matrix: Matrix Market (`.mtx`), NumPy (`.npz`) or Nastran (OUTPUT4 `.op4`; DMIG `.pch`, `.bdf`, `.nas`)."""
     stiffness: CaseFile
-    """Stiffness matrix."""
+    """Stiffness matrix: a file of Nastran, Abaqus, CalculiX or Ansys, of Matrix Market, NumPy, NetCDF or REXS."""
+    mass: CaseFile | None = None
+    """Mass matrix. Default: none, of a housing that follows its loads without resonances of its own."""
     damping: CaseFile | None = None
     """Matrix of viscous damping. Default: none beside `damping_ratio` and dashpots."""
     mass_name: Annotated[str, Field(max_length=100)] = ""
-    """Name of the mass matrix in a file of several. Default: the only one."""
+    """Name of the mass matrix in a file of several. Default: the only one, or one named as usual."""
     stiffness_name: Annotated[str, Field(max_length=100)] = ""
-    """Name of the stiffness matrix in a file of several. Default: the only one."""
+    """Name of the stiffness matrix in a file of several. Default: the only one, or one named as usual."""
     damping_name: Annotated[str, Field(max_length=100)] = ""
-    """Name of the damping matrix in a file of several. Default: the only one."""
+    """Name of the damping matrix in a file of several. Default: the only one, or one named as usual."""
+    static: CaseFile | None = None
+    """Static stiffness of the interface nodes from another computation, for a proof: `check` states the difference."""
     nodes: tuple[NodeNumber, ...] = Field(default=(), max_length=500)
     """Nodes of the first rows, six each, of files that do not name them; the rows after these are internal."""
+    mapping: CaseFile | None = None
+    """Nodes and components of the rows, in place of `nodes`: mapping of Ansys (`.mapping`) or CalculiX (`.dof`)."""
     units: Literal["SI", "mm-t-s"] = "SI"
     """Units of the matrices."""
 

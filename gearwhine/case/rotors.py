@@ -384,7 +384,8 @@ class Rotor(Table):
     pin: Pin | None = None
     """Elastic pin of a planet between its bearings and the carrier. Default: a rigid one."""
     rim_seat: Name | None = None
-    """Seat of the housing, with `ring_orders`, whose bore the rim of the ring gear on this rotor follows as it deforms.
+    """Seat of the housing, with `ring_orders`, whose bore the rim of the ring gear on this rotor follows as it deforms;
+    the gear's `ring_support` is then none, `clamped` or `housing`.
     Default: the rim moves as one body with the rotor."""
     start: Length = 0.0
     """z of its left end."""

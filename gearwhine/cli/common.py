@@ -54,7 +54,15 @@ CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a b
 
 _LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take; the path leaves room for file names
 _LONGEST_SHOWN = 60
-_ALWAYS_WRITING = ("mesh", "render", "run", "survey", "sweep", "update")  # commands that need no --output to write
+_ALWAYS_WRITING = (
+    "mesh",
+    "render",
+    "run",
+    "survey",
+    "sweep",
+    "update",
+    "vary",
+)  # commands that need no --output to write
 _RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".vtu")
 
 

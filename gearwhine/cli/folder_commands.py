@@ -165,7 +165,7 @@ def export(
         Path | None,
         Parameter(
             name=["--reduced"],
-            help="The case's housing as reduced matrices (.npz, .pch, .op4, .mtx), and the tables of a case for them.",
+            help="The case's housing as reduced matrices (.npz, .nc, .pch, .op4, .mtx), with a case's tables for them.",
         ),
     ] = None,
     common: Common = NONE_GIVEN,

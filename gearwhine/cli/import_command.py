@@ -1,5 +1,6 @@
 """Command that makes a case of a gear unit in another program's file: import."""
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,6 +22,13 @@ def import_(
     load_case: Annotated[
         str, Parameter(name=["--load-case"], help="Number of the load case of a load spectrum. Default: the first.")
     ] = "",
+    housing: Annotated[
+        Path | None,
+        Parameter(name=["--housing"], help="Reduced stiffness (and mass) of the housing, a seat under each bearing."),
+    ] = None,
+    mass: Annotated[
+        Path | None, Parameter(name=["--mass"], help="Reduced mass of the housing, where it is in another file.")
+    ] = None,
     json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
         False
     ),
@@ -31,10 +39,10 @@ def import_(
     """
     from gearwhine.output.terminal import shown_by
 
-    hand_over(_import(file, output, load_case), Common(json=json), shown_by(_sections))
+    hand_over(_import(file, output, load_case, housing, mass), Common(json=json), shown_by(_sections))
 
 
-def _import(file: str, output: Path | None, load_case: str) -> dict[str, Any]:
+def _import(file: str, output: Path | None, load_case: str, housing: Path | None, mass: Path | None) -> dict[str, Any]:
     from gearwhine.case import CaseError, Problem
     from gearwhine.case import load_case as read_case
     from gearwhine.case.load import imported_case, read_rexs_file
@@ -49,6 +57,16 @@ def _import(file: str, output: Path | None, load_case: str) -> dict[str, Any]:
     if target.exists():
         raise CaseError([Problem("--output", str(target), "a place where no file of that name stands yet")])
     imported = imported_case(*read_rexs_file(file), load_case)
+    if "housing" in imported.document:
+        # The matrix of the casing stays in the file: the case names it by the way from its own folder.
+        way = os.path.relpath(file, target.parent)
+        imported.document["housing"]["reduced"]["stiffness"] = Path(way).as_posix()
+    if mass is not None and housing is None:
+        raise CaseError([Problem("--mass", str(mass), "--housing beside it")])
+    if housing is not None:
+        from gearwhine.from_case.housing_of_matrices import with_reduced_housing
+
+        imported = with_reduced_housing(imported, housing, mass, target.parent)
     with staging(target.parent, listed=False) as place:  # the case is the user's
         (place / target.name).write_text(imported.toml, encoding="utf-8")
     try:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 _FRESH_MODES = "Solve the housing's modes again, even if OUT holds them."
 _FRESH_RUN = "Start again, even if OUT holds the housing's modes or an interrupted transient."
 _FRESH_POINTS = "Solve again the points and modes that OUT holds."
+_FRESH_SAMPLES = "Solve again the gearboxes and modes that OUT holds."
 _OUT = "Results go to OUT (default: ./<case>-results)."
 
 
@@ -101,6 +102,15 @@ STUDY_COMMANDS = (
     StudyCommand(
         "sweep", "sweep.sections", always_writes=True, without=("folder", "fresh"), fresh=_FRESH_POINTS, timed=True
     ),
+    StudyCommand(
+        "vary",
+        "variation.sections",
+        always_writes=True,
+        without=("folder", "fresh"),
+        names={"samples": "n"},
+        fresh=_FRESH_SAMPLES,
+        timed=True,
+    ),
     StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
     StudyCommand("survey", "survey.sections", always_writes=True, fresh=_FRESH_MODES),
     StudyCommand("update", "update.sections", always_writes=True),
@@ -153,12 +163,14 @@ def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
         if get_origin(kind) is Sequence:
             (item,) = get_args(kind)
             kind = list[item]  # type: ignore[valid-type]
-        name = f"--{entry.names.get(parameter.name, parameter.name).replace('_', '-')}"
+        name = entry.names.get(parameter.name, parameter.name).replace("_", "-")
+        # A name of one letter stands beside the parameter's own.
+        names = [f"--{name}"] if len(name) > 1 else [f"--{parameter.name.replace('_', '-')}", f"-{name}"]
         limits = [validators.Number(gte=rule.at_least, lte=rule.at_most) for rule in rules]
         # A flag that is off by default needs no option that puts it off.
         negative = None if parameter.default is True else ()
         text = texts[parameter.name]
-        marker = Parameter(name=[name], negative=negative, validator=limits, consume_multiple=False, help=text)
+        marker = Parameter(name=names, negative=negative, validator=limits, consume_multiple=False, help=text)
         default = [] if parameter.default == () else parameter.default
         yield parameter.replace(
             kind=inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, marker]
@@ -208,6 +220,7 @@ def _sections(place: str) -> Callable[["Document"], Any]:
 
 def _require_whole(document: Mapping[str, Any]) -> None:
     """Refuse to end well where points of a sweep failed; what is there is shown and written before."""
-    if failed := document.get("failed"):
+    # A varied case goes without the gearboxes that cannot be, and says so.
+    if "points" in document and (failed := document["failed"]):
         total = len(document["points"])
         raise PartlyFailedError(f"{failed} of {total} points failed; they are tried again on the next run")

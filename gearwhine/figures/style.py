@@ -219,6 +219,13 @@ def shortened(text: str, most: int = 28) -> str:
     return line if len(line) <= most else f"{line[: most - 1].rstrip()}…"
 
 
+def cut_within(text: str, most: int) -> str:
+    """Return a text on one line, cut before its last third where it is longer: names alike differ at their ends."""
+    line = " ".join(text.split())
+    kept = most // 3
+    return line if len(line) <= most else f"{line[: most - kept - 1].rstrip()}…{line[-kept:].lstrip()}"
+
+
 @contextmanager
 def missing_glyphs_as_boxes() -> Iterator[None]:
     """Draw letters that no font has as boxes, without a warning."""
@@ -357,7 +364,7 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
         axes.text(
             place,
             level + sense * _RISE,
-            shortened(label.text, _LONGEST_LABEL),
+            cut_within(label.text, _LONGEST_LABEL),
             transform=paper,
             color=label.color,
             fontsize=NOTE,
@@ -396,7 +403,7 @@ def draw_column(axes: Axes, labels: Sequence[Label]) -> None:
         axes.text(
             width + _ASIDE,
             place,
-            shortened(label.text, _LONGEST_LABEL),
+            cut_within(label.text, _LONGEST_LABEL),
             transform=paper,
             color=label.color,
             fontsize=NOTE,
@@ -412,6 +419,6 @@ def _size(text: str) -> tuple[float, float]:
     FigureCanvasAgg(figure)
     with missing_glyphs_as_boxes():
         extent = figure.text(
-            0.0, 0.0, shortened(text, _LONGEST_LABEL), fontsize=NOTE, parse_math=False
+            0.0, 0.0, cut_within(text, _LONGEST_LABEL), fontsize=NOTE, parse_math=False
         ).get_window_extent()
     return extent.width / _MEASURING_DPI * MM_PER_INCH, extent.height / _MEASURING_DPI * MM_PER_INCH

@@ -13,6 +13,7 @@ from gearwhine.case.reduced_housing import ReducedFiles
 from gearwhine.case.reduced_housing import ReducedHousing as ReducedTable
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.reduced_component import InterfaceMatrices, component_of_reduced_housing
+from gearwhine.exchange.file_names import is_rexs_file
 from gearwhine.housing import HousingError
 from gearwhine.housing.reduced import (
     LabelledMatrix,
@@ -21,7 +22,9 @@ from gearwhine.housing.reduced import (
     NodeSpring,
     ReducedHousing,
     read_matrix,
+    read_row_labels,
     reduced_matrices,
+    static_stiffness,
 )
 from gearwhine.housing.reduced.writing import NAMES
 
@@ -55,6 +58,7 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
         With what is wrong with the files, their matrices, or with what is at their nodes.
     """
     read = _read(table.reduced, files)
+    static = read.pop("static", None)
     try:
         return ReducedHousing(
             reduced_matrices(read, table.reduced.nodes, table.reduced.units),
@@ -66,6 +70,7 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
             ],
             table.damping_ratio,
             limit=_TWO_PI * table.frequency_limit,
+            static=None if static is None else static_stiffness(static, table.reduced.nodes, table.reduced.units),
         )
     except HousingError as error:
         raise CaseError(_problems(table, error)) from error
@@ -82,16 +87,18 @@ def tables_of(reduced: InterfaceMatrices, files: Mapping[str, Path], limit: floa
     limit : float or None
         Frequency below which they are accurate [rad/s]; None where it is unknown.
     """
-    frequency = f"{limit / _TWO_PI!r} Hz" if limit is not None else "… Hz"
-    lines = ["[housing]", f'frequency_limit = "{frequency}"', "damping_ratio   = 0.0    # the matrix has it", ""]
+    lines = ["[housing]"]
+    if limit is not None:
+        lines.append(f'frequency_limit = "{limit / _TWO_PI!r} Hz"')
+    else:
+        lines.append("# frequency_limit, below which the matrices are accurate, is not known: please state it")
+    lines += ["damping_ratio   = 0.0    # the matrix has it", ""]
     lines.append("[housing.reduced]")
     for kind, path in files.items():
         lines.append(f"{kind} = {json.dumps(path.name, ensure_ascii=False)}")
-        if path.suffix.lower() != ".mtx":
-            name = kind if path.suffix.lower() == ".npz" else NAMES[kind]
+        if path.suffix.lower() not in (".mtx", ".dof"):
+            name = kind if path.suffix.lower() in (".npz", ".nc") else NAMES[kind]
             lines.append(f'{kind}_name = "{name}"')
-    if all(path.suffix.lower() in (".mtx", ".op4") for path in files.values()):
-        lines.append(f"nodes = {[seat.node for seat in reduced.seats]}")
 
     def at(place: Sequence[float]) -> str:
         return "[" + ", ".join(f'"{number!r} m"' for number in map(float, place)) + "]"
@@ -108,18 +115,51 @@ def tables_of(reduced: InterfaceMatrices, files: Mapping[str, Path], limit: floa
 
 def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
     """Read the matrices; each file that cannot be used is a problem of its key."""
-    read, problems = dict[str, LabelledMatrix](), []
-    for kind in ("mass", "stiffness", "damping"):
+    read, problems, labels = dict[str, LabelledMatrix](), [], None
+    if table.mapping is not None:
+        try:
+            labels = files.read(table.mapping, read_row_labels)
+        except (HousingError, ChangedFileError) as error:
+            expected = f"a file of the nodes of rows; {error}"
+            problems.append(Problem("housing.reduced.mapping", table.mapping.name, expected))
+    for kind, name in (
+        ("mass", table.mass_name),
+        ("stiffness", table.stiffness_name),
+        ("damping", table.damping_name),
+        ("static", ""),
+    ):
         path = getattr(table, kind)
         if path is None:
             continue
         try:
-            read[kind] = files.read(path, read_matrix, name=getattr(table, f"{kind}_name"))
+            if is_rexs_file(path):
+                matrix = files.read(path, _casing_stiffness)
+            else:
+                matrix = files.read(path, read_matrix, name=name, kind=kind.replace("static", "stiffness"))
+            read[kind] = matrix if labels is None or kind == "static" else matrix.with_rows(labels, path.name)
         except (HousingError, ChangedFileError) as error:
             problems.append(Problem(f"housing.reduced.{kind}", path.name, f"a file of the {kind} matrix; {error}"))
     if problems:
         raise CaseError(problems)
     return read
+
+
+def _casing_stiffness(path: Path) -> LabelledMatrix:
+    """Read the reduced stiffness of the casing in a REXS file.
+
+    Raises
+    ------
+    HousingError
+        Where it has none, or is no REXS file.
+    """
+    from gearwhine.exchange.rexs.errors import RexsError
+    from gearwhine.exchange.rexs.reading import read_rexs
+    from gearwhine.exchange.rexs.reduced_casing import casing_stiffness
+
+    try:
+        return casing_stiffness(read_rexs(path))
+    except RexsError as error:
+        raise HousingError(str(error)) from error
 
 
 def _problems(table: ReducedTable, error: HousingError) -> list[Problem]:

@@ -128,6 +128,7 @@ COMMANDS = (
     "steady",
     "sound",
     "sweep",
+    "vary",
     "compare",
     "survey",
     "update",

@@ -33,6 +33,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         sweep,
         system,
         update,
+        variation,
     )
 
     command = document.get("command")
@@ -58,6 +59,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (run.report, if_command("steps", *_RUNS)),
         (sound.report, part("sound") or if_command("total_db_a", "sound")),
         (sweep.report, if_command("points", "sweep")),
+        (variation.report, if_command("quantities", "vary")),
         (housing.render_report, if_command("command", "render")),
         (steady_state.report, if_command("motions", "steady")),
     )

@@ -125,6 +125,8 @@ REDUCED_HOUSING = (
             Quantity("massless_coordinates", "massless_count"),
             Quantity("free_rigid_motions", "free_motions"),
             Quantity("mass_kg"),
+            Quantity("held_frequency_hz", "held_frequency", optional=True),
+            Quantity("static_difference", optional=True),
         ),
         optional=True,
     ),
@@ -341,7 +343,7 @@ MEASURED = (
         lambda measured: list(measured.frequencies or ()) if measured.survey is None else None,
         optional=True,
     ),
-    Quantity("file", lambda measured: None if measured.survey is None else str(measured.file), optional=True),
+    Quantity("file", lambda measured: None if measured.survey is None else measured.file_names, optional=True),
     Part("", "survey", _SURVEY),
     Quantity("align", _alignment, optional=True),
     Quantity("pairing", "paired_by"),
@@ -405,6 +407,7 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
 
 
 _WIDTH = 12  # of the column with the names of parts
+_WHOLE_TURNS = 1e-6  # distance of the turns in a record from whole ones that is rounding
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -441,7 +444,7 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "planetary": [line for one in document.get("planetary", ()) for line in set_summary(one)],
         "damping": damping_lines(document.get("damping", ())),
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
-        "transient": [_transient_line(document["transient"])] if "transient" in document else [],
+        "transient": [_transient_line(document)] if "transient" in document else [],
         "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
         "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
     }
@@ -543,7 +546,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "gear bodies": gear_body_lines(document),
         "damping": damping_lines(document.get("damping", ())),
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
-        "transient": [_transient_line(document["transient"])] if "transient" in document else [],
+        "transient": [_transient_line(document)] if "transient" in document else [],
         "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
         "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
         "standing": [f"{key}: {text}" for key, text in document.get("provenance", {}).items()],
@@ -596,11 +599,23 @@ def _measured_lines(measured: Document) -> list[str]:
     return lines
 
 
-def _transient_line(transient: Document) -> str:
+def _carrier_turns(document: Document, recorded: float) -> Iterator[str]:
+    """Yield the turns of each carrier in a record, whose lines are sharpest where they are whole."""
+    for one in document.get("planetary", ()):
+        speeds = {member["role"]: abs(member["speed_rpm"]) for member in one["members"]}
+        if speeds.get("carrier") and (lead := abs(document["operation"]["speed_rpm"])):
+            turns = recorded * speeds["carrier"] / lead
+            whole = abs(turns - round(turns)) < _WHOLE_TURNS
+            yield f", {turns:.5g} turns of {one['carrier']}" + ("" if whole else ", not whole ones")
+
+
+def _transient_line(document: Document) -> str:
+    transient = document["transient"]
     tolerance = f"tolerance {transient['tolerance']:g}"
     if "run" not in transient:
         recorded = transient["recorded_revolutions"]
-        return f"{transient['revolutions']:g} revolutions, the last {recorded:g} recorded; {tolerance}"
+        turns = "".join(_carrier_turns(document, recorded))
+        return f"{transient['revolutions']:g} revolutions, the last {recorded:g} recorded{turns}; {tolerance}"
     run = transient["run"]
     speeds = " → ".join(f"{speed:.6g}" for speed in dict.fromkeys(run["speeds_rpm"]))
     line = f"free from {speeds} rpm" if run["free"] else f"{speeds} rpm"
@@ -645,6 +660,10 @@ def _reduced_lines(document: Document) -> list[str]:
         free = f"{proved['free_rigid_motions']} of 6 rigid motions free without the supports"
         massless = f", {proved['massless_coordinates']} without mass" if proved["massless_coordinates"] else ""
         lines.append(f"proved: symmetric, no negative eigenvalue, {free}{massless}; {proved['mass_kg']:.6g} kg")
+        if (held := proved.get("held_frequency_hz")) is not None:
+            lines.append(f"modes with the nodes held: up to {held:.5g} Hz")
+        if (difference := proved.get("static_difference")) is not None:
+            lines.append(f"static stiffness of the interface: within {100.0 * difference:.2g} % of the one given")
     frequencies = housing["frequencies_hz"]
     shown = ", ".join(f"{frequency:.2f}" for frequency in frequencies[:_REDUCED_FREQUENCIES])
     more = f" and {len(frequencies) - _REDUCED_FREQUENCIES} more" if len(frequencies) > _REDUCED_FREQUENCIES else ""
@@ -759,4 +778,6 @@ def _tooth_line(gear: Document) -> str:
     span = gear["span"]
     measured = "" if span is None else f"; span of {span['teeth']}: {1e3 * span['length_m']:.6g} mm"
     cut = " (undercut)" if gear["undercut"] else ""
-    return f"{gear['name']}: {gear['teeth']} teeth{helix}, diameters {circles} mm{cut}{measured}"
+    outside = gear["diameters_m"].get("rim_outside")
+    rim = "" if outside is None else f"; outside of the rim {1e3 * outside:.6g}"
+    return f"{gear['name']}: {gear['teeth']} teeth{helix}, diameters {circles} mm{rim}{cut}{measured}"

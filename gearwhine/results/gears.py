@@ -93,7 +93,9 @@ GEAR = (
                 "base": row.gear.base_radius,
                 "form": row.gear.form_radius,
                 "root": row.gear.root_circle_radius,
+                "rim_outside": row.gear.rim_outer_radius,
             }.items()
+            if radius is not None
         },
     ),
     Quantity(

@@ -11,6 +11,7 @@ from gearwhine.results.line_columns import LINE_NAME, MECHANISMS, line_frequency
 if TYPE_CHECKING:
     from gearwhine.coupling.machine.mounted_parts import GearMesh
     from gearwhine.coupling.periodic.response import PeriodicResponse
+    from gearwhine.coupling.periodic.settling import SettledMotion
     from gearwhine.coupling.periodic.superposition import SuperposedResponse
     from gearwhine.coupling.signals.spectrum import SignalParts
     from gearwhine.coupling.time.transient import TransientFigures
@@ -24,7 +25,7 @@ class MeshFigures(NamedTuple):
     """Gear mesh, the figures of a motion by contact, and the number of the loaded contact."""
 
     mesh: "GearMesh"
-    figures: "TransientFigures | PeriodicResponse | SuperposedResponse"
+    figures: "TransientFigures | PeriodicResponse | SettledMotion | SuperposedResponse"
     contact: int
 
     @property

@@ -30,6 +30,7 @@ from gearwhine.results.planetary import MEMBER
 
 if TYPE_CHECKING:
     from gearwhine.coupling.assembly import CoupledMachine
+    from gearwhine.coupling.description.parts import SupportBolt
     from gearwhine.coupling.linear.line_sensitivity import Line
     from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
@@ -213,9 +214,19 @@ _PAIR_COLUMNS = (
     *columns_of(field for field in PAIR if field is not _MISALIGNMENT),
     Column(_PEAK_TO_PEAK.heading, "transmission_error_m.peak_to_peak", ".3f", _MICRO),
 )
+
+
+def _by_carrier(row: Document) -> str:
+    """Return the misalignment by the carrier and its pins; nothing of gears that are no planets."""
+    part = row["misalignment_by_cause_rad"]["carrier"]
+    return "" if part == 0.0 else f"{_MICRO * part:z.2f}"
+
+
 _CAUSE_COLUMNS = (
     *columns_of((*_GEARS, _MISALIGNMENT)),
-    *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
+    *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES[:3]),
+    Column("by\ncarrier", "misalignment_by_cause_rad.carrier", "z.2f", _MICRO, shown=_by_carrier),
+    Column("by\nbodies", "misalignment_by_cause_rad.bodies", "z.2f", _MICRO),
 )
 
 _PLACE = ("shaft_place",)
@@ -551,6 +562,35 @@ PLANETARY = (
 """Quantities of a planetary set at the operating point; a row is a :class:`PlanetaryLoad`."""
 
 
+BOLT = (
+    Quantity("shaft", heading="shaft"),
+    Quantity("angle_rad", "bolt.angle", heading="bolt at", shown=lambda row: f"{math.degrees(row['angle_rad']):.4g}°"),
+    Quantity("radial_force_n", "radial", heading="radial\n[N]", shown=".0f"),
+    Quantity("tangential_force_n", "tangential", heading="tangential\n[N]", shown=".0f"),
+    Quantity("axial_force_n", "axial", heading="axial\n[N]", shown=".0f"),
+)
+"""Quantities of a bolt of a torque support: force of the shaft on it; a row is a :class:`_Bolt`."""
+
+
+class _Bolt(NamedTuple):
+    """Bolt of a torque support, the shaft that it holds, and its force outwards, along the circle and along z [N]."""
+
+    shaft: str
+    bolt: "SupportBolt"
+    radial: float
+    tangential: float
+    axial: float
+
+
+def _bolts(solved: "SolvedLoad") -> Any:
+    """Bolts of all torque supports; absent where no support has any."""
+    return [
+        _Bolt(load.support.shaft, bolt, *force)
+        for load in solved.point.supports
+        for bolt, force in zip(load.support.bolts, load.bolt_forces.tolist(), strict=True)
+    ] or ABSENT
+
+
 def _over_turns(solved: "SolvedLoad") -> Any:
     """Load shares, mesh forces and misalignments over the turn of each carrier, where they are asked for."""
     return [
@@ -598,6 +638,7 @@ LOAD: Fields = (
     Rows("bearings", "bearings", BEARING, "loaded_bearing"),
     Rows("gear_pairs", "pairs", (Part("", "load", PAIR), *TAKEN), "loaded_pair"),
     Rows("planetary", lambda solved: list(solved.planetary) or ABSENT, PLANETARY),
+    Rows("support_bolts", _bolts, BOLT),
     Quantity("carrier_turns", _over_turns),
     _of_planets("loaded_planet", lambda planet: planet.shaft, "", ""),
     _of_planets("planet_load_share", lambda planet: planet.load_share, "1", "part of the set's torque"),
@@ -916,6 +957,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _misalignments(document)
     yield from _planetary(document)
+    yield from table_of(columns_of(BOLT), document.get("support_bolts", ()), "Forces on the bolts of torque supports")
     rows = [
         {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
         for point in document.get("over_torque", ())
@@ -925,6 +967,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from _influences(document)
     yield from _lines(document)
     yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
+    yield from _pin_error_note(document)
     yield from kept_sentence(document, LOAD_OPTIONS, "equilibrium")
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:
@@ -944,6 +987,17 @@ def _planetary(document: Document) -> Iterator[str | Table]:
                 f"Over a turn of the carrier the load shares are {shares.min():.4f} to {shares.max():.4f}, K_γ at most "
                 f"{len(shares) * shares.max():.4f}"
             )
+
+
+def _pin_error_note(document: Document) -> Iterator[str]:
+    """Yield that deflections of planets have the errors of their pins in them."""
+    errors = [
+        (planet["name"], float(np.hypot(*planet["pin_error_m"])))
+        for one in document.get("planetary", ())
+        for planet in one["planets"]
+    ]
+    if listed := [f"{name} {_MICRO * error:.3g} µm" for name, error in errors if error > 0.0]:
+        yield f"Deflections are from the places of pins without errors, which they contain: {', '.join(listed)}"
 
 
 def _grouped(motions: list[str]) -> str:

@@ -45,7 +45,7 @@ PROOF = (
     Quantity("residual"),
     Quantity("error"),
     Quantity("elements"),
-    Quantity("switches"),
+    Quantity("switches", optional=True),
     Quantity("newton_steps"),
 )
 """Quantities of a periodic response: its period, stability and accuracy."""
@@ -407,11 +407,19 @@ CURVE = (
 )
 """Quantities of the branch over speed."""
 
+
+def _method(solved: "SolvedSteady") -> str:
+    """Return how the motion was found: by shooting ("periodic"), by settling, or as a superposed one."""
+    if solved.superposed is not None:
+        return "superposed"
+    return "settled" if solved.motions[0].response.switches is None else "periodic"
+
+
 STEADY = (
     Quantity("speed_rpm", "motions.0.speed"),
     Quantity("coordinates", "machine.system.size"),
     Quantity("trusted_below_hz", lambda solved: solved.motions[0].trusted_limit),
-    Quantity("method", lambda solved: "periodic" if solved.superposed is None else "superposed"),
+    Quantity("method", _method),
     Rows(
         "motions",
         lambda solved: (
@@ -522,7 +530,7 @@ def _proof(motion: Document, name: str) -> str:
         stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
     return (
         f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes {closing(motion['residual'])}, "
-        f"changes by {motion['error']:.0e} with elements half as long"
+        f"changes by {motion['error']:.0e} with {'elements' if 'switches' in motion else 'steps'} half as long"
     )
 
 

@@ -11,7 +11,8 @@ from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Getter, Part, 
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
-from gearwhine.results.motion import band_words, damping_sentence, gear_body_lines
+from gearwhine.results.mesh_lines import LINE_LIMITS, line_content
+from gearwhine.results.motion import damping_sentence, gear_body_lines
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
@@ -188,7 +189,7 @@ CERTIFICATE = (
     Quantity("zeros"),
     Quantity("max_residual"),
     Quantity("sum_rule"),
-    Quantity("complete", lambda certificate: certificate.found == certificate.expected),
+    Quantity("complete", "is_complete"),
 )
 
 STABILITY = (
@@ -340,7 +341,12 @@ def _line_part(name: str, attribute: str, part: str) -> Quantity:
 
 def _of_turning(attribute: str) -> Any:
     """Return the getter of an attribute that lines have where directions turn with a carrier."""
-    return lambda row: getattr(row.line, attribute) if row.line.sidebands else ABSENT
+
+    def value(row: _Line) -> Any:
+        found = getattr(row.line, attribute) if row.line.sidebands else None
+        return ABSENT if found is None else found
+
+    return value
 
 
 LINE = (
@@ -355,7 +361,16 @@ LINE = (
     ),
     Quantity("kind", _of_turning("kind"), "system_line_kind"),
     Quantity("order", lambda row: row.line.frequency / abs(row.system.speed), "system_line_order", unit="1"),
-    Quantity("phasing", _of_turning("phasing"), "system_line_phasing", unit="1"),
+    Quantity("harmonic", _of_turning("harmonic")),
+    Quantity("turns", _of_turning("turns")),
+    Quantity(
+        "phasing",
+        _of_turning("phasing"),
+        "system_line_phasing",
+        unit="1",
+        long_name="motion of the housing by all planets over the sum of its motions by each planet's meshes alone",
+    ),
+    Quantity("ideal_phasing", _of_turning("ideal_phasing")),
     Quantity("suppressed", _of_turning("is_suppressed")),
     Part("sensor_acceleration_m_per_s2", ".", tuple(_line_part(*part) for part in _PARTS)),
 )
@@ -500,6 +515,7 @@ SYSTEM = (
         LINE,
         "system_line",
     ),
+    LINE_LIMITS,
     Quantity("superposition_error"),
     Quantity("trusted_below_hz", _trusted_below),
     Part(
@@ -545,6 +561,9 @@ def system_document(solved: "SolvedSystem", housing: "HousingModes | None" = Non
 _NAMES = {"components": "", "bearings": "", "gear_meshes": "teeth of "}
 _CROSSINGS = 30  # shown at most, those nearest to operation
 _WHIRL = 0.5  # circularity from which a sense of whirl is named
+UNDAMPED_RATIO = 1e-3
+"""Damping ratio of a mode below which the height of its peak says nothing: the model lacks what damps it."""
+_PEAK_OF_MODE = 5e-3  # part of a peak's frequency that the mode behind it is off
 
 
 def report(document: Document) -> Section:
@@ -599,12 +618,17 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from (f"Gear body {line}." for line in gear_body_lines(document))
     yield from table_of(mode_columns(listed), listed)
     yield "Shares of the kinetic energy; teeth: share of the strain energy."
+    if sets := sorted({carrier for mode in listed if (carrier := _set_of(mode))}):
+        yield (
+            f"Rotational, translational, planet and mixed modes: those of the planetary set{'s' * (len(sets) > 1)} of "
+            f"{', '.join(sets)}; mixed ones are none of the three, as where planets or the housing differ all round."
+        )
     if residual := len(within) - len(listed):
         yield f"Left out: {counted(residual, 'residual mode')}, local compliance at the seats, no modes of the housing."
     if certificate := document.get("certificate"):
         yield (
             f"{certificate['found']} of {certificate['expected']} eigenvalues found, {certificate['zeros']} of them "
-            f"zero; residuals up to {certificate['max_residual']:.0e}, sum rule kept to {certificate['sum_rule']:.0e}."
+            f"zero; residuals up to {certificate['max_residual']:.0e}, sum rule {_sum_rule(certificate)}."
         )
     if "stability" in document:
         yield from _stability(document["stability"])
@@ -612,8 +636,15 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield static_error_sentence(error)
     if trusted and len(within) < len(modes):
         yield f"{counted(len(modes) - len(within), 'more mode')} above {2.0 * trusted:.5g} Hz."
-    for response in document.get("transmissibility", ()):
-        yield from _peaks(response)
+    responses = document.get("transmissibility", ())
+    for response in responses:
+        yield from _peaks(response, modes)
+    if any(_is_undamped(peak, modes) for response in responses for peak in _listed_peaks(response)):
+        yield (
+            f"Undamped: peaks at modes whose damping ratio is below {UNDAMPED_RATIO:g}, which come last, as damping "
+            "that the model lacks decides their height. Often nothing damps the motion along an axis: give bearings "
+            "damping along z."
+        )
     if document.get("transmissibility"):
         yield (
             "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
@@ -622,10 +653,21 @@ def _content(document: Document) -> Iterator[str | Table]:
         )
     if document.get("transmissibility") and any("turning_frequency_hz" in mode for mode in modes):
         yield "They are the motions at the frequency of the error; the lines below have the sidebands beside it."
-    yield from _lines(document.get("mesh_lines", []))
+    yield from line_content(document)
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
     yield from kept_sentence(document, SYSTEM_OPTIONS, "modes")
+
+
+def _sum_rule(certificate: Document) -> str:
+    """Return how well the modes keep their sum rule, and what follows where they miss it."""
+    size = f"{certificate['sum_rule']:.0e}"
+    if certificate["complete"]:
+        return f"kept to {size}"
+    return (
+        f"missed by {size}: two of the modes are all but one, as at critical damping, so that the rule does not prove "
+        "them complete; responses are solved directly, without them"
+    )
 
 
 def _mesh_sentence(mesh: Document) -> str:
@@ -662,8 +704,10 @@ def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
     rare = [kind for kind in ("axial", "body", "pedestal") if kind in some]
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
     turning = any("turning_frequency_hz" in mode for mode in modes)
+    sets = {_set_of(mode) for mode in modes}
+    named = _named if len(sets - {""}) > 1 else _named_in_only_set
     return (
-        *columns_of(MODE),
+        *(replace(column, shown=named) if column.heading == "kind" else column for column in columns_of(MODE)),
         *(_TURNING_MODE_COLUMNS if turning else ()),
         *(Column("teeth" if kind == "mesh" else kind, f"energy.{kind}", shown=partial(_share, kind)) for kind in kinds),
         Column("strained most", _strained, numbers=("strained_most.share",)),
@@ -679,13 +723,26 @@ def _named(mode: Document) -> str:
     """Return a mode's kind, its place, and the sense of its whirl about z."""
     kind, where = mode["kind"], mode.get("where")
     if "planetary" in mode and kind != "rigid":
-        in_set, _, carrier = mode["planetary"].partition(": ")
-        return f"{in_set} (planetary set of {carrier})"
+        return f"{mode['planetary'].partition(': ')[0]}{_in_set(mode)}"
     if not where or where == kind or kind in ("rigid", "mesh", "residual"):
         return str(kind)
     whirl = mode.get("whirl", 0.0)
     sense = "" if abs(whirl) < _WHIRL else " ↺" if whirl > 0.0 else " ↻"
     return f"{kind}: {where}{sense}"
+
+
+def _set_of(mode: Document) -> str:
+    """Return the carrier of a mode's planetary set; empty of modes of no set."""
+    return str(mode.get("planetary", "")).partition(": ")[2]
+
+
+def _named_in_only_set(mode: Document) -> str:
+    """Return a mode's kind and place as `_named`, of a machine with one planetary set, which need not be named."""
+    return _named(mode).removesuffix(_in_set(mode))
+
+
+def _in_set(mode: Document) -> str:
+    return f" (planetary set of {_set_of(mode)})"
 
 
 def _strained(mode: Document) -> str:
@@ -713,84 +770,53 @@ def _stability(stability: Document) -> Iterator[str]:
         )
 
 
-def _peaks(response: Document) -> Iterator[str | Table]:
-    """Yield the highest responses of dynamic mesh force and sensors to a micrometre of mesh error."""
+def _is_undamped(peak: Document, modes: list[Document]) -> bool:
+    """Whether a peak of a response is that of a mode that hardly anything damps."""
+    at = peak["frequency_hz"]
+    nearest = min(modes, key=lambda mode: abs(mode["damped_frequency_hz"] - at), default=None)
+    if nearest is None or nearest["damping_ratio"] >= UNDAMPED_RATIO:
+        return False
+    return bool(abs(nearest["damped_frequency_hz"] - at) <= _PEAK_OF_MODE * at)
+
+
+_RESPONSES = (
+    ("mesh_force_n", "mesh force [N/µm]"),
+    ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]"),
+)
+
+
+def _listed_peaks(response: Document) -> Iterator[Document]:
+    for key, _ in _RESPONSES:
+        for peaks in response[key].values():
+            yield from peaks
+
+
+def _peaks(response: Document, modes: list[Document]) -> Iterator[str | Table]:
+    """Yield the highest responses of mesh forces and sensors to a micrometre of mesh error, damped ones first."""
     rows: list[dict[str, Any]] = []
-    for key, quantity in (
-        ("mesh_force_n", "mesh force [N/µm]"),
-        ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]"),
-    ):
-        rows += [
-            {"what": quantity, "name": name, "peaks": [one | {"amplitude": 1e-6 * one["amplitude"]} for one in peaks]}
-            for name, peaks in response[key].items()
-        ]
+    for key, quantity in _RESPONSES:
+        for name, peaks in response[key].items():
+            scaled = [
+                peak | {"amplitude": 1e-6 * peak["amplitude"], "undamped": _is_undamped(peak, modes)} for peak in peaks
+            ]
+            rows.append({"what": quantity, "name": name, "peaks": sorted(scaled, key=lambda peak: peak["undamped"])})
+
+    def words(peak: Document) -> str:
+        height = "undamped" if peak["undamped"] else f"{peak['amplitude']:.3g}"
+        return f"{peak['frequency_hz']:.0f} ({height})"
+
     columns = (
         Column("peak amplitude of", "what"),
         Column("at", "name"),
         Column(
             "highest: Hz (by 1 µm)",
-            lambda row: "  ".join(f"{peak['frequency_hz']:.0f} ({peak['amplitude']:.3g})" for peak in row["peaks"][:4]),
+            lambda row: "  ".join(map(words, row["peaks"][:4])),
             numbers=tuple(f"peaks.{place}.{key}" for place in range(4) for key in ("frequency_hz", "amplitude")),
         ),
     )
     yield f"Response to the {response['excitation']}, 1 µm at any frequency:"
     yield from table_of(columns, rows)
 
-
-_LINES = 3  # of each sensor, the highest
-_SIDEBANDS = 8  # of each sensor, the highest, where carriers turn
-_SUPPRESSED_LINES = 6  # suppressed lines that are listed by name
-
-
-def _lines(lines: list[Document]) -> Iterator[str | Table]:
-    """Yield the highest lines of each sensor by transmission error, by load shuttling and by both."""
-    rows: list[dict[str, Any]] = []
-    turning = any("kind" in line for line in lines)
-    keys = ("frequency_hz", "cause", "kind", "phasing")
-    for sensor in lines[0]["sensor_acceleration_m_per_s2"]["together"] if lines else ():
-        of_sensor = [
-            {"sensor": sensor}
-            | {key: line[key] for key in keys if key in line}
-            | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name, _, _ in _PARTS}
-            | ({"band_db": line["band_db"][sensor]} if "band_db" in line else {})
-            for line in lines
-        ]
-        highest = sorted(of_sensor, key=lambda row: -row["together"])
-        rows += [row for row in highest if row["together"] > 0.0][: _SIDEBANDS if turning else _LINES]
-    if rows:
-        yield "Highest lines of the sensors at operation, linear response about the mean load [m/s²]:"
-        yield from table_of(_TURNING_LINE_COLUMNS if turning else _LINE_COLUMNS, rows)
-        yield "Together: the sum with phase, above or below either part."
-    if turning:
-        yield "Phasing: the housing's motion by all meshes together, as part of the sum by each mesh alone."
-        yield from _suppressed([line for line in lines if line.get("suppressed")])
-
-
-def _suppressed(lines: list[Document]) -> Iterator[str]:
-    """Yield the lines in which the planets cancel each other, those of the lowest frequencies first."""
-    if not lines:
-        return
-    listed = ", ".join(f"{line['frequency_hz']:.1f} Hz ({line['cause']})" for line in lines[:_SUPPRESSED_LINES])
-    rest = len(lines) - _SUPPRESSED_LINES
-    more = f", and {counted(rest, 'more line')}" if rest > 0 else ""
-    yield f"Suppressed by the phasing of the planets: {listed}{more}."
-
-
-_LINE_COLUMNS = (
-    Column("sensor", "sensor"),
-    Column("frequency [Hz]", "frequency_hz", ".1f"),
-    Column("harmonic", "cause"),
-    Column("by transmission error", "by_transmission_error", ".3g"),
-    Column("by load shuttling", "by_load_shuttling", ".3g"),
-    Column("together", "together", ".3g"),
-    Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
-)
-_TURNING_LINE_COLUMNS = (
-    *_LINE_COLUMNS[:3],
-    Column("kind", "kind"),
-    Column("phasing", "phasing", ".2f"),
-    *_LINE_COLUMNS[3:],
-)
 
 _CROSSING_COLUMNS = (
     Column("speed [rpm]", "speed_rpm", shown=lambda row: f"{abs(row['speed_rpm']):.1f}"),

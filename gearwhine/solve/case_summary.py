@@ -202,7 +202,9 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
             if mounted.rolling is not None
         )
     if case.measured is not None and case.measured.survey is not None:
-        warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
+        warnings += [
+            warning("measured", f"{case.measured.file_names}: {remark}") for remark in case.measured.survey.remarks
+        ]
     sets = tuple(checked_sets(parts))
     return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings, imported, reduced)
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 RESULTS_FILE = "results.nc"
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
+_LONGEST_TITLE = 54  # letters of a title in one line; a longer name stands in the note
 _LISTED_MODES = 2  # modes in a picture
 # Part by which shapes at the nodes nearest to survey points may differ from those at the points.
 _LARGEST_SHAPE_DIFFERENCE = 0.1
@@ -204,10 +205,13 @@ def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing
         largest = float(peak_displacement(motion).max())
         shares = _leading(line, modes)
         listed = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
+        title, name = f"Operating shape at {line.hertz:.1f} Hz", arrowed(line.name or "")
+        fits = len(title) + len(name) < _LONGEST_TITLE
         return DrawnShape(
             f"line-{line.hertz:.1f}Hz",
-            f"Operating shape at {line.hertz:.1f} Hz" + (f"   {arrowed(line.name)}" if line.name else ""),
-            f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
+            f"{title}   {name}" if name and fits else title,
+            ("" if fits else f"{name}\n")
+            + f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
             f"kinetic energy: modes {listed}",
             motion,
             "Displacement [µm], peak",

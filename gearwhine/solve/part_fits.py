@@ -107,13 +107,14 @@ def _span(housing: Housing, seat: Seat, bores: Sequence[CylindricalBore]) -> tup
         box = box_geometry(housing.box, housing.seat)
         low, high = box.bore_span(next(bore for bore in box.bores if bore.name == seat.name))
         return low, high
+    spans = []
     for bore in bores:
         apart = max(abs(bore.center[axis] - seat.center[axis]) for axis in range(2))
         ends = bore.center[2] - 0.5 * bore.length, bore.center[2] + 0.5 * bore.length
         alike = apart <= 10 * _FIT_TOLERANCE and abs(bore.diameter - seat.diameter) <= 0.02 * seat.diameter
         if alike and ends[0] - seat.diameter <= seat.center[2] <= ends[1] + seat.diameter:
-            return ends
-    return None
+            spans.append(ends)
+    return min(spans, key=lambda ends: max(ends[0] - seat.center[2], seat.center[2] - ends[1]), default=None)
 
 
 def _of_faces(

@@ -11,12 +11,13 @@ import gearwhine
 from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.housing.storage.netcdf import content_key
-from gearwhine.numerics.source_digest import installed, source_digest
+from gearwhine.numerics.source_digest import installed
 from gearwhine.output import file_stems
-from gearwhine.output.files import PRESENTATION, ROOMS, with_contents
+from gearwhine.output.files import with_contents
+from gearwhine.workers import code_digest
 
-# Tables that no transient depends on.
-_WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
+_WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "provenance"})
+"""Tables that no transient depends on."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 
 
@@ -104,11 +105,6 @@ def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, .
     if wrong or all(point.refusal for point in points):
         raise CaseError(problems)
     return tuple(points)
-
-
-def code_digest() -> str:
-    """SHA-256 of all our code that makes numbers: points and workers of other code are not used."""
-    return source_digest(*ROOMS, "gearwhine", without=PRESENTATION)
 
 
 def axis_name(key: str) -> str:

@@ -17,7 +17,7 @@ from gearwhine.output import staging
 from gearwhine.solve.acoustics import check_before_modes
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
-from gearwhine.sweep.points import Point, code_digest
+from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import (
     PointFailure,
     PointResult,
@@ -27,7 +27,7 @@ from gearwhine.sweep.solution import (
     solve_point_housing,
     write_point,
 )
-from gearwhine.workers import await_workers, connected
+from gearwhine.workers import await_workers, code_digest, connected
 
 if TYPE_CHECKING:
     from distributed import Client, Future

@@ -42,7 +42,8 @@ from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertai
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing
-from gearwhine.sweep.points import Point, code_digest
+from gearwhine.sweep.points import Point
+from gearwhine.workers import OtherCodeError, require_same_code
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
@@ -98,7 +99,7 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
     if isinstance(housing, PointFailure):
         return housing
     try:
-        _require_same_code(code)
+        require_same_code(code)
         begin = time.perf_counter()
         described = describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
         load, warnings_of_load = load_of_case(case.parts, described)
@@ -146,21 +147,10 @@ def solve_motion_of_point(
 def solve_point_housing(case: Case, code: str) -> HousingComponent | PointFailure:
     """Solve the housing of a point, for its machine."""
     try:
-        _require_same_code(code)
+        require_same_code(code)
         return reduce_housing(case, solve_housing(case, command="sweep"))
     except Exception as error:
         return failure_of(error)
-
-
-class OtherCodeError(RuntimeError):
-    """A worker runs another version of this code."""
-
-
-def _require_same_code(code: str) -> None:
-    if code_digest() != code:
-        raise OtherCodeError(
-            "the worker has another version of gearwhine than the command; install the same one on every worker"
-        )
 
 
 def failure_of(error: Exception) -> PointFailure:

@@ -9,7 +9,7 @@ from typing import Any
 from distributed import Worker, WorkerPlugin
 
 from gearwhine.case import Case, load_case
-from gearwhine.sweep.points import code_digest
+from gearwhine.workers import code_digest
 
 _BRIEF_TRANSIENT = ("transient.revolutions=1", "transient.discard=0", "transient.tolerance=1e-2")
 

@@ -1,18 +1,24 @@
 """Modal identification from measured responses: poles by LSCF, a stability rule, shapes by LSFD.
 
-The two estimators are those of sdypy-EMA (extra ``ema``): the least-squares complex frequency-domain method with a
-common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002), and the least-squares frequency-domain
-residues. In place of a person who reads a stabilisation chart, a rule takes poles that are stable over rising orders as
-modes.
+In place of a person who reads a stabilisation chart, a rule takes poles that are stable over rising orders as modes.
+Poles beyond an edge of the band are no modes of it, but their residues are fitted with the others: their flanks reach
+into the band, and a mode that is not in the fit goes into the shapes of its neighbours.
 """
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError, MeasuredDataError
+from gearwhine.housing.measured.common_denominator import CIRCLE_SHARE, common_denominator_poles
+from gearwhine.housing.measured.residues import (
+    POWERS,
+    FittedResponses,
+    fit_residues,
+    pole_evidence,
+    refine_poles,
+)
 from gearwhine.housing.measured.survey_data import MeasuredModes, MeasuredResponses
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -30,7 +36,7 @@ class StabilityRule:
     Attributes
     ----------
     orders : int
-        Highest order: pairs of poles of the common denominator.
+        Highest order: number of poles of the common denominator.
     frequency : float
         Largest change of the frequency from one order to the next, as a part.
     damping : float
@@ -40,7 +46,9 @@ class StabilityRule:
     share : float
         Least part of the upper half of the orders that a mode's line covers.
     contribution : float
-        Least part of the responses' energy near its resonance that a mode contributes; a pole that makes less is noise.
+        Least part of the responses' energy near its resonance that a mode contributes.
+    evidence : float
+        Least F-statistic of a mode's residues against the misfit near it; a pole below fits noise.
     """
 
     orders: int = 40
@@ -49,6 +57,7 @@ class StabilityRule:
     largest_damping: float = 0.2
     share: float = 0.5
     contribution: float = 1e-3
+    evidence: float = 10.0
 
     def __post_init__(self) -> None:
         """Check that orders, share and tolerances are within their ranges."""
@@ -146,7 +155,7 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
 
 _TURNS = 200  # iterations of the two least-squares problems
 _NOTHING = 1e-12  # weight below which nothing was measured
-_FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
+_HALF_GAP = 0.5 * (1.0 / CIRCLE_SHARE - 1.0)  # part of the band's width within which poles beyond it are found
 
 
 @dataclass(frozen=True)
@@ -166,6 +175,8 @@ class IdentifiedModes:
     rank : ndarray, shape (n_modes,)
         Part of each mode's residues that one shape and one participation explain; below 1 there is a close mode, or
         noise. With one reference always 1.
+    beyond : ndarray of complex, shape (n_beyond,)
+        Poles beyond an edge of the band, whose residues were fitted with those of the modes [rad/s].
     """
 
     modes: MeasuredModes
@@ -173,9 +184,13 @@ class IdentifiedModes:
     stability: FloatArray
     misfit: float
     rank: FloatArray
+    beyond: ComplexArray
 
 
 _RULE = StabilityRule()
+_HERTZ = 2.0 * np.pi
+_RESIDUAL_POLES = 2  # poles that are tried beyond each edge of the band
+_OUTSIDE = 0.01  # part of the band's width from which they start
 
 
 def identify_modes(
@@ -189,7 +204,8 @@ def identify_modes(
         Responses at evenly spaced frequencies; pairs that were not measured are left out.
     band : tuple of float, optional
         Band of the modes [rad/s]; by default all measured frequencies. Poles are estimated on all lines; shapes on
-        those of the band, with a residual mass and a residual stiffness for the modes outside.
+        those of the band, with the poles beyond its edges, and a residual mass and stiffness for the modes further
+        out. Modes whose half-power width an edge cuts are named in the modes' `cut_by_band`.
     rule : StabilityRule
 
     Raises
@@ -197,94 +213,135 @@ def identify_modes(
     MeasuredDataError
         Where frequencies are not evenly spaced, no mode is stable in the band, or a degree of freedom or reference has
         no response.
-    HousingError
-        Where sdypy-EMA is not installed.
     """
-    try:
-        from sdypy import EMA
-    except ImportError as error:
-        raise HousingError("modes of measured responses need sdypy-EMA: pip install 'gearwhine[ema]'") from error
-    step, first = _spacing(responses.frequencies / (2.0 * np.pi))
+    step, first = _spacing(responses.frequencies)
     lowest, highest = step * max(first, 1), step * (first + len(responses.frequencies) - 1)
-    low, high = (lowest, highest) if band is None else (band[0] / (2.0 * np.pi), band[1] / (2.0 * np.pi))
+    low, high = (lowest, highest) if band is None else band
     low, high = max(low, lowest), min(high, highest)
     if not low < high:
-        raise MeasuredDataError(f"the band {low:g} to {high:g} Hz holds none of the responses' frequencies")
+        raise MeasuredDataError(f"the band {low / _HERTZ:g} to {high / _HERTZ:g} Hz holds none of the responses")
     measured = np.asarray(~np.isnan(responses.values[:, :, 0]), dtype=np.bool_)
     if not measured.any(axis=1).all() or not measured.any(axis=0).all():
         raise MeasuredDataError(
             "a degree of freedom or a reference of the responses was measured with none of the others"
         )
-    # Lines from 0 on, as the estimator's Fourier sums need them; those below the band carry no weight.
-    rows = np.pad(responses.values[measured], ((0, 0), (first, 0)))
-    hertz = step * np.arange(rows.shape[1])
-    form = _FORMS[responses.motion]
-    # Poles are those of all lines: a denominator of real coefficients is ill-posed on a narrow band.
-    model = EMA.Model(rows, hertz, lower=lowest, upper=highest, pol_order_high=rule.orders, frf_form=form)
-    model.get_poles(method="lscf", show_progress=False)
-    lines = pole_lines(model.all_poles, rule, 2.0 * np.pi * low, 2.0 * np.pi * high)
-    if not lines:
+    rows, omega = responses.values[measured], responses.frequencies
+    if omega[0] == 0.0:
+        rows, omega = rows[:, 1:], omega[1:]
+    # Poles are those of all lines, and a little beyond.
+    orders = common_denominator_poles(rows, float(omega[0]), step, rule.orders)
+    margin = _HALF_GAP * (highest - lowest)
+    lines = pole_lines(orders, rule, max(lowest - margin, 0.0), highest + margin)
+    inside = (omega >= low) & (omega <= high)
+    band_fit = _BandFit(rows[:, inside], omega[inside], POWERS[responses.motion], (low, high), rule)
+    poles, stability = band_fit.standing(
+        np.array([line.pole for line in lines]), np.array([line.stability for line in lines])
+    )
+    if not band_fit.in_band(poles).any():
         raise MeasuredDataError(
-            f"no pole between {low:g} and {high:g} Hz is stable over the orders up to {rule.orders}"
+            f"no pole between {low / _HERTZ:g} and {high / _HERTZ:g} Hz is stable over the orders up to {rule.orders} "
+            "and stands out of the noise: there are no modes"
         )
-    while True:
-        fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
-        contributing = _contributing(lines, model.frf, residues, step, form, rule)
-        if not contributing:
-            raise MeasuredDataError(
-                f"no stable pole between {low:g} and {high:g} Hz makes a good part of the responses"
-            )
-        if len(contributing) == len(lines):
-            break
-        lines = contributing
-    poles = np.array([line.pole for line in lines])
-    order = np.argsort(np.abs(poles))
-    shapes, rank = _shapes(residues[:, order], measured)
-    inside = (model.freq >= low) & (model.freq <= high)
-    in_band = model.frf[:, inside]
-    misfit = float(np.linalg.norm(fitted[:, inside] - in_band) / np.linalg.norm(in_band))
-    modes = MeasuredModes(np.abs(poles)[order], (-poles.real / np.abs(poles))[order], shapes, responses.geometry)
-    return IdentifiedModes(modes, poles[order], np.array([line.stability for line in lines])[order], misfit, rank)
+    poles = band_fit.with_residual_poles(poles)
+    fit = band_fit.residues(poles)
+    modal = np.flatnonzero(band_fit.in_band(poles[: len(stability)]))
+    modal = modal[np.argsort(np.abs(poles[modal]))]
+    shapes, rank = _shapes(fit.residues[:, modal], measured)
+    found = poles[modal]
+    sizes, half_widths = np.abs(found), -found.real
+    cut = np.flatnonzero((sizes - half_widths < low) | (sizes + half_widths > high))
+    modes = MeasuredModes(sizes, half_widths / sizes, shapes, responses.geometry, tuple(cut.tolist()))
+    return IdentifiedModes(modes, found, stability[modal], fit.misfit, rank, np.delete(poles, modal))
 
 
-def _spacing(hertz: FloatArray) -> tuple[float, int]:
-    """Return the even spacing of frequencies [Hz], and the number of spacings from 0 to the first.
+@dataclass(frozen=True)
+class _BandFit:
+    """Fit of poles and residues to the lines of a band.
+
+    Attributes
+    ----------
+    rows : ndarray of complex, shape (n_rows, n_lines)
+    omega : ndarray, shape (n_lines,)
+        Circular frequencies of the lines [rad/s].
+    power : int
+        Power of iω of the motion.
+    band : tuple of float
+        Edges [rad/s].
+    rule : StabilityRule
+    """
+
+    rows: ComplexArray
+    omega: FloatArray
+    power: int
+    band: tuple[float, float]
+    rule: StabilityRule
+
+    def residues(self, poles: ComplexArray) -> FittedResponses:
+        return fit_residues(self.rows, self.omega, poles, self.power)
+
+    def refined(self, poles: ComplexArray) -> ComplexArray:
+        return refine_poles(self.rows, self.omega, poles, self.power)
+
+    def in_band(self, poles: ComplexArray) -> npt.NDArray[np.bool_]:
+        return np.asarray((np.abs(poles) >= self.band[0]) & (np.abs(poles) <= self.band[1]))
+
+    def standing(self, poles: ComplexArray, stability: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Refine the poles, and leave out those that are no modes until all others are; none where none is in band."""
+        while self.in_band(poles).any():
+            poles = self.refined(poles)
+            kept = self._are_modes(poles)
+            if kept.all():
+                break
+            poles, stability = poles[kept], stability[kept]
+        return poles, stability
+
+    def with_residual_poles(self, poles: ComplexArray) -> ComplexArray:
+        """Append poles beyond each edge for as long as they explain more than noise does.
+
+        Stable ones are there already. A mode just outside, of which the band has a flank alone, is seldom stable.
+        """
+        damping = float(np.median(-poles.real / np.abs(poles)))
+        for edge, outward in ((self.band[0], -1.0), (self.band[1], 1.0)):
+            for _ in range(_RESIDUAL_POLES):
+                size = edge + outward * _OUTSIDE * (self.band[1] - self.band[0])
+                if size <= 0.0:
+                    break
+                tried = self.refined(np.append(poles, size * complex(-damping, 1.0)))
+                beyond = outward * (abs(tried[-1]) - edge) > 0.0
+                same = np.array_equal(self.in_band(tried[:-1]), self.in_band(poles))
+                if not (beyond and same and self._are_modes(tried).all()):
+                    break
+                poles = tried
+        return poles
+
+    def _are_modes(self, poles: ComplexArray) -> npt.NDArray[np.bool_]:
+        """Whether each pole contributes enough to the responses, and more than a fit of noise."""
+        fit = self.residues(poles)
+        contribution = np.empty(len(poles))
+        for number, pole in enumerate(poles):
+            line = int(np.argmin(np.abs(self.omega - abs(pole))))
+            size = np.linalg.norm(fit.residues[:, number]) / abs(1j * self.omega[line] - pole)
+            contribution[number] = (self.omega[line] ** self.power * size / np.linalg.norm(self.rows[:, line])) ** 2
+        evidence = pole_evidence(self.rows, self.omega, poles, self.power, fit)
+        return np.asarray((contribution >= self.rule.contribution) & (evidence >= self.rule.evidence))
+
+
+def _spacing(omega: FloatArray) -> tuple[float, int]:
+    """Return the even spacing of frequencies [rad/s], and the number of spacings from 0 to the first.
 
     Raises
     ------
     MeasuredDataError
         Where they are not whole multiples of one spacing, as the lines of an analyser are.
     """
-    step = float((hertz[-1] - hertz[0]) / (len(hertz) - 1))
-    numbers = hertz / step
+    step = float((omega[-1] - omega[0]) / (len(omega) - 1))
+    numbers = omega / step
     first = round(numbers[0])
-    if np.abs(numbers - first - np.arange(len(hertz))).max() > 0.01:
+    if np.abs(numbers - first - np.arange(len(omega))).max() > 0.01:
         raise MeasuredDataError(
             "the frequencies of the responses are not whole multiples of one spacing, which finding modes needs"
         )
     return step, first
-
-
-def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
-    """Synthesised responses and residues, shape (n_rows, n_modes), of the chosen poles."""
-    model.pole_ind = np.array([line.place for line in lines])
-    fitted, residues = model.get_constants(method="lsfd", f_lower=low, f_upper=high)
-    return np.asarray(fitted), np.asarray(residues)[:, : len(lines)]
-
-
-def _contributing(
-    lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
-) -> list[PoleLine]:
-    """Return the lines whose modes contribute enough to the responses at their own resonance."""
-    contributing = []
-    power = ("receptance", "mobility", "accelerance").index(form)
-    for number, line in enumerate(lines):
-        omega = abs(line.pole)
-        index = min(round(omega / (2.0 * np.pi * step)), rows.shape[1] - 1)
-        peak = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
-        if peak**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
-            contributing.append(line)
-    return contributing
 
 
 def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[ComplexArray, FloatArray]:

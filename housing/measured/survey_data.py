@@ -83,6 +83,8 @@ class MeasuredModes:
         measured.
     geometry : MeasuredGeometry or None
         Geometry of the shapes; None where there are none.
+    cut_by_band : tuple of int
+        Indices of the modes, identified from responses, whose half-power width an edge of the measured band cuts.
 
     Raises
     ------
@@ -94,6 +96,7 @@ class MeasuredModes:
     damping_ratios: FloatArray | None = None
     shapes: ComplexArray | None = None
     geometry: MeasuredGeometry | None = None
+    cut_by_band: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         """Check ascending frequencies, number of damping ratios, and shapes against the geometry."""

@@ -14,6 +14,7 @@ Commas, semicolons or tabs separate the cells; a line that begins with # is a re
 
 import csv
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,8 @@ import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
 from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, SurveyData
-from gearwhine.housing.measured.universal_reading import Frame, read_universal
+from gearwhine.housing.measured.universal_datasets import Frame
+from gearwhine.housing.measured.universal_reading import read_universal
 from gearwhine.housing.measured.universal_writing import write_universal
 from gearwhine.housing.storage.atomic_file import atomic_file
 from gearwhine.meshes.lengths import UNITS
@@ -238,22 +240,28 @@ UNIVERSAL = (".uff", ".unv", ".uf", ".bunv")
 TABLES = (".csv", ".tsv", ".txt")
 
 
-def read_survey(path: str | Path, *, unit: str | None = None, shape_frame: Frame = "local") -> SurveyData:
-    """Read a universal file or a table; see :func:`read_universal` and :func:`read_table`.
+def read_survey(
+    path: str | Path | Sequence[str | Path], *, unit: str | None = None, shape_frame: Frame | None = None
+) -> SurveyData:
+    """Read universal files of one survey, or a table; see :func:`read_universal` and :func:`read_table`.
 
     Raises
     ------
     MeasuredDataError
-        Where the ending is of neither kind, or the file cannot be used.
+        Where the ending is of neither kind, a file cannot be used, or a table is one of several files.
     """
-    path = Path(path)
-    if path.suffix.lower() in UNIVERSAL:
-        return read_universal(path, unit=unit, shape_frame=shape_frame)
-    if path.suffix.lower() in TABLES:
-        return read_table(path, unit=unit)
-    raise MeasuredDataError(
-        f"{path.name}: expected a universal file ({', '.join(UNIVERSAL)}) or a table ({', '.join(TABLES)})"
-    )
+    paths = [Path(path)] if isinstance(path, str | Path) else [Path(one) for one in path]
+    for one in paths:
+        if one.suffix.lower() in UNIVERSAL:
+            continue
+        if one.suffix.lower() not in TABLES:
+            raise MeasuredDataError(
+                f"{one.name}: expected a universal file ({', '.join(UNIVERSAL)}) or a table ({', '.join(TABLES)})"
+            )
+        if len(paths) > 1:
+            raise MeasuredDataError(f"{one.name} is a table, which stands alone; expected a list of universal files")
+        return read_table(one, unit=unit)
+    return read_universal(paths, unit=unit, shape_frame=shape_frame)
 
 
 def write_survey(path: str | Path, survey: SurveyData) -> None:

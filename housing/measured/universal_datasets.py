@@ -1,24 +1,27 @@
-"""Datasets of a universal file, read by pyuff and checked: points (15, 2411), mode shapes (55), responses (58).
+"""Datasets of a universal file, checked: points (15, 2411), mode shapes (55, 2414), responses (58).
 
-pyuff also reads files that break the format: a truncated block comes back as arrays of unlike lengths, a binary block
-of the other byte order as meaningless numbers, a last block without its end not at all: of a survey cut short at sixty
-places pyuff 2.5.8 reads every one without an error. So everything is checked against the numbers that the file itself
-states, and 59 of the sixty are refused.
+Points and functions are read by pyuff, which also reads files that break the format: a truncated block comes back as
+arrays of unlike lengths, a binary block of the other byte order as meaningless numbers, a last block without its end
+not at all: of a survey cut short at sixty places pyuff 2.5.8 reads every one without an error. So everything is checked
+against the numbers that the file itself states, and 59 of the sixty are refused. Shapes are read in `nodal_data`.
 
 Each point has three directions of motion. Mode shapes are real or complex, frequency response functions ASCII or
 binary.
 """
 
+import mmap
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured.nodal_data import NodalMode, read_nodal_mode
 from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, Motion
 
 FloatArray = npt.NDArray[np.float64]
@@ -26,12 +29,20 @@ FloatArray = npt.NDArray[np.float64]
 Dataset = dict[str, Any]
 
 USED = {15: "points", 2411: "points", 18: "coordinate systems", 2420: "coordinate systems", 82: "trace lines"}
-USED |= {55: "shapes", 58: "functions", 164: "units"}
+USED |= {55: "shapes", 2414: "analysis results", 58: "functions", 164: "units"}
 """Dataset numbers that are read, and their content."""
+
+SHAPES = (55, 2414)
+"""Dataset numbers with motions at nodes, each as a :class:`NodalMode` under the key ``mode``."""
+
+LARGEST_FILE = 500_000_000
+"""Size of the largest file that is read [bytes]."""
 
 HEADER = 151  # program and date of the file; not used
 
+_LONGEST_NUMBER_LINE = 200  # bytes within which a dataset's number stands
 _MARKER = re.compile(rb"    -1(?=[\r\n]| {74}|\Z)")
+_FIELDS_A_LINE = 6
 _SANE = {8: 1e60, 4: 1e30}  # no measured number is larger than this nor, unless it is 0, smaller than its inverse
 
 
@@ -45,44 +56,77 @@ def read_datasets(path: Path) -> tuple[list[Dataset], tuple[str, ...]]:
     """
     import pyuff
 
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise MeasuredDataError(f"{path.name} cannot be read: {error.strerror}") from error
-    markers = len(_MARKER.findall(content))
-    if markers == 0:
-        raise MeasuredDataError(f"{path.name} is no universal file: no line in it is '    -1', which parts datasets")
-    if markers % 2:
-        raise MeasuredDataError(f"{path.name} is cut short: its last dataset has no end, a line '    -1'")
+    blocks = _blocks(path)
     try:
         file = pyuff.UFF(str(path))
+        numbers = [int(kind) for kind in file.get_set_types()]
     except Exception as error:  # pyuff raises nothing narrower
         raise MeasuredDataError(f"{path.name} cannot be read as a universal file") from error
+    if len(numbers) != len(blocks):
+        raise MeasuredDataError(f"{path.name} cannot be read as a universal file: its lines '    -1' are not all alike")
     datasets: list[Dataset] = []
     others: dict[int, int] = {}
-    for index, number in enumerate(int(kind) for kind in file.get_set_types()):
+    for index, (number, block) in enumerate(zip(numbers, blocks, strict=True)):
         if number <= 0:
             raise MeasuredDataError(
                 f"dataset {index + 1} of {path.name} has no number: the lines '    -1' do not stand in pairs, or what "
                 "is between them is not text"
             )
-        if number in USED:
-            datasets.append(_read_one(file, index, number, path.name))
+        dataset = _read_one(file, block, index, number, path.name) if number in USED else None
+        if dataset is not None:
+            datasets.append(dataset)
         elif number != HEADER:
             others[number] = others.get(number, 0) + 1
-    remarks = [f"{count} of dataset {number} not read" for number, count in sorted(others.items())]
+    reasons = {55: ": no modes", 2414: ": no modes with motions at nodes"}
+    remarks = [
+        f"{count} of dataset {number} not read{reasons.get(number, '')}" for number, count in sorted(others.items())
+    ]
     return datasets, tuple(remarks)
 
 
-def _read_one(file: Any, index: int, number: int, name: str) -> Dataset:
+def _blocks(path: Path) -> list[bytes]:
+    """Contents of the datasets that `nodal_data` reads, from the lines with their numbers on; of the others nothing."""
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise MeasuredDataError(f"{path.name} has {size} bytes; expected at most {LARGEST_FILE // 10**6} MB")
+        with path.open("rb") as file:
+            content = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if size else b""
+            places = [(match.start(), match.end()) for match in _MARKER.finditer(content)]
+            if not places:
+                raise MeasuredDataError(
+                    f"{path.name} is no universal file: no line in it is '    -1', which parts datasets"
+                )
+            if len(places) % 2:
+                raise MeasuredDataError(f"{path.name} is cut short: its last dataset has no end, a line '    -1'")
+            blocks = []
+            for (_, start), (end, _) in zip(places[::2], places[1::2], strict=True):
+                block = content[start : min(end, start + _LONGEST_NUMBER_LINE)].lstrip()
+                shapes = block.split(maxsplit=1)[:1] in ([str(number).encode()] for number in SHAPES)
+                blocks.append(content[start:end].lstrip() if shapes else b"")
+            return blocks
+    except OSError as error:
+        raise MeasuredDataError(f"{path.name} cannot be read: {error.strerror}") from error
+
+
+def _read_one(file: Any, block: bytes, index: int, number: int, name: str) -> Dataset | None:
+    """Read a dataset; None of shapes that are no modes."""
     where = f"dataset {index + 1} of {name} ({number}, {USED[number]})"
+    if number in SHAPES:
+        mode = read_nodal_mode(block, number, where)
+        return None if mode is None else {"type": number, "mode": mode}
     try:
         dataset: Dataset = file.read_sets(index)
     except Exception as error:  # pyuff raises nothing narrower
         raise MeasuredDataError(
             f"{where} cannot be read: its lines are not those of the format, or cut short"
         ) from error
-    _CHECKS[number](dataset, where)
+    try:
+        _CHECKS[number](dataset, where)
+    except MeasuredDataError:
+        raise
+    except (KeyError, TypeError, ValueError) as error:  # what pyuff leaves of lines that are not those of the format
+        raise MeasuredDataError(f"{where} cannot be read: its lines are not those of the format") from error
     return dataset
 
 
@@ -94,10 +138,12 @@ def _check_points(dataset: Dataset, where: str) -> None:
 
 
 def _check_systems(dataset: Dataset, where: str) -> None:
+    keys: tuple[str, ...] = ("CS_sys_labels", "CS_types", "CS_matrices")
     if dataset["type"] == 18:
-        _check_lengths(dataset, ("cs_num", "cs_type", "ref_cs_num", "ref_o", "x_point", "xz_point"), where)
-    else:
-        _check_lengths(dataset, ("CS_sys_labels", "CS_types", "CS_matrices"), where)
+        keys = ("cs_num", "cs_type", "ref_cs_num", "ref_o", "x_point", "xz_point")
+    _check_lengths(dataset, keys, where)
+    for key in keys:
+        _check_finite(np.asarray(dataset[key], dtype=np.float64), where)
 
 
 def _check_lines(dataset: Dataset, where: str) -> None:
@@ -107,16 +153,8 @@ def _check_lines(dataset: Dataset, where: str) -> None:
         )
 
 
-def _check_shapes(dataset: Dataset, where: str) -> None:
-    components = [key for key in ("r1", "r2", "r3") if key in dataset]
-    if len(components) < 3:
-        raise MeasuredDataError(f"{where} has no three components of motion at each point")
-    _check_lengths(dataset, ("node_nums", *components), where)
-    for key in components:
-        _check_finite(np.asarray(dataset[key]), where)
-
-
 def _check_function(dataset: Dataset, where: str) -> None:
+    _drop_filling(dataset)
     values, places = np.asarray(dataset["data"]), np.asarray(dataset["x"], dtype=np.float64)
     if len(values) != dataset["num_pts"] or len(places) != len(values):
         raise MeasuredDataError(f"{where} says {dataset['num_pts']} values and holds {len(values)}: cut short")
@@ -137,6 +175,14 @@ def _check_function(dataset: Dataset, where: str) -> None:
     raise MeasuredDataError(f"{where} holds numbers of no meaning: {numbers[:3]}; its binary part is not what it says")
 
 
+def _drop_filling(dataset: Dataset) -> None:
+    """Leave out zeros that fill the last line: some programs write every line whole, whatever the number of values."""
+    count, values = int(dataset["num_pts"]), np.asarray(dataset["data"])
+    surplus = len(values) - count
+    if 0 < surplus < _FIELDS_A_LINE and not np.any(values[count:]):
+        dataset |= {"data": values[:count], "x": dataset["x"][:count]}
+
+
 def _check_units(dataset: Dataset, where: str) -> None:
     for key in ("length", "force"):
         if not (np.isfinite(dataset[key]) and dataset[key] > 0.0):
@@ -149,7 +195,6 @@ _CHECKS: dict[int, Callable[[Dataset, str], None]] = {
     18: _check_systems,
     2420: _check_systems,
     82: _check_lines,
-    55: _check_shapes,
     58: _check_function,
     164: _check_units,
 }
@@ -192,12 +237,16 @@ class SurveyPoints:
     directions: FloatArray
     lines: tuple[tuple[int, ...], ...]
 
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {label: place for place, label in enumerate(self.labels)}
+
     def index(self, node: float, where: str) -> int:
         """Return the index of a node in the list; an unknown node is an error."""
-        try:
-            return self.labels.index(str(int(node)))
-        except ValueError:
-            raise MeasuredDataError(f"{where} names node {int(node)}, which is not among the survey's points") from None
+        place = self._places.get(str(int(node))) if np.isfinite(node) else None
+        if place is None:
+            raise MeasuredDataError(f"{where} names node {node:.9g}, which is not among the survey's points")
+        return place
 
     def geometry(self, points: list[int], directions: list[FloatArray]) -> MeasuredGeometry:
         """Return the measured geometry of these points with some degrees of freedom."""
@@ -210,73 +259,74 @@ class SurveyPoints:
         )
 
 
-NORMAL, COMPLEX_FIRST, COMPLEX_SECOND = 2, 3, 7  # analysis types that are modes
-_COMPONENTS = ("r1", "r2", "r3")
+Frame = Literal["local", "global"]
 
 
 def read_shapes(
-    datasets: list[Dataset], points: SurveyPoints, directions: FloatArray, remarks: list[str]
+    modes: Sequence[NodalMode], points: SurveyPoints | None, frame: Frame | None, remarks: list[str]
 ) -> MeasuredModes | None:
-    """Read the mode shapes of datasets 55; None where none of them is a mode.
+    """Make measured modes of those of a file; None where none of them vibrates.
 
     A direction in which every mode is exactly zero was not measured: the format has no other way to say so. A point
-    left out of a mode, but not of all, is zero in it.
+    left out of a mode, but not of all, is zero in it. Modes without points, or whose shapes are all zero, have
+    frequencies and damping alone.
 
     Parameters
     ----------
-    datasets : list of dict
-    points : SurveyPoints
-    directions : ndarray, shape (n_points, 3, 3)
-        The directions, as rows, that the three components of a point stand along.
+    modes : sequence of NodalMode
+    points : SurveyPoints or None
+    frame : {"local", "global"}, optional
+        Whether the three components of a point stand along its own directions, or along the axes; by default "local"
+        of datasets 55 and "global" of datasets 2414.
     remarks : list of str
         Remarks for the user; the reader appends to it.
 
     Raises
     ------
     MeasuredDataError
-        Where a node is unknown, or an eigenvalue is none of a vibration.
+        Where a node is unknown.
     """
-    modal = [dataset for dataset in datasets if dataset["analysis_type"] in (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)]
-    if len(modal) < len(datasets):
-        remarks.append(f"{len(datasets) - len(modal)} of dataset 55 not read: no modes")
-    if any("r4" in one for one in modal):
+    if rigid := sum(mode.frequency == 0.0 for mode in modes):
+        what = "a rigid motion" if rigid == 1 else "rigid motions"
+        remarks.append(f"{rigid} mode{'s' * (rigid > 1)} at 0 Hz not read: {what}")
+    if any(mode.rotations for mode in modes):
         remarks.append("rotations of the shapes not read")
-    if not modal:
+    if any(mode.hysteretic for mode in modes):
+        remarks.append("damping ratios taken as half of the hysteretic ones, which are all that is given")
+    modes = sorted((mode for mode in modes if mode.frequency > 0.0), key=lambda mode: mode.frequency)
+    if not modes:
         return None
-    components = np.zeros((len(modal), len(points.labels), 3), dtype=np.complex128)
-    frequencies, ratios = np.empty(len(modal)), np.empty(len(modal))
-    for number, dataset in enumerate(modal):
-        where = f"mode {number + 1}"
-        frequencies[number], ratios[number] = _pole(dataset, where)
-        rows = [points.index(node, where) for node in dataset["node_nums"]]
-        components[number, rows] = np.stack([dataset[key] for key in _COMPONENTS], axis=-1)
-    order = np.argsort(frequencies, kind="stable")
+    frequencies = np.array([mode.frequency for mode in modes])
+    ratios = np.array([mode.damping_ratio for mode in modes])
+    damping = ratios if np.any(ratios != 0.0) else None
+    if not any(np.any(mode.motions) for mode in modes):
+        remarks.append("the shapes are zero everywhere: frequencies and damping are read alone")
+        return MeasuredModes(frequencies, damping)
+    if points is None:
+        remarks.append("no points (dataset 15 or 2411): frequencies and damping are read without the shapes")
+        return MeasuredModes(frequencies, damping)
+    local = {55: frame != "global", 2414: frame == "local"}
+    turned = bool(np.any(np.abs(points.directions - np.eye(3)) > 1e-12))
+    if turned:
+        for number in sorted({mode.number for mode in modes}):
+            whose = "own" if local[number] else "common"
+            remarks.append(f"shapes of dataset {number} taken to stand in the points' {whose} frame")
+    # Where the frames differ, shapes in the common one are turned into the points' own.
+    own = any(local[mode.number] for mode in modes)
+    directions = points.directions if own else np.broadcast_to(np.eye(3), points.directions.shape)
+    components = np.zeros((len(modes), len(points.labels), 3), dtype=np.complex128)
+    for number, mode in enumerate(modes):
+        rows = [points.index(node, f"mode {number + 1}") for node in mode.nodes]
+        to_turn = own and not local[mode.number]
+        motions = np.einsum("pij,pj->pi", points.directions[rows], mode.motions) if to_turn else mode.motions
+        components[number, rows] = motions
     measured = np.argwhere(np.any(components != 0.0, axis=0))
-    if not len(measured):
-        raise MeasuredDataError("every shape of the file is zero everywhere")
-    geometry = points.geometry(measured[:, 0].tolist(), [directions[point, component] for point, component in measured])
     return MeasuredModes(
-        frequencies=frequencies[order],
-        damping_ratios=ratios[order] if np.any(ratios != 0.0) else None,
-        shapes=components[order][:, measured[:, 0], measured[:, 1]],
-        geometry=geometry,
+        frequencies=frequencies,
+        damping_ratios=damping,
+        shapes=components[:, measured[:, 0], measured[:, 1]],
+        geometry=points.geometry(measured[:, 0].tolist(), list(directions[measured[:, 0], measured[:, 1]])),
     )
-
-
-def _pole(dataset: Dataset, where: str) -> tuple[float, float]:
-    """Natural frequency [rad/s] and damping ratio of one mode."""
-    if dataset["analysis_type"] == NORMAL:
-        frequency, ratio = 2.0 * np.pi * float(dataset["freq"]), float(dataset["modal_damp_vis"])
-    else:
-        eigenvalue = complex(dataset["eig"])
-        frequency = abs(eigenvalue)
-        ratio = -eigenvalue.real / frequency if frequency else 0.0
-    if not (np.isfinite(frequency) and frequency > 0.0 and abs(ratio) < 1.0):
-        raise MeasuredDataError(
-            f"{where} has frequency {frequency / (2.0 * np.pi):g} Hz and damping ratio {ratio:g}; expected those of a "
-            "vibration"
-        )
-    return frequency, ratio
 
 
 RESPONSE_FUNCTION = 4  # function type of a frequency response
@@ -320,17 +370,29 @@ _UNLABELLED = ("", "none")
 _Key = tuple[int, int]
 
 
+@dataclass(frozen=True)
+class FileUnits:
+    """Metres and newtons in the units of a file.
+
+    Attributes
+    ----------
+    length, force : float
+    """
+
+    length: float = 1.0
+    force: float = 1.0
+
+
 def read_functions(
-    datasets: list[Dataset], points: SurveyPoints, length: float, force: float, remarks: list[str]
+    datasets: Sequence[tuple[Dataset, FileUnits]], points: SurveyPoints, remarks: list[str]
 ) -> MeasuredResponses | None:
     """Read the frequency responses to forces from datasets 58; None where there are none.
 
     Parameters
     ----------
-    datasets : list of dict
+    datasets : sequence of (dict, FileUnits)
+        Datasets, each with the units of its file; an axis that names its own unit goes before them.
     points : SurveyPoints
-    length, force : float
-        Metres and newtons in the file's units; an axis that names its own unit goes before them.
     remarks : list of str
         Remarks for the user; the reader appends to it.
 
@@ -339,19 +401,19 @@ def read_functions(
     MeasuredDataError
         Where a node is unknown, a pair stands twice, or functions have different frequencies or kinds of motion.
     """
-    functions = [dataset for dataset in datasets if _is_response(dataset)]
+    functions = [(dataset, units) for dataset, units in datasets if is_response(dataset)]
     if len(functions) < len(datasets):
         remarks.append(
             f"{len(datasets) - len(functions)} of dataset 58 not read: no frequency responses of motion to force"
         )
     if not functions:
         return None
-    places = _frequencies(functions[0], remarks)
-    motion = _motion(functions, remarks)
+    places = _frequencies(functions[0][0], remarks)
+    motion = _motion([dataset for dataset, _ in functions], remarks)
     rows: dict[_Key, int] = {}
     columns: dict[_Key, int] = {}
     cells: dict[tuple[int, int], FloatArray] = {}
-    for dataset in functions:
+    for dataset, units in functions:
         frequencies = _frequencies(dataset, remarks)
         name = f"the function {dataset['rsp_node']}:{dataset['rsp_dir']} by {dataset['ref_node']}:{dataset['ref_dir']}"
         if len(frequencies) != len(places) or np.abs(frequencies - places).max() > _SPACING * places[-1]:
@@ -360,7 +422,7 @@ def read_functions(
         column = columns.setdefault((points.index(dataset["ref_node"], name), int(dataset["ref_dir"])), len(columns))
         if (row, column) in cells:
             raise MeasuredDataError(f"{name} stands twice in the file")
-        cells[row, column] = np.asarray(dataset["data"]) * _factor(dataset, length, force, remarks)
+        cells[row, column] = np.asarray(dataset["data"]) * _factor(dataset, units, remarks)
     values = np.full((len(rows), len(columns), len(places)), np.nan, dtype=np.complex128)
     for (row, column), cell in cells.items():
         values[row, column] = cell
@@ -374,7 +436,7 @@ def read_functions(
     )
 
 
-def _is_response(dataset: Dataset) -> bool:
+def is_response(dataset: Dataset) -> bool:
     """Whether a function is the frequency response of a translation to a force; a denominator not named is one."""
     translations = all(1 <= abs(int(dataset[key])) <= 3 for key in ("rsp_dir", "ref_dir"))
     by_force = int(dataset.get("orddenom_spec_data_type", 0)) in (0, FORCE)
@@ -398,10 +460,10 @@ def _motion(datasets: list[Dataset], remarks: list[str]) -> Motion:
     return MOTIONS.get(number, "acceleration")
 
 
-def _factor(dataset: Dataset, length: float, force: float, remarks: list[str]) -> float:
+def _factor(dataset: Dataset, units: FileUnits, remarks: list[str]) -> float:
     """Factor from the function's unit to SI."""
     factors = []
-    for axis, by_system in (("ordinate", length), ("orddenom", force)):
+    for axis, by_system in (("ordinate", units.length), ("orddenom", units.force)):
         label = _label(dataset, axis)
         by_label = _LABELS.get(label, by_system)
         if label not in _LABELS and label not in _UNLABELLED:

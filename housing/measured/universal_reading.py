@@ -3,19 +3,23 @@
 Cartesian, cylindrical and spherical coordinate systems of the file are resolved into the survey's frame.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
-from gearwhine.housing.measured.survey_data import MeasuredModes, SurveyData
+from gearwhine.housing.measured.survey_data import SurveyData
 from gearwhine.housing.measured.universal_datasets import (
+    SHAPES,
     Dataset,
+    FileUnits,
+    Frame,
     SurveyPoints,
+    is_response,
     read_datasets,
     read_functions,
     read_shapes,
@@ -143,57 +147,62 @@ def _kind(number: float) -> int:
     return int(number)
 
 
-Frame = Literal["local", "global"]
-
-
-def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Frame = "local") -> SurveyData:
-    """Read a universal file: points (15, 2411), trace lines (82), shapes (55), responses (58), units (164).
+def read_universal(
+    path: str | Path | Sequence[str | Path], *, unit: str | None = None, shape_frame: Frame | None = None
+) -> SurveyData:
+    """Read a universal file: points (15, 2411), trace lines (82), shapes (55, 2414), responses (58), units (164).
 
     Parameters
     ----------
-    path : path
+    path : path, or sequence of paths
+        One file, or the files of one survey: points, shapes and responses may stand in files of their own. Each has its
+        own units; one that states none has those of the first that does.
     unit : {"m", "mm", "cm", "in"}, optional
-        Unit of the file's lengths, in place of its dataset 164. Without either a metre is assumed, with a remark.
-    shape_frame : {"local", "global"}
+        Unit of the files' lengths, in place of their datasets 164. Without either a metre is assumed, with a remark.
+    shape_frame : {"local", "global"}, optional
         Frame of the shapes where points have a displacement system of their own. The format calls the vectors
-        of dataset 55 global; programs for modal tests write them in the points' own directions, as measured.
-        Functions (58) are always in the points' own directions.
+        of datasets 55 and 2414 global; programs for modal tests write dataset 55 in the points' own directions, as
+        measured. So "local" is the default of dataset 55, and "global" of 2414. Functions (58) are always in the
+        points' own directions.
 
     Raises
     ------
     MeasuredDataError
-        Where the file is damaged, or names a point or coordinate system that it does not hold.
+        Where a file is damaged, or names a point or coordinate system that none of them holds.
     """
-    path = Path(path)
-    datasets, passed_over = read_datasets(path)
-    remarks = list(passed_over)
-    length, force = _units(datasets, unit, remarks)
-    points = _points(datasets, length, remarks)
-    holds = {dataset["type"] for dataset in datasets}
+    paths = [Path(path)] if isinstance(path, str | Path) else [Path(one) for one in path]
+    names = " and ".join(one.name for one in paths)
+    remarks: list[str] = []
+    contents: list[_Content] = []
+    for one in paths:
+        datasets, passed_over = read_datasets(one)
+        before = f"{one.name}: " if len(paths) > 1 else ""
+        remarks += [before + remark for remark in passed_over]
+        contents.append(_Content(one.name, datasets, _stated_units(datasets, one.name)))
+    units = _units(contents, unit, remarks)
+    datasets = [dataset for content in contents for dataset in content.datasets]
+    points = _points(contents, units, remarks)
+    modes = read_shapes([one["mode"] for one in datasets if one["type"] in SHAPES], points, shape_frame, remarks)
     if points is None:
-        if holds & {55, 58}:
-            content = "shapes" if 55 in holds else "functions"
+        if any(one["type"] == 58 and is_response(one) for one in datasets):
             raise MeasuredDataError(
-                f"{path.name} holds {content} but no points (dataset 15 or 2411): nobody can tell where they were "
-                "measured"
+                f"{names} holds functions but no points (dataset 15 or 2411): nobody can tell where they were "
+                "measured; where another file has the points, name both, in a list"
             )
-        raise MeasuredDataError(f"{path.name} holds no points, shapes or functions (datasets 15 or 2411, 55, 58)")
+        if modes is None:
+            raise MeasuredDataError(
+                f"{names} holds no points, no shapes of modes and no frequency responses to forces (datasets 15 or "
+                "2411, 55 or 2414, 58)"
+            )
+        return SurveyData(None, modes, None, tuple(remarks))
+    functions = [
+        (dataset, scale)
+        for content, scale in zip(contents, units, strict=True)
+        for dataset in content.datasets
+        if dataset["type"] == 58
+    ]
+    responses = read_functions(functions, points, remarks) if functions else None
     geometry = points.geometry([], [])
-    modes: MeasuredModes | None = None
-    turned = bool(np.any(np.abs(points.directions - np.eye(3)) > 1e-12))
-    if 55 in holds:
-        if turned:
-            remarks.append(
-                f"shapes taken to stand in the points' {'own' if shape_frame == 'local' else 'common'} frame"
-            )
-        directions = (
-            points.directions if shape_frame == "local" else np.broadcast_to(np.eye(3), points.directions.shape)
-        )
-        modes = read_shapes([dataset for dataset in datasets if dataset["type"] == 55], points, directions, remarks)
-    responses = None
-    if 58 in holds:
-        functions = [dataset for dataset in datasets if dataset["type"] == 58]
-        responses = read_functions(functions, points, length, force, remarks)
     if modes is not None and modes.geometry is not None:
         geometry = modes.geometry
     elif responses is not None:
@@ -201,46 +210,63 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
     return SurveyData(geometry, modes, responses, tuple(remarks))
 
 
-def _units(datasets: list[Dataset], unit: str | None, remarks: list[str]) -> tuple[float, float]:
-    """Metres in the file's unit of length, and newtons in its unit of force."""
+@dataclass(frozen=True)
+class _Content:
+    """Content of one of the files of a survey: its name, its datasets, and the units that it states."""
+
+    name: str
+    datasets: list[Dataset]
+    units: FileUnits | None
+
+
+def _stated_units(datasets: list[Dataset], name: str) -> FileUnits | None:
     stated = [dataset for dataset in datasets if dataset["type"] == 164]
     if len({(one["length"], one["force"]) for one in stated}) > 1:
-        raise MeasuredDataError("the file states several systems of units (dataset 164); expected one")
-    force = 1.0 / stated[0]["force"] if stated else 1.0
+        raise MeasuredDataError(f"{name} states several systems of units (dataset 164); expected one")
+    return FileUnits(1.0 / stated[0]["length"], 1.0 / stated[0]["force"]) if stated else None
+
+
+def _units(contents: Sequence[_Content], unit: str | None, remarks: list[str]) -> list[FileUnits]:
+    """Units of each file."""
+    stated = next((content.units for content in contents if content.units is not None), None)
     if unit is not None:
         if unit not in UNITS:
             raise MeasuredDataError(f"unit {unit!r}; expected one of {', '.join(UNITS)}")
-        if stated and not np.isclose(UNITS[unit] * stated[0]["length"], 1.0, rtol=1e-6):
+        if stated is not None and not np.isclose(UNITS[unit], stated.length, rtol=1e-6):
             remarks.append(f"lengths taken in {unit}, as told, and not as the file's dataset 164 states")
-        return UNITS[unit], force
-    if stated:
-        return 1.0 / stated[0]["length"], force
-    remarks.append("no units stated (dataset 164): lengths taken in metres, forces in newtons")
-    return 1.0, force
+        forces = [1.0 if content.units is None else content.units.force for content in contents]
+        return [FileUnits(UNITS[unit], force) for force in forces]
+    if stated is None:
+        if any(dataset["type"] in (15, 2411, 58) for content in contents for dataset in content.datasets):
+            remarks.append("no units stated (dataset 164): lengths taken in metres, forces in newtons")
+        return [FileUnits() for _ in contents]
+    for content in contents:
+        if content.units is None and any(dataset["type"] in (15, 2411, 58) for dataset in content.datasets):
+            remarks.append(f"{content.name} states no units (dataset 164): taken in those of the first file that does")
+    return [stated if content.units is None else content.units for content in contents]
 
 
-def _points(datasets: list[Dataset], length: float, remarks: list[str]) -> SurveyPoints | None:
+def _points(contents: Sequence[_Content], units: Sequence[FileUnits], remarks: list[str]) -> SurveyPoints | None:
     """Positions in metres and directions of the points, their systems resolved; None where there are none."""
-    systems = systems_of(datasets)
+    every = systems_of([dataset for content in contents for dataset in content.datasets])
     by_label: dict[str, tuple[FloatArray, FloatArray]] = {}
-    for dataset in datasets:
-        if dataset["type"] not in (15, 2411):
-            continue
-        places = np.stack([np.asarray(dataset[key], dtype=np.float64) for key in "xyz"], axis=1)
-        for index, place in enumerate(places):
-            label = str(int(dataset["node_nums"][index]))
-            defined = _system(systems, dataset["def_cs"][index], label, remarks)
-            moved = _system(systems, dataset["disp_cs"][index], label, remarks)
-            # The coordinates of dataset 2411 are the part's, whatever system it was exported for.
-            position = defined.position(place) if dataset["type"] == 15 else place
-            if label in by_label and not np.allclose(by_label[label][0], position, rtol=1e-5, atol=1e-9):
-                raise MeasuredDataError(f"point {label} stands twice in the file, at different places")
-            by_label[label] = (position, moved.directions(position))
+    for content, scale in zip(contents, units, strict=True):
+        systems = every | systems_of(content.datasets)
+        for dataset in content.datasets:
+            if dataset["type"] not in (15, 2411):
+                continue
+            positions, directions = _resolved_points(dataset, systems, remarks)
+            for label, position, axes in zip(dataset["node_nums"], scale.length * positions, directions, strict=True):
+                name = str(int(label))
+                known = by_label.setdefault(name, (position, axes))
+                if known[0] is not position and not np.allclose(known[0], position, rtol=1e-5, atol=1e-9):
+                    raise MeasuredDataError(f"point {name} stands twice in the file, at different places")
     if not by_label:
         return None
     labels = tuple(by_label)
-    positions = length * np.array([position for position, _ in by_label.values()])
+    positions = np.array([position for position, _ in by_label.values()])
     directions = np.array([axes for _, axes in by_label.values()])
+    datasets = [dataset for content in contents for dataset in content.datasets]
     if any(dataset["type"] == 2420 for dataset in datasets):
         remarks.append("coordinate systems of dataset 2420 read with their axes as the rows of the matrix")
     points = SurveyPoints(labels, positions, directions, ())
@@ -248,7 +274,30 @@ def _points(datasets: list[Dataset], length: float, remarks: list[str]) -> Surve
     return SurveyPoints(labels, positions, directions, tuple(lines))
 
 
-def _system(systems: dict[int, CoordinateSystem], number: float, label: str, remarks: list[str]) -> CoordinateSystem:
+def _resolved_points(
+    dataset: Dataset, systems: dict[int, CoordinateSystem], remarks: list[str]
+) -> tuple[FloatArray, FloatArray]:
+    """Positions in the file's unit of length, and directions of motion, of one dataset of points."""
+    positions = np.stack([np.asarray(dataset[key], dtype=np.float64) for key in "xyz"], axis=1)
+    directions = np.broadcast_to(np.eye(3), (len(positions), 3, 3)).copy()
+    defined, moved = (np.asarray(dataset[key], dtype=np.int64) for key in ("def_cs", "disp_cs"))
+    for number in np.unique(defined):
+        chosen = np.flatnonzero(defined == number)
+        system = _system(systems, number, str(int(dataset["node_nums"][chosen[0]])), remarks)
+        # The coordinates of dataset 2411 are the part's, whatever system it was exported for.
+        if dataset["type"] == 15 and system is not GLOBAL:
+            positions[chosen] = [system.position(positions[place]) for place in chosen]
+    for number in np.unique(moved):
+        chosen = np.flatnonzero(moved == number)
+        system = _system(systems, number, str(int(dataset["node_nums"][chosen[0]])), remarks)
+        if system.kind == CARTESIAN:
+            directions[chosen] = system.axes
+        else:
+            directions[chosen] = [system.directions(positions[place]) for place in chosen]
+    return positions, directions
+
+
+def _system(systems: Mapping[int, CoordinateSystem], number: float, label: str, remarks: list[str]) -> CoordinateSystem:
     """Return the coordinate system of a number; an undefined number 1 is the program's own global frame."""
     if int(number) in systems:
         return systems[int(number)]

@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured.nodal_data import COMPLEX_FIRST, NORMAL
 from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData
-from gearwhine.housing.measured.universal_datasets import COMPLEX_FIRST, FORCE, MOTIONS, NORMAL, RESPONSE_FUNCTION
+from gearwhine.housing.measured.universal_datasets import FORCE, MOTIONS, RESPONSE_FUNCTION
 from gearwhine.housing.storage.atomic_file import atomic_file
 
 FloatArray = npt.NDArray[np.float64]

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearwhine.housing.errors import HousingError
-from gearwhine.housing.reduced.matrices import MOST_COORDINATES, Coordinate, LabelledMatrix
+from gearwhine.housing.reduced.matrices import MOST_COORDINATES, Coordinate, LabelledMatrix, chosen_matrix
 
 MOST_TERMS = MOST_COORDINATES**2
 
@@ -33,8 +33,8 @@ class _Entry:
         self.line, self.fields = line, fields
 
 
-def read_dmig(text: str, file: str, name: str = "") -> LabelledMatrix:
-    """Read the DMIG matrix of a name, or the only one.
+def read_dmig(text: str, file: str, name: str = "", kind: str = "") -> LabelledMatrix:
+    """Read the DMIG matrix of a name, the only one, or that of a usual name.
 
     Parameters
     ----------
@@ -42,6 +42,8 @@ def read_dmig(text: str, file: str, name: str = "") -> LabelledMatrix:
     file : str
         Name of the file, for messages.
     name : str
+    kind : {"", "mass", "stiffness", "damping"}
+        Matrix that is meant where no name is given.
 
     Raises
     ------
@@ -49,18 +51,13 @@ def read_dmig(text: str, file: str, name: str = "") -> LabelledMatrix:
         Where there is no such matrix, it is rectangular or complex, or an entry cannot be read.
     """
     name = name.upper()
-    entries, names = [], dict[str, None]()
+    by_name: dict[str, list[_Entry]] = {}
     for entry in _entries(text, file):
         of = entry.fields[0].upper() if entry.fields else ""
-        names[of] = None
-        if of == name or not name:
-            entries.append(entry)
-    if not name and len(names) > 1:
-        listed = ", ".join(names)
-        raise HousingError(f"{file}: expected which of its DMIG matrices is meant, one of {listed}")
-    if not entries:
-        listed = ", ".join(names) or "none at all"
-        raise HousingError(f"{file}: expected a DMIG matrix {name!r}; it has {listed}")
+        kept = by_name.setdefault(of, [])
+        if name in ("", of):
+            kept.append(entry)
+    entries = by_name[chosen_matrix(list(by_name), name, kind, file)]
     header, *columns = entries
     is_symmetric = _is_symmetric(header, file)
     terms: dict[tuple[Coordinate, Coordinate], float] = {}

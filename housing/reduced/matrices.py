@@ -30,6 +30,19 @@ INDEFINITENESS = 1e-8
 MASSLESS = INDEFINITENESS
 """Eigenvalue of the mass matrix with a diagonal of ones, below which a combination of coordinates has no mass."""
 
+LARGEST_TERM = 1e100
+"""Size beyond which a term of a matrix is no quantity: products of two stay finite."""
+
+HELD = 1e30
+"""Stiffness at and beyond which a motion counts as held: Abaqus puts 1e36 on the diagonal of one."""
+
+USUAL_NAMES = {
+    "mass": ("MASS", "M", "MAAX", "MAA", "MGG", "MXX"),
+    "stiffness": ("STIFFNESS", "K", "KAAX", "KAA", "KGG", "KXX"),
+    "damping": ("DAMPING", "C", "B", "BAAX", "BAA", "BGG", "BXX"),
+}
+"""Names by which a matrix is known in a file of several, in capitals."""
+
 UNITS = {"SI": (1.0, 1.0), "mm-t-s": (1e-3, 1e-3)}
 """Length [m] and energy [J] of each system of units: t mm²/s² is 1e-3 J."""
 
@@ -49,6 +62,53 @@ class LabelledMatrix:
     values: FloatArray
     coordinates: tuple[Coordinate, ...] | None = None
 
+    def with_rows(self, coordinates: Sequence[Coordinate], file: str) -> "LabelledMatrix":
+        """Return the matrix with coordinates of its rows from another file than its own, called ``file``.
+
+        Raises
+        ------
+        HousingError
+            Where the file names them itself, or there are more or fewer of them.
+        """
+        if self.coordinates is not None:
+            raise HousingError(f"{file} names its nodes itself; expected no mapping of rows beside it")
+        if len(coordinates) != len(self.values):
+            order = len(self.values)
+            raise HousingError(f"{file} is of order {order}; expected {len(coordinates)}, the rows of the mapping")
+        return LabelledMatrix(self.values, tuple(coordinates))
+
+
+def chosen_matrix(names: Sequence[str], name: str, kind: str, file: str) -> str:
+    """Return the name of the matrix that is meant: the one of this name, the only one, or the one of a usual name.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names in the file.
+    name : str
+        Name that is asked for, as the file writes it; empty for none.
+    kind : {"", "mass", "stiffness", "damping"}
+        Matrix that is meant, see :data:`USUAL_NAMES`.
+    file : str
+        Name of the file, for messages.
+
+    Raises
+    ------
+    HousingError
+        Where there is no such matrix, or several could be meant.
+    """
+    listed = ", ".join(map(repr, names[:20])) or "none at all"
+    if name:
+        if name not in names:
+            raise HousingError(f"{file}: expected a matrix {name!r}; it has {listed}")
+        return name
+    if len(names) == 1:
+        return names[0]
+    usual = [one for one in names if one.upper() in USUAL_NAMES.get(kind, ())]
+    if len(usual) != 1:
+        raise HousingError(f"{file}: expected the name of one of its matrices; it has {listed}")
+    return usual[0]
+
 
 @dataclass(frozen=True)
 class ReducedMatrices:
@@ -64,6 +124,8 @@ class ReducedMatrices:
         Coordinate of each row, each once.
     damping : ndarray, shape (n, n), or None
         C of viscous damping: N s/m of translations.
+    is_static : bool
+        Whether the mass is zero: the housing follows its loads without resonances of its own.
 
     Raises
     ------
@@ -76,6 +138,7 @@ class ReducedMatrices:
     stiffness: FloatArray
     coordinates: tuple[Coordinate, ...]
     damping: FloatArray | None = None
+    is_static: bool = False
 
     def __post_init__(self) -> None:
         """Keep symmetric copies; check order, symmetry and definiteness."""
@@ -90,7 +153,10 @@ class ReducedMatrices:
             symmetric = 0.5 * (matrix + matrix.T)
             symmetric.setflags(write=False)
             object.__setattr__(self, name, symmetric)
-        refuse(_definiteness_findings({name: getattr(self, name) for name in matrices}), HousingError)
+        checked = [name for name in matrices if not (self.is_static and name == "mass")]
+        refuse(_definiteness_findings({name: getattr(self, name) for name in checked}), HousingError)
+        if self.is_static and self.mass.any():
+            refuse([Finding(_part("mass"), "", None, "a mass of zero of a static housing")], HousingError)
 
     @property
     def size(self) -> int:
@@ -113,8 +179,8 @@ class ReducedMatrices:
             if matrix.shape != (n, n):
                 expected = f"a square matrix of order {n}, that of the coordinates; its shape is {matrix.shape}"
                 yield Finding(_part(name), "", None, expected)
-            elif not np.isfinite(matrix).all():
-                row, column = np.argwhere(~np.isfinite(matrix))[0]
+            elif not (within := np.abs(matrix) <= LARGEST_TERM).all():
+                row, column = np.argwhere(~within)[0]
                 place = f"row {row + 1}, column {column + 1}"
                 yield Finding(_part(name), place, float(matrix[row, column]), "a finite number")
         if not 0 < n <= MOST_COORDINATES:
@@ -139,7 +205,8 @@ def reduced_matrices(
     Parameters
     ----------
     matrices : mapping of str to LabelledMatrix
-        ``mass``, ``stiffness``, and ``damping`` where there is one. Rows that one of labelled matrices lacks are zero.
+        ``stiffness``, and ``mass`` and ``damping`` where there are any: without a mass the housing is static. Rows that
+        one of labelled matrices lacks are zero; those of a stiffness of :data:`HELD` are left out.
     nodes : sequence of int
         Numbers of the nodes to which the first rows belong, six each, where the files name no coordinates; the others
         are internal.
@@ -174,6 +241,10 @@ def reduced_matrices(
             values[name] = np.zeros((len(union), len(union)))
             values[name][np.ix_(rows, rows)] = matrices[name].values
         coordinates = tuple(union)
+        held = np.diag(values["stiffness"]) >= HELD
+        if held.any():
+            coordinates = tuple(one for one, is_held in zip(union, held, strict=True) if not is_held)
+            values = {name: matrix[np.ix_(~held, ~held)] for name, matrix in values.items()}
     else:
         order = len(matrices["stiffness"].values)
         if 6 * len(nodes) > order or not nodes:
@@ -181,12 +252,62 @@ def reduced_matrices(
             refuse([Finding(("reduced housing", ""), "nodes", tuple(nodes), expected)], HousingError)
         at_nodes = [(node, axis) for node in nodes for axis in range(1, 7)]
         coordinates = (*at_nodes, *((number, 0) for number in range(1, order - len(at_nodes) + 1)))
-    length, energy = UNITS[units]
-    per_unit = np.array([1.0 / length if 1 <= axis <= 3 else 1.0 for _, axis in coordinates])
     for name, matrix in values.items():
         if matrix.shape == (len(coordinates),) * 2:
-            values[name] = energy * per_unit[:, None] * matrix * per_unit
-    return ReducedMatrices(values["mass"], values["stiffness"], coordinates, values.get("damping"))
+            values[name] = _in_si(matrix, coordinates, units)
+    mass = values.get("mass", np.zeros((len(coordinates),) * 2))
+    return ReducedMatrices(mass, values["stiffness"], coordinates, values.get("damping"), "mass" not in values)
+
+
+def _in_si(matrix: FloatArray, coordinates: Sequence[Coordinate], units: str) -> FloatArray:
+    """Return E S⁻¹ A S⁻¹ of :func:`reduced_matrices`."""
+    length, energy = UNITS[units]
+    per_unit = np.array([1.0 / length if 1 <= axis <= 3 else 1.0 for _, axis in coordinates])
+    with np.errstate(over="ignore"):  # what is no number of a housing is refused later, by its place
+        return np.asarray(energy * per_unit[:, None] * matrix * per_unit)
+
+
+@dataclass(frozen=True)
+class StaticStiffness:
+    """Static stiffness of the interface nodes, from another computation than the reduction.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n, n)
+        N/m of translations, N and N m with rotations.
+    coordinates : tuple of Coordinate
+    """
+
+    values: FloatArray
+    coordinates: tuple[Coordinate, ...]
+
+
+def static_stiffness(matrix: LabelledMatrix, nodes: Sequence[int] = (), units: str = "SI") -> StaticStiffness:
+    """Make a static stiffness in SI of that of a file.
+
+    Parameters
+    ----------
+    matrix : LabelledMatrix
+    nodes : sequence of int
+        Nodes of the rows, six each, where the file does not name them.
+    units : {"SI", "mm-t-s"}
+
+    Raises
+    ------
+    HousingError
+        Where there are more or fewer rows than motions of the nodes, or the matrix is not symmetric.
+    """
+    coordinates = matrix.coordinates
+    if coordinates is None:
+        coordinates = tuple((node, axis) for node in nodes for axis in range(1, 7))
+    if len(coordinates) != len(matrix.values):
+        expected = f"six rows for each of the {len(nodes)} nodes; its order is {len(matrix.values)}"
+        refuse([Finding(_part("static"), "", None, expected)], HousingError)
+    values = _in_si(matrix.values, coordinates, units)
+    if not (np.abs(values) <= LARGEST_TERM).all():
+        refuse([Finding(_part("static"), "", None, "finite numbers")], HousingError)
+    refuse(_symmetry_findings({"static": values}), HousingError)
+    return StaticStiffness(0.5 * (values + values.T), coordinates)
 
 
 def _part(name: str) -> Part:

@@ -3,7 +3,8 @@
 Format: NX Nastran User's Guide, module OUTPUT4. A matrix begins with NCOL, NROW, form, type and name; NROW is negative
 where strings have a head of two numbers. A column is ICOL, IROW, NW and its numbers: from row IROW on, or, where IROW
 is 0, strings of L words from row I on, each with the head I + 65536 (L + 1), or L + 1 and I. A double has two words.
-The column NCOL + 1 ends the matrix. A symmetric matrix has all its columns.
+The column NCOL + 1 ends the matrix. A symmetric matrix has all its columns. Integers, words and real numbers of
+binary files of 64-bit Nastran have eight bytes, names sixteen.
 """
 
 import re
@@ -16,15 +17,13 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
-from gearwhine.housing.reduced.matrices import MOST_COORDINATES
+from gearwhine.housing.reduced.matrices import MOST_COORDINATES, chosen_matrix
 
 FloatArray = npt.NDArray[np.float64]
 
 Strings = Iterator[tuple[int, int, FloatArray]]
 """Column, first row and numbers of each string of a matrix."""
 
-_HEAD_BYTES = 24  # of the record that begins a matrix, with integers of 32 bits
-_HEAD_BYTES_64 = 48
 _WORDS = {1: 1, 2: 2}  # words of a number by the type of real matrices
 _STRING = 65536
 
@@ -40,8 +39,36 @@ class _Head:
     two_numbers: bool
 
 
-def read_op4(path: Path, name: str = "") -> FloatArray:
-    """Read the real square matrix of a name, or the only one, shape (n, n).
+@dataclass(frozen=True)
+class _Layout:
+    """Order of the bytes, ``<`` or ``>``, and number of them in a word of a binary file, 4 or 8."""
+
+    order: str
+    word: int
+
+    @property
+    def head(self) -> int:
+        """Bytes of the record that begins a matrix: four integers and a name of two words."""
+        return 6 * self.word
+
+    def integers(self, data: bytes, count: int) -> tuple[int, ...]:
+        """Return the first integers of a record."""
+        return struct.unpack(f"{self.order}{count}{'q' if self.word == 8 else 'i'}", data[: count * self.word])
+
+    def number(self, kind: int) -> "np.dtype[np.float64] | np.dtype[np.float32]":
+        """Numbers of a matrix of this type."""
+        return np.dtype(self.order + ("f4" if self.word == 4 and kind == 1 else "f8"))
+
+
+def read_op4(path: Path, name: str = "", kind: str = "") -> FloatArray:
+    """Read the real square matrix of a name, the only one, or that of a usual name; shape (n, n).
+
+    Parameters
+    ----------
+    path : path
+    name : str
+    kind : {"", "mass", "stiffness", "damping"}
+        Matrix that is meant where no name is given.
 
     Raises
     ------
@@ -51,30 +78,34 @@ def read_op4(path: Path, name: str = "") -> FloatArray:
         Where the file cannot be opened.
     """
     content = path.read_bytes()
-    matrices = _of_text(content, path.name) if _is_text(content) else _of_records(content, path.name)
-    wanted, names, found = name.upper(), list[str](), None
-    for head, columns in matrices:
+    parts = _of_text if _is_text(content) else _of_records
+    names = []
+    for head, columns in parts(content, path.name):
         names.append(head.name)
-        if wanted not in ("", head.name):
-            for _ in columns:
-                pass
-            continue
-        if found is not None and not wanted:
-            raise HousingError(f"{path.name}: expected the name of one of its matrices, such as {', '.join(names)}")
-        found = _square(head, columns, path.name)
-    if found is None:
-        listed = ", ".join(names) or "none at all"
-        raise HousingError(f"{path.name}: expected a matrix {name!r}; it has {listed}")
-    return found
+        if name.upper() in ("", head.name):
+            _check(head, path.name)
+        for _ in columns:
+            pass
+    wanted = chosen_matrix(names, name.upper(), kind, path.name)
+    for head, columns in parts(content, path.name):
+        if head.name == wanted:
+            return _square(head, columns, path.name)
+        for _ in columns:
+            pass
+    raise AssertionError(wanted)
 
 
-def _square(head: _Head, columns: Strings, file: str) -> FloatArray:
-    """Put the strings of a matrix into their places."""
+def _check(head: _Head, file: str) -> None:
+    """Refuse a matrix that is complex, not square or too large."""
     if head.type not in _WORDS:
         raise HousingError(f"{file}: matrix {head.name} is of type {head.type}; expected 1 or 2 (real)")
     if head.columns != head.rows or not 0 < head.rows <= MOST_COORDINATES:
         size = f"{head.rows} x {head.columns}"
         raise HousingError(f"{file}: {head.name} is {size}; expected a square matrix of order 1 to {MOST_COORDINATES}")
+
+
+def _square(head: _Head, columns: Strings, file: str) -> FloatArray:
+    """Put the strings of a matrix into their places."""
     values = np.zeros((head.rows, head.columns))
     for column, row, numbers in columns:
         if not (1 <= column <= head.columns and row >= 1 and row + numbers.size - 1 <= head.rows):
@@ -98,20 +129,20 @@ def _is_text(content: bytes) -> bool:
 
 
 def _of_records(content: bytes, file: str) -> Iterator[tuple[_Head, Strings]]:
-    """Yield the matrices of a binary file of 32-bit integers, in either order of bytes."""
-    order = next((one for one in "<>" if struct.unpack(one + "i", content[:4].ljust(4, b"\0"))[0] == _HEAD_BYTES), None)
-    if order is None:
-        if any(struct.unpack(one + "i", content[:4].ljust(4, b"\0"))[0] == _HEAD_BYTES_64 for one in "<>"):
-            raise HousingError(f"{file} has integers of 64 bits; expected an OUTPUT4 file with integers of 32 bits")
+    """Yield the matrices of a binary file, whose first four bytes tell its layout."""
+    layouts = [_Layout(order, word) for order in "<>" for word in (4, 8)]
+    begins = content[:4].ljust(4, b"\0")
+    layout = next((one for one in layouts if struct.unpack(one.order + "i", begins)[0] == one.head), None)
+    if layout is None:
         raise HousingError(f"{file}: expected an OUTPUT4 file of Nastran, binary or text")
-    records = _records(content, order, file)
+    records = _records(content, layout.order, file)
     for record in records:
-        if len(record) != _HEAD_BYTES:
+        if len(record) != layout.head:
             raise HousingError(f"{file}: expected the beginning of a matrix after the last one")
-        columns, rows, _, kind = struct.unpack(order + "4i", record[:16])
-        name = record[16:].decode("latin-1").strip().upper()
+        columns, rows, _, kind = layout.integers(record, 4)
+        name = record[4 * layout.word :].decode("latin-1").strip().upper()
         head = _Head(name, columns, abs(rows), kind, rows < 0)
-        yield head, _binary_columns(records, head, order, file)
+        yield head, _binary_columns(records, head, layout, file)
 
 
 def _records(content: bytes, order: str, file: str) -> Iterator[bytes]:
@@ -126,37 +157,36 @@ def _records(content: bytes, order: str, file: str) -> Iterator[bytes]:
         at = end + 4
 
 
-def _binary_columns(records: Iterator[bytes], head: _Head, order: str, file: str) -> Strings:
+def _binary_columns(records: Iterator[bytes], head: _Head, layout: _Layout, file: str) -> Strings:
     """Yield column, first row and numbers of each string of a matrix up to its last record."""
-    words = _WORDS.get(head.type, 2)
-    dtype = np.dtype(order + ("f4" if words == 1 else "f8"))
+    word, dtype = layout.word, layout.number(head.type)
     for record in records:
-        if len(record) < 12:
+        if len(record) < 3 * word:
             raise HousingError(f"{file}: expected the columns of {head.name}, complete to its end")
-        column, row, _ = struct.unpack(order + "3i", record[:12])
+        column, row, _ = layout.integers(record, 3)
         if column > head.columns:
             return
-        data = record[12:]
+        data = record[3 * word :]
         if row > 0:
             yield column, row, _numbers(data, dtype, file)
             continue
         while data:
-            row, count, data = _string(data, head, order, file)
-            yield column, row, _numbers(data[: 4 * count], dtype, file)
-            data = data[4 * count :]
+            row, count, data = _string(data, head, layout, file)
+            yield column, row, _numbers(data[: word * count], dtype, file)
+            data = data[word * count :]
     raise HousingError(f"{file}: expected the columns of {head.name}, complete to its end")
 
 
-def _string(data: bytes, head: _Head, order: str, file: str) -> tuple[int, int, bytes]:
+def _string(data: bytes, head: _Head, layout: _Layout, file: str) -> tuple[int, int, bytes]:
     """First row, number of words, and what follows the head of a string."""
-    size = 8 if head.two_numbers else 4
+    size = (2 if head.two_numbers else 1) * layout.word
     if len(data) < size:
         raise HousingError(f"{file}: expected whole strings in the columns of {head.name}")
     if head.two_numbers:
-        length, row = struct.unpack(order + "2i", data[:8])
+        length, row = layout.integers(data, 2)
     else:
-        length, row = divmod(struct.unpack(order + "i", data[:4])[0], _STRING)
-    if not 2 <= length <= len(data) // 4:
+        length, row = divmod(layout.integers(data, 1)[0], _STRING)
+    if not 2 <= length <= len(data) // layout.word:
         raise HousingError(f"{file}: expected whole strings in the columns of {head.name}")
     return row, length - 1, data[size:]
 

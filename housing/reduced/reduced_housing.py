@@ -13,7 +13,7 @@ from scipy import linalg
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.certificate import ReducedCertificate, certify, rigid_motions
-from gearwhine.housing.reduced.matrices import MASSLESS, ReducedMatrices, scaled
+from gearwhine.housing.reduced.matrices import MASSLESS, ReducedMatrices, StaticStiffness, scaled
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -40,6 +40,12 @@ LIGHTEST, HEAVIEST = 1e-3, 1e6
 
 STATIC_RATIO = 10.0
 """Frequency of a coordinate without mass, over the highest natural frequency: it responds statically below."""
+
+REACH_OF_HELD_MODES = 1.2
+"""Frequency limit over that of the last mode with the nodes held, beyond which modes of the housing may be missing."""
+
+STATIC_DIFFERENCE = 1e-3
+"""Difference from a static stiffness of the interface that is warned of: Craig and Bampton keep it exactly."""
 
 _RIGID = 1e-12  # eigenvalue over the largest stiffness in the eigenproblem's own coordinates: a motion that is free
 
@@ -176,6 +182,8 @@ class ReducedHousing:
     limit : float
         Frequency below which the reduction is accurate, as whoever made it knows [rad/s]. Modes above it are kept for
         their static response.
+    static : StaticStiffness, optional
+        Static stiffness of interface nodes from another computation, which the certificate holds the matrices against.
 
     Raises
     ------
@@ -190,6 +198,7 @@ class ReducedHousing:
     supports: Sequence[NodeSpring] = ()
     damping_ratio: float = 0.01
     limit: float = field(kw_only=True)
+    static: StaticStiffness | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies; check names, nodes, places and the mass."""
@@ -222,6 +231,10 @@ class ReducedHousing:
 
     def _node_findings(self) -> Iterator[Finding]:
         """Yield names given twice, nodes that are missing or have two places, and motions that a node lacks."""
+        if self.static is not None and not set(self.static.coordinates) <= set(self.matrices.coordinates):
+            node, axis = min(set(self.static.coordinates) - set(self.matrices.coordinates))
+            expected = f"motions that the reduced matrices have; these lack component {axis} of node {node}"
+            yield Finding(("reduced housing", "static"), "", None, expected)
         nodes, places, needed = self.matrices.nodes, self._places, self._needed()
         seen: set[tuple[str, str]] = set()
         for kind, name, node, place in self._ports():
@@ -256,7 +269,7 @@ class ReducedHousing:
         for row in translations:
             shift[row, self.matrices.coordinates[row][1] - 1] = 1.0
         mass = float(np.diag(shift.T @ self.matrices.mass @ shift).mean())
-        if not LIGHTEST <= mass <= HEAVIEST:
+        if not self.matrices.is_static and not LIGHTEST <= mass <= HEAVIEST:
             expected = (
                 f"a housing of {LIGHTEST:g} to {HEAVIEST:g} kg in all translations; the files may have other units"
             )
@@ -272,10 +285,10 @@ class ReducedHousing:
 
     @cached_property
     def certificate(self) -> ReducedCertificate | None:
-        """What is proved of the matrices; None where the place of a node is not known."""
-        if any(node not in self._places for node in self.matrices.nodes):
+        """What is proved of the matrices; None where no node with six motions has a known place."""
+        if not any(len(self.matrices.rows(node)) == 6 for node in self._places):
             return None
-        return certify(self.matrices, self._places)
+        return certify(self.matrices, self._places, self.static)
 
     @property
     def participation_motions(self) -> FloatArray | None:
@@ -313,7 +326,7 @@ class ReducedHousing:
         Raises
         ------
         HousingError
-            Where a combination without mass has no stiffness either.
+            Where a combination without mass has no stiffness either, as of a static housing that nothing holds.
         """
         stiffness, _ = self.supported
         mass = self.matrices.mass
@@ -331,13 +344,15 @@ class ReducedHousing:
                 expected = "stiffness of every motion that has no mass; one has neither"
                 refuse([Finding(("reduced housing", "stiffness"), "", None, expected)], HousingError)
             moving = moving - still @ np.linalg.solve(inner, still.T @ stiffness @ moving)
-        if not moving.shape[1]:
+        if not moving.shape[1] and not self.matrices.is_static:
             refuse([Finding(("reduced housing", "mass"), "", None, "mass of one motion at least")], HousingError)
         reduced_stiffness = moving.T @ stiffness @ moving
-        squares, vectors = linalg.eigh(reduced_stiffness, moving.T @ mass @ moving)
-        squares = np.where(squares < _RIGID * max(float(squares[-1]), 0.0), 0.0, squares)
+        squares, vectors = np.zeros(0), np.zeros((0, 0))
+        if moving.shape[1]:
+            squares, vectors = linalg.eigh(reduced_stiffness, moving.T @ mass @ moving)
+        squares = np.where(squares < _RIGID * max(float(squares.max(initial=0.0)), 0.0), 0.0, squares)
         frequencies = np.sqrt(squares)
-        highest = STATIC_RATIO * max(float(frequencies[-1]), self.limit)
+        highest = STATIC_RATIO * max(float(frequencies.max(initial=0.0)), self.limit)
         static = still @ (static_vectors * (highest / np.sqrt(static_values)))
         return ReducedModes(
             frequencies, highest, np.hstack([moving @ vectors, static]), int((frequencies <= self.limit).sum())
@@ -372,6 +387,9 @@ class ReducedHousing:
     def warnings(self) -> list[ResultWarning]:
         """Warnings of rigid motions that nothing holds, and of matrices whose rigid motions are strained in part."""
         warnings = []
+        if self.matrices.is_static:
+            message = "the reduced housing has a stiffness alone: it follows its loads without resonances of its own"
+            warnings.append(warning("reduced-housing", message))
         free = int((self.modes.frequencies == 0.0).sum())
         if free:
             message = f"the reduced housing has {free} motions that nothing holds: it floats freely in them"
@@ -383,4 +401,18 @@ class ReducedHousing:
                 "and leaves the others free: check the nodes' places, their axes and the units"
             )
             warnings.append(warning("reduced-housing", message, count=certificate.free_motions))
+        if certificate is not None and certificate.held_frequency is not None:
+            held, limit = certificate.held_frequency / _TWO_PI, self.limit / _TWO_PI
+            if limit > REACH_OF_HELD_MODES * held:
+                message = (
+                    f"the reduced housing keeps modes with its nodes held up to {held:.4g} Hz, fewer than a limit of "
+                    f"{limit:.4g} Hz takes: modes of the housing above {held:.4g} Hz may be missing"
+                )
+                warnings.append(warning("reduced-housing", message, held_hz=held, limit_hz=limit))
+        if certificate is not None and (certificate.static_difference or 0.0) > STATIC_DIFFERENCE:
+            message = (
+                f"the static stiffness of the reduced housing at its interface differs by up to "
+                f"{100.0 * (certificate.static_difference or 0.0):.3g} % from the one given beside it"
+            )
+            warnings.append(warning("reduced-housing", message, difference=certificate.static_difference))
         return warnings

@@ -1,4 +1,4 @@
-"""Writers of reduced matrices for other programs: NumPy, Matrix Market, OUTPUT4 and DMIG of Nastran.
+"""Writers of reduced matrices for other programs: NumPy, NetCDF, Matrix Market, OUTPUT4 and DMIG of Nastran.
 
 Formats as in :mod:`gearwhine.housing.reduced.matrix_files`, :mod:`gearwhine.housing.reduced.op4` and
 :mod:`gearwhine.housing.reduced.dmig`.
@@ -14,10 +14,14 @@ from scipy import io
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.matrices import Coordinate, ReducedMatrices
+from gearwhine.housing.reduced.row_labels import write_row_labels
+from gearwhine.housing.storage.netcdf import Variables, write_netcdf
 
 FloatArray = npt.NDArray[np.float64]
 
-WRITTEN_ENDINGS = (".npz", ".mtx", ".op4", ".pch")
+_LARGE = 16  # characters of a large field
+
+WRITTEN_ENDINGS = (".npz", ".nc", ".mtx", ".op4", ".pch")
 NAMES = {"mass": "MAAX", "stiffness": "KAAX", "damping": "BAAX"}
 """Names of the matrices in files of Nastran."""
 
@@ -28,14 +32,15 @@ def write_matrices(path: Path, matrices: ReducedMatrices) -> dict[str, Path]:
     Parameters
     ----------
     path : path
-        File that ends in ``.npz``, ``.mtx``, ``.op4`` or ``.pch``. With ``.mtx`` its name gets the matrix before the
-        ending: ``box.mtx`` becomes ``box-mass.mtx`` and so on.
+        File that ends in ``.npz``, ``.nc``, ``.mtx``, ``.op4`` or ``.pch``. With ``.mtx`` its name gets the matrix
+        before the ending: ``box.mtx`` becomes ``box-mass.mtx`` and so on.
     matrices : ReducedMatrices
 
     Returns
     -------
     dict of str to path
-        File of ``mass``, ``stiffness`` and ``damping``, where there is one.
+        File of ``mass``, ``stiffness`` and ``damping``, where there is one; of a format that does not name the rows,
+        as ``mapping`` the ``.dof`` file that does.
 
     Raises
     ------
@@ -51,17 +56,30 @@ def write_matrices(path: Path, matrices: ReducedMatrices) -> dict[str, Path]:
         for kind, file in files.items():
             with file.open("wb") as out:
                 io.mmwrite(out, values[kind], precision=17, symmetry="symmetric")
-        return files
+        return files | _mapping(path, matrices)
     if ending == ".npz":
         nodes, axes = np.array(matrices.coordinates, dtype=np.int64).T
         np.savez(path, **values, nodes=nodes, axes=axes)  # type: ignore[arg-type]
+    elif ending == ".nc":
+        nodes, axes = np.array(matrices.coordinates, dtype=np.int64).T
+        square = {kind: (("row", "column"), matrix, {"units": "SI"}) for kind, matrix in values.items()}
+        labels: Variables = {"nodes": ("row", nodes, {}), "axes": ("row", axes, {})}
+        write_netcdf(path, {**square, **labels}, {"title": "Reduced matrices; axis 0 is an internal coordinate"})
     elif ending == ".op4":
         path.write_bytes(b"".join(_records(NAMES[kind], matrix) for kind, matrix in values.items()))
+        return dict.fromkeys(values, path) | _mapping(path, matrices)
     elif ending == ".pch":
         path.write_text("\n".join([*_dmig(values, matrices.coordinates), ""]), encoding="ascii")
     else:
         raise HousingError(f"{path.name}: expected a file that ends in one of {', '.join(WRITTEN_ENDINGS)}")
     return dict.fromkeys(values, path)
+
+
+def _mapping(path: Path, matrices: ReducedMatrices) -> dict[str, Path]:
+    """Write the coordinates of the rows into a file beside that of the matrices."""
+    labels = path.with_suffix(".dof")
+    write_row_labels(labels, matrices.coordinates)
+    return {"mapping": labels}
 
 
 def _records(name: str, matrix: FloatArray) -> bytes:
@@ -80,7 +98,7 @@ def _records(name: str, matrix: FloatArray) -> bytes:
 
 
 def _dmig(values: Mapping[str, FloatArray], coordinates: tuple[Coordinate, ...]) -> Iterator[str]:
-    """Yield entries in large fields: sixteen characters, ten digits."""
+    """Yield entries in large fields."""
 
     def line(head: str, *fields: object) -> str:
         return f"{head:8}" + "".join(f"{field!s:>16}" for field in fields)
@@ -94,4 +112,13 @@ def _dmig(values: Mapping[str, FloatArray], coordinates: tuple[Coordinate, ...])
             if rows.size:
                 yield line("DMIG*", name, node, axis, "")
             for row in rows.tolist():
-                yield line("*", *coordinates[row], f"{matrix[row, column]:.9E}")
+                yield line("*", *coordinates[row], _field(float(matrix[row, column])))
+
+
+def _field(value: float) -> str:
+    """Return a number in sixteen characters, without the letter of its exponent: 1.23456789012+7."""
+    for decimals in range(11, 6, -1):
+        mantissa, exponent = f"{value:.{decimals}E}".split("E")
+        if len(text := f"{mantissa}{int(exponent):+d}") <= _LARGE:
+            break
+    return text

@@ -208,7 +208,8 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
     if layout.end_wall(box, bore) is None:
         expected = (
             f"z in the back wall, {mm(-half)} to {mm(-half + box.wall.back)}, "
-            f"or in the front wall, {mm(half - box.wall.front)} to {mm(half)}"
+            f"or in the front wall, {mm(half - box.wall.front)} to {mm(half)}: the seats of a box are bores through "
+            "these walls; one between them, as around a ring gear, takes a housing from CAD or a mesh file"
         )
         yield BoxMisfit((*location, "center", 2), expected)
     if bore.boss is not None and bore.boss.length > box.size[2]:

@@ -1,7 +1,7 @@
 """Input decks of Abaqus and CalculiX: keyword cards; reader and writer of nodes, solid elements, sets and surfaces.
 
 meshio reads these files too, but gives an element set to the wrong block of elements where some blocks have none, and
-knows no ``*SURFACE``. The reader takes flat decks, and decks with one instance of one of their parts.
+knows no ``*SURFACE``. The reader takes flat decks, and assemblies of instances of parts.
 """
 
 import math
@@ -15,127 +15,17 @@ import numpy as np
 
 from gearwhine.meshes.elements import KINDS, NO_NODE, ElementBlock, count
 from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.formats.abaqus_assembly import Frame, Scope, local_system, moved, parted, shared_names
+from gearwhine.meshes.formats.abaqus_cards import Card, read_cards
 from gearwhine.meshes.formats.content import MeshContent, corner_rows, find_faces
 from gearwhine.meshes.mesh import Mesh
 from gearwhine.numerics.arrays import IntArray
 
-_DEPTH = 20  # levels of files that include files
-_INCLUDE, _INPUT = "INCLUDE", "INPUT"
-# Keywords that are read here, whose lines of data may stand in a file of their own.
-_KEYWORDS_READ = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
+_LONGEST_FIELD = 20  # characters of a number that CalculiX reads
 # Keywords that make, move or take away nodes or elements, and what to write in place of them.
 _FLAT_DECK_ADVICE = "write the deck with every node and element in it (as preprocessors do), without this keyword"
 _REFUSED = {"NGEN", "NCOPY", "NFILL", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION", "IMPORT"}
 _Member = TypeVar("_Member")
-_COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
-
-
-@dataclass(frozen=True)
-class Card:
-    """A keyword with its parameters, both upper case, and its lines of data.
-
-    Attributes
-    ----------
-    keyword : str
-        Keyword, such as ``ELSET``.
-    parameters : dict of str to str
-        Values without quotes; empty where a parameter has none.
-    lines : list of list of str
-        Items of each line; a comma at its end makes no item.
-    place : str
-        File and line, for messages.
-    """
-
-    keyword: str
-    parameters: dict[str, str]
-    lines: list[list[str]]
-    place: str
-
-
-def read_cards(path: Path) -> Iterator[Card]:
-    """Yield the keyword cards of a file and of those it includes, without comments.
-
-    Raises
-    ------
-    GeometryError
-        Where an included file or one of data is missing, or a file includes itself.
-    """
-    yield from _cards(path, 0)
-
-
-def included_files(path: Path) -> Iterator[Path]:
-    """Yield the files that a file itself includes or takes lines of data from, whether they exist or not."""
-    # Most decks include nothing and are long: their cards are made only where the word is in them.
-    if _INPUT.encode() in path.read_bytes().upper():
-        yield from (_included(card, path) for card in _own_cards(path) if _takes_file(card))
-
-
-def _cards(path: Path, depth: int) -> Iterator[Card]:
-    if depth > _DEPTH:
-        raise GeometryError(f"mesh file {path} is included {_DEPTH} files deep; does it include itself?")
-    for card in _own_cards(path):
-        yield from _resolved(card, path, depth)
-
-
-def _own_cards(path: Path) -> Iterator[Card]:
-    """Yield the cards of a file itself, INCLUDE among them."""
-    card: Card | None = None
-    pending = ""
-    for number, raw in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
-        line = raw.strip()
-        if not line or line.startswith("**"):
-            continue
-        if line.startswith("*") or pending:
-            pending += line
-            if pending.endswith(","):  # the keyword goes on in the next line
-                continue
-            if card is not None:
-                yield card
-            card, pending = _card(pending, f"mesh file {path}, line {number}"), ""
-        elif card is not None:
-            card.lines.append(_items(line))
-    if card is not None:
-        yield card
-
-
-def _resolved(card: Card, path: Path, depth: int) -> Iterator[Card]:
-    """Yield the card itself, with its lines of data from another file, or the cards of the file that it includes."""
-    if not _takes_file(card):
-        yield card
-        return
-    other = _included(card, path)
-    if not other.is_file():
-        raise GeometryError(f"mesh file {path} includes {card.parameters.get(_INPUT, '')!r}: no such file")
-    if card.keyword == _INCLUDE:
-        yield from _cards(other, depth + 1)
-        return
-    for raw in other.read_text(encoding="utf-8", errors="replace").splitlines():
-        line = raw.strip()
-        if line.startswith("*") and not line.startswith("**"):
-            raise GeometryError(f"{card.place}: {other} has a keyword, {line!r}; expected lines of data alone")
-        if line and not line.startswith("**"):
-            card.lines.append(_items(line))
-    yield card
-
-
-def _takes_file(card: Card) -> bool:
-    return card.keyword == _INCLUDE or (card.keyword in _KEYWORDS_READ and _INPUT in card.parameters)
-
-
-def _included(card: Card, path: Path) -> Path:
-    """Return the file that a card names, relative to the file that it stands in; its folder where it names none."""
-    return path.parent / card.parameters.get(_INPUT, "")
-
-
-def _card(line: str, place: str) -> Card:
-    word, *rest = _items(line[1:])
-    pairs = [part.partition("=") for part in rest]
-    parameters = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-    return Card(" ".join(word.upper().split()), parameters, [], place)
-
-
-def _items(line: str) -> list[str]:
-    return [item.strip().strip('"') for item in _COMMA.split(line.rstrip().removesuffix(","))]
 
 
 # Solid elements by the number in their type, whatever letters follow (C3D10M, C3D8R, C3D20RH).
@@ -162,85 +52,122 @@ FACE_LABELS = {
 
 @dataclass
 class _Deck:
-    """Content of the deck read so far, by the deck's own numbers."""
+    """Content of the deck read so far, by numbers that are unique over all instances.
+
+    Attributes
+    ----------
+    scope : Scope
+        That of the cards that are taken.
+    scopes : dict of str to Scope
+        Instances by name, in capitals.
+    shared : set of str
+        Names of sets, in capitals, that several instances have: these are called INSTANCE.SET.
+    system : Frame
+        Coordinate system of the nodes to come (``*SYSTEM``).
+    """
+
+    scope: Scope = field(default_factory=Scope)
+    scopes: dict[str, Scope] = field(default_factory=dict)
+    shared: set[str] = field(default_factory=set)
+    system: Frame | None = None
 
     points: dict[int, list[float]] = field(default_factory=dict)
     elements: dict[str, dict[int, list[int]]] = field(default_factory=dict)
     shells: dict[int, list[int]] = field(default_factory=dict)
     element_sets: dict[str, list[int]] = field(default_factory=dict)
     node_sets: dict[str, list[int]] = field(default_factory=dict)
-    faces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    faces: dict[str, list[tuple[str, str, Scope]]] = field(default_factory=dict)
     internal: set[str] = field(default_factory=set)
+
+    def enter(self, scope: Scope) -> None:
+        """Take the cards of another scope from here on."""
+        self.scope, self.system = scope, None
+        if scope.name:
+            self.scopes[scope.name.upper()] = scope
+
+    def highest(self) -> int:
+        """Return the highest number of a node or an element."""
+        numbers = [*self.points, *self.shells, *(number for elements in self.elements.values() for number in elements)]
+        return max(numbers, default=0)
+
+    def named(self, name: str | None, scope: Scope) -> str | None:
+        """Return the name of a set that a scope calls by its own name."""
+        return f"{scope.name}.{name}" if name and scope.name and name.upper() in self.shared else name
 
 
 def read_abaqus(path: Path) -> MeshContent:
     """Read an input deck.
 
     Element sets become volumes, their shells sets of facets; surfaces of elements become sets of facets, and those of
-    nodes node sets, as ``*NSET``. Elements that are no solids, facets aside, are passed over.
+    nodes node sets, as ``*NSET``. Elements that are no solids, facets aside, are passed over. Instances stand where
+    they are moved to; a set that several of them have is called INSTANCE.SET.
 
     Raises
     ------
     GeometryError
-        Where the deck holds pyramids or other unknown solids, several instances or a moved one, keywords that generate
-        nodes or elements, or references to missing numbers.
+        Where the deck holds pyramids or other unknown solids, keywords that generate nodes or elements, or references
+        to missing numbers, sets or parts.
     """
     deck = _Deck()
-    for card in _instanced(list(read_cards(path)), path):
+    parts, instances, outside = parted(read_cards(path))
+    if not instances:
+        if len(parts) > 1:
+            raise GeometryError(f"mesh file {path} has {len(parts)} parts and no instance; write one flat deck of them")
+        for card in [*(card for cards in parts.values() for card in cards), *outside]:
+            _take(deck, card)
+        return _content(deck, path)
+    owned = []
+    for instance in instances:
+        part = instance.card.parameters.get("PART", "")
+        if parts and part.upper() not in parts:
+            raise GeometryError(f"{instance.card.place}: instance of part {part!r}, which is not there")
+        owned.append([*parts.get(part.upper(), ()), *instance.cards])
+    deck.shared = shared_names(owned)
+    for instance, cards in zip(instances, owned, strict=True):
+        name = instance.card.parameters.get("NAME", "")
+        deck.enter(Scope(name, deck.highest(), moved(instance.card)))
+        for card in cards:
+            _take(deck, card)
+    deck.enter(Scope(first=deck.highest()))
+    for card in outside:
         _take(deck, card)
     return _content(deck, path)
 
 
-def _instanced(cards: list[Card], path: Path) -> Iterator[Card]:
-    """Yield the cards outside of parts, and those of the part that is instanced; numbers are those of each part."""
-    instances = [card for card in cards if card.keyword == "INSTANCE"]
-    if len(instances) > 1:
-        raise GeometryError(f"mesh file {path} assembles {len(instances)} instances; write one flat deck of them")
-    parts = [card.parameters.get("NAME", "").upper() for card in cards if card.keyword == "PART"]
-    for card in instances:
-        if card.lines:
-            raise GeometryError(f"{card.place}: an instance is moved; write a flat deck, where it stands in its place")
-        part = card.parameters.get("PART", "")
-        if parts and part.upper() not in parts:
-            raise GeometryError(f"{card.place}: instance of part {part!r}, which is not there")
-        parts = [part.upper()]
-    if len(parts) > 1:
-        raise GeometryError(f"mesh file {path} has {len(parts)} parts and no instance; write one flat deck of them")
-    within: str | None = None
-    for card in cards:
-        if card.keyword == "PART":
-            within = card.parameters.get("NAME", "").upper()
-        elif card.keyword == "END PART":
-            within = None
-        elif within is None or within in parts:
-            yield card
-
-
 def _take(deck: _Deck, card: Card) -> None:
-    if card.keyword in _REFUSED or (card.keyword == "SYSTEM" and card.lines):
+    if card.keyword in _REFUSED:
         raise GeometryError(f"{card.place}: *{card.keyword} is not known here; {_FLAT_DECK_ADVICE}")
-    if card.keyword == "NODE":
+    inside = card.parameters.get("INSTANCE", "").upper()
+    scope = deck.scopes.get(inside, deck.scope)
+    if card.keyword == "SYSTEM":
+        deck.system = local_system(card) if card.lines else None
+    elif card.keyword == "NODE":
         numbers = []
         for number, *place in card.lines:
             coordinates = [float(value.upper().replace("D", "E") or 0.0) for value in (*place, "", "")[:3]]
-            deck.points[int(number)] = _rectangular(coordinates, card)
-            numbers.append(int(number))
-        _add(deck.node_sets, card.parameters.get("NSET"), numbers)
+            point = _rectangular(coordinates, card)
+            for frame in (deck.system, scope.frame):
+                point = point if frame is None else frame.place(np.array(point)).tolist()
+            deck.points[scope.first + int(number)] = point
+            numbers.append(scope.first + int(number))
+        _add(deck.node_sets, deck.named(card.parameters.get("NSET"), scope), numbers)
     elif card.keyword == "ELEMENT":
         _take_elements(deck, card)
     elif card.keyword == "NSET":
-        _add(deck.node_sets, card.parameters.get("NSET"), _members(card, deck.node_sets))
+        name = deck.named(card.parameters.get("NSET"), deck.scope)
+        _add(deck.node_sets, name, _members(card, deck, deck.node_sets, scope))
     elif card.keyword == "ELSET":
-        _add(deck.element_sets, card.parameters.get("ELSET"), _members(card, deck.element_sets))
+        name = deck.named(card.parameters.get("ELSET"), deck.scope)
+        _add(deck.element_sets, name, _members(card, deck, deck.element_sets, scope))
         if "INTERNAL" in card.parameters:  # a surface's set, not meant to be seen
-            deck.internal.add(card.parameters.get("ELSET", ""))
+            deck.internal.add(name or "")
     elif card.keyword == "SURFACE":
-        name = card.parameters.get("NAME")
+        name = deck.named(card.parameters.get("NAME"), deck.scope)
         if (card.parameters.get("TYPE") or "ELEMENT").upper() == "NODE":
             for first, *_ in card.lines:
-                _add(deck.node_sets, name, _numbers(first, deck.node_sets))
+                _add(deck.node_sets, name, _numbers(first, deck, deck.node_sets, scope))
         elif name is not None:
-            _add(deck.faces, name, [(line[0], (line + [""])[1].upper()) for line in card.lines])
+            _add(deck.faces, name, [(line[0], (line + [""])[1].upper(), scope) for line in card.lines])
 
 
 def _rectangular(place: list[float], card: Card) -> list[float]:
@@ -267,9 +194,10 @@ def _take_elements(deck: _Deck, card: Card) -> None:
             raise GeometryError(f"elements of type {name} have {width - 1} nodes each; some here have not")
         rows = [items[start : start + width] for start in range(0, len(items), width)]
     target = deck.shells if kind == "shell" else deck.elements.setdefault(kind, {})
+    first = deck.scope.first
     for number, *nodes in rows:
-        target[number] = nodes
-    _add(deck.element_sets, card.parameters.get("ELSET"), [row[0] for row in rows])
+        target[first + number] = [first + node for node in nodes]
+    _add(deck.element_sets, deck.named(card.parameters.get("ELSET"), deck.scope), [first + row[0] for row in rows])
 
 
 def _kind(name: str) -> str | None:
@@ -290,27 +218,30 @@ def _add(sets: dict[str, list[_Member]], name: str | None, members: list[_Member
         sets.setdefault(known, []).extend(members)
 
 
-def _members(card: Card, sets: dict[str, list[int]]) -> list[int]:
+def _members(card: Card, deck: _Deck, sets: dict[str, list[int]], scope: Scope) -> list[int]:
     if "GENERATE" in card.parameters:
         members: list[int] = []
         for line in card.lines:
             first, last, *step = (int(part) for part in line)
-            members += range(first, last + 1, step[0] if step else 1)
+            members += range(scope.first + first, scope.first + last + 1, step[0] if step else 1)
         return members
-    return [number for line in card.lines for part in line for number in _numbers(part, sets)]
+    return [number for line in card.lines for part in line for number in _numbers(part, deck, sets, scope)]
 
 
-def _numbers(part: str, sets: dict[str, list[int]]) -> list[int]:
-    """Return a number, or the members of a named set; the instance before a point is ignored."""
-    part = part if part.isdecimal() else part.rpartition(".")[2]
+def _numbers(part: str, deck: _Deck, sets: dict[str, list[int]], scope: Scope) -> list[int]:
+    """Return a number, or the members of a named set; both may be those of an instance, before a point."""
+    if not part.isdecimal():
+        before, _, part = part.rpartition(".")
+        scope = deck.scopes.get(before.upper(), scope)
     if part.isdecimal():
-        return [int(part)]
+        return [scope.first + int(part)]
     if not part:
         return []
     by_name = {name.upper(): members for name, members in sets.items()}
-    if part.upper() not in by_name:
-        raise GeometryError(f"the file names a set {part!r} that is not in it")
-    return by_name[part.upper()]
+    for name in (deck.named(part, scope) or "", part):
+        if name.upper() in by_name:
+            return by_name[name.upper()]
+    raise GeometryError(f"the file names a set {part!r} that is not in it")
 
 
 def _content(deck: _Deck, path: Path) -> MeshContent:
@@ -323,16 +254,18 @@ def _content(deck: _Deck, path: Path) -> MeshContent:
             where.update({number: (kind, count(solids) + member) for member, number in enumerate(elements)})
             solids.append(ElementBlock(kind, nodes[:, _TO_VTK.get(kind, slice(None))]))
         facets: dict[str, list[list[int]]] = {}
+        shells: dict[str, list[list[int]]] = {}
         volumes: dict[str, list[int]] = {}
         for name, members in deck.element_sets.items():
             for number in members if name not in deck.internal else ():
                 if number in where:
                     volumes.setdefault(name, []).append(where[number][1])
                 elif number in deck.shells:
-                    facets.setdefault(name, []).append(_shell_corners(deck.shells[number], place))
+                    shells.setdefault(name, []).append(_shell_corners(deck.shells[number], place))
         for name, faces in deck.faces.items():
-            for part, label in faces:
-                facets.setdefault(name, []).extend(_face_corners(deck, part, label, where, place, name))
+            for part, label, scope in faces:
+                members = _numbers(part, deck, deck.element_sets, scope)
+                facets.setdefault(name, []).extend(_face_corners(deck, members, label, where, place, name))
         node_sets = {name: [place[number] for number in members] for name, members in deck.node_sets.items()}
     except KeyError as error:
         raise GeometryError(f"mesh file {path} names node {error.args[0]}, which is not in it") from error
@@ -342,6 +275,7 @@ def _content(deck: _Deck, path: Path) -> MeshContent:
         volumes={name: _sorted(members) for name, members in volumes.items()},
         facets={name: np.array(rows, dtype=np.int64) for name, rows in facets.items()},
         node_sets={name: _sorted(members) for name, members in node_sets.items()},
+        shells={name: np.array(rows, dtype=np.int64) for name, rows in shells.items()},
     )
 
 
@@ -355,10 +289,10 @@ def _shell_corners(nodes: list[int], place: dict[int, int]) -> list[int]:
 
 
 def _face_corners(
-    deck: _Deck, part: str, label: str, where: dict[int, tuple[str, int]], place: dict[int, int], name: str
+    deck: _Deck, members: list[int], label: str, where: dict[int, tuple[str, int]], place: dict[int, int], name: str
 ) -> Iterator[list[int]]:
-    """Corners of face S1, S2, ... of an element or of the elements of a set."""
-    for number in _numbers(part, deck.element_sets):
+    """Corners of face S1, S2, ... of elements."""
+    for number in members:
         if number in deck.shells:
             yield _shell_corners(deck.shells[number], place)
             continue
@@ -390,7 +324,7 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
     with path.open("w", encoding="utf-8") as file:
         file.write("*NODE\n")
         for number, place in enumerate(mesh.points.tolist(), start=1):
-            file.write(f"{number}, " + ", ".join(map(repr, place)) + "\n")
+            file.write(f"{number}, " + ", ".join(map(_field, place)) + "\n")
         first = 1
         for block in mesh.blocks:
             file.write(f"*ELEMENT, TYPE={names[block.kind]}\n")
@@ -411,6 +345,11 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
                     raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
                 for number, place in zip(mesh.faces.element[faces] + 1, mesh.faces.source[faces], strict=True):
                     file.write(f"{number}, {_label(mesh.blocks[place[0]], int(place[2]))}\n")
+
+
+def _field(value: float) -> str:
+    """Return a number in at most 20 characters, as CalculiX reads it: 13 digits where all have no room."""
+    return text if len(text := repr(value)) <= _LONGEST_FIELD else f"{value:.13g}"
 
 
 def _quoted(name: str) -> str:

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-from gearwhine.meshes.formats.abaqus import included_files
-from gearwhine.meshes.formats.nastran import ENDINGS, included_decks
+from gearwhine.meshes.formats.abaqus_cards import included_files
+from gearwhine.meshes.formats.nastran import included_decks, is_nastran
 
 _TETGEN = (".node", ".ele")
 
@@ -18,9 +18,11 @@ def companion_files(path: Path) -> tuple[Path, ...]:
     none, nor has a broken one, which its reader refuses.
     """
     ending, whole, found = path.suffix.lower(), path.resolve(), set[Path]()
+    nastran = is_nastran(path)
     waiting = [whole]
     while waiting:
-        named = {other.resolve() for other in _named_by(waiting.pop(), ending) if other.is_file()} - found - {whole}
+        others = included_decks(waiting.pop()) if nastran else _named_by(waiting.pop(), ending)
+        named = {other.resolve() for other in others if other.is_file()} - found - {whole}
         found |= named
         waiting += named
     return tuple(sorted(found))
@@ -30,8 +32,6 @@ def _named_by(path: Path, ending: str) -> Iterator[Path]:
     """Yield the files that a file refers to itself, whether they exist or not, as the ending of the mesh file says."""
     if ending == ".inp":
         yield from included_files(path)
-    elif ending in ENDINGS:
-        yield from included_decks(path)
     elif ending == ".xdmf":
         yield from _arrays_of_xdmf(path)
     elif ending in _TETGEN:

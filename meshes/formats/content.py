@@ -28,6 +28,8 @@ class MeshContent:
         Named sets of facets by their corners, in any order of turn; the fourth is -1 in triangles.
     node_sets : mapping of str to ndarray of int
         Named sets of nodes.
+    shells : mapping of str to ndarray of int, shape (n_facets, 4)
+        Named sets of shell elements by their corners, as `facets`; some may lie on the solids and others not.
     """
 
     points: FloatArray
@@ -35,13 +37,14 @@ class MeshContent:
     volumes: Mapping[str, IntArray] = field(default_factory=dict)
     facets: Mapping[str, IntArray] = field(default_factory=dict)
     node_sets: Mapping[str, IntArray] = field(default_factory=dict)
+    shells: Mapping[str, IntArray] = field(default_factory=dict)
 
     def mesh(self, unit: float = 1.0) -> Mesh:
         """Make the mesh, in metres where ``unit`` is the file's unit of length [m].
 
         Nodes that no solid uses are left out and left-handed elements turned. A set of facets becomes the surface of
         that name, each facet as its element has it: with its middle nodes, seen from outside. Sets of facets that bound
-        no solid, such as those of shells beside it, are left out. A set of nodes becomes the surface of the boundary
+        no solid are left out, and so are shells beside it. A set of nodes becomes the surface of the boundary
         facets all of whose nodes are in it, unless facets have that name, or there is none.
 
         Raises
@@ -63,6 +66,10 @@ class MeshContent:
             chosen = [members[block.nodes].all(axis=1) for block in bare.boundary]
             if facets := pick_facets(bare.boundary, np.concatenate(chosen)):
                 surfaces[name] = facets
+        for name, corners in self.shells.items():
+            on_solids = find_faces(bare, renumbered[corners])
+            if len(faces := np.unique(on_solids[on_solids >= 0])):
+                surfaces[name] = faces_as_facets(bare.blocks, bare.faces, faces)
         for name, corners in self.facets.items():
             faces = find_faces(bare, renumbered[corners])
             if (faces >= 0).all() and len(faces):

@@ -12,9 +12,14 @@ from pathlib import Path
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.formats.abaqus import read_abaqus, write_abaqus
 from gearwhine.meshes.formats.content import MeshContent
+from gearwhine.meshes.formats.med import read_med
 from gearwhine.meshes.formats.meshio_formats import content_from_meshio, load_meshio, meshio_from_mesh
-from gearwhine.meshes.formats.nastran import ENDINGS, read_nastran
+from gearwhine.meshes.formats.nastran import is_nastran, read_nastran
+from gearwhine.meshes.formats.universal import ENDINGS as UNIVERSAL
+from gearwhine.meshes.formats.universal import read_universal_mesh
 from gearwhine.meshes.mesh import Mesh
+
+_SAME_UNIT = 1e-6  # relative difference of two units of length that count as one
 
 # Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
 WRITABLE = (".inp", ".med", ".msh", ".vtk", ".vtu", ".xdmf")
@@ -28,9 +33,9 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     ----------
     path : path
         A file of any format that meshio reads, or an input deck of Abaqus or CalculiX (``.inp``) or Nastran
-        (``.bdf``, ``.fem``, ``.nas``).
+        (``.bdf``, ``.fem``, ``.nas``, or ``.dat`` with cards of Nastran in it), or a universal file (``.unv``).
     unit : float
-        The file's unit of length [m], such as 1e-3 for millimetres.
+        The file's unit of length [m], such as 1e-3 for millimetres; a universal file that states its own has that.
 
     Returns
     -------
@@ -49,7 +54,7 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     if not path.is_file():
         raise GeometryError(f"mesh file {path}: no such file")
     try:
-        content = _read(path)
+        content, metre = _read(path)
     except GeometryError:
         raise
     except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
@@ -61,6 +66,10 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
         ) from error
     if not content.solids:
         raise GeometryError(f"mesh file {path} holds no solid elements")
+    if metre is not None:
+        if unit != 1.0 and abs(unit / metre - 1.0) > _SAME_UNIT:
+            raise GeometryError(f"mesh file {path} states that its unit of length is {metre:g} m, and not {unit:g} m")
+        unit = metre
     return content.mesh(unit)
 
 
@@ -121,11 +130,16 @@ def _write(mesh: Mesh, path: Path) -> None:
         meshio.write(path, meshio_from_mesh(mesh, path.suffix), file_format=format_name)
 
 
-def _read(path: Path) -> MeshContent:
+def _read(path: Path) -> tuple[MeshContent, float | None]:
+    """Return the content of a file, and the unit of length [m] that it states, None where it does not."""
     ending = path.suffix.lower()
+    if ending in UNIVERSAL:
+        return read_universal_mesh(path)
     if ending == ".inp":
-        return read_abaqus(path)
-    return read_nastran(path) if ending in ENDINGS else _through_meshio(path)
+        return read_abaqus(path), None
+    if ending in (".med", ".rmed"):
+        return read_med(path), None
+    return read_nastran(path) if is_nastran(path) else _through_meshio(path), None
 
 
 def _through_meshio(path: Path) -> MeshContent:

@@ -19,6 +19,13 @@ from gearwhine.numerics.arrays import FloatArray, IntArray
 ENDINGS = (".bdf", ".fem", ".nas")
 """Endings of the files that are bulk data of Nastran."""
 
+_DAT = ".dat"  # an ending of many programs
+_SNIFFED = 1_000_000  # bytes within which a deck of Nastran shows that it is one
+_OF_NASTRAN = re.compile(
+    rb"^\s*(BEGIN\s+BULK|CEND\b|SOL\s+\d+|ENDDATA)|^(GRID|CHEXA|CTETRA|CPENTA|GRDSET)(\*?[ \t]+\d|\*?\s*,|\*)",
+    re.IGNORECASE | re.MULTILINE,
+)
+
 # Solids by their number of nodes, and the place in the deck of each node in VTK's order where that is another one.
 _SOLIDS = {
     "CTETRA": {4: "tetra", 10: "tetra10"},
@@ -90,6 +97,15 @@ class _System:
         else:
             local = places
         return np.asarray(self.origin + local @ self.axes)
+
+
+def is_nastran(path: Path) -> bool:
+    """Whether a file is a deck of Nastran: by its ending, or of ``.dat`` by executive statements or cards in it."""
+    ending = path.suffix.lower()
+    if ending != _DAT:
+        return ending in ENDINGS
+    with path.open("rb") as file:
+        return _OF_NASTRAN.search(file.read(_SNIFFED)) is not None
 
 
 def read_nastran(path: Path) -> MeshContent:
@@ -228,7 +244,8 @@ def _split(line: str, large_before: bool) -> tuple[str, list[str], str, bool]:
         return head, parts[1:] if whole else parts[1:last], "" if whole else "".join(parts[last:]), large
     step = 16 if large else 8
     data = [line[start : start + step].strip() for start in range(8, min(len(line), 72), step)]
-    return head, data, line[72:80].strip(), large
+    # Blank or +, the first character of a continuation's name is none of it.
+    return head, data, line[72:80].rstrip(), large
 
 
 def _real(text: str) -> float:
@@ -290,7 +307,7 @@ def _content(bulk: _Bulk, path: Path) -> MeshContent:
         points=_points(bulk, path),
         solids=tuple(solids),
         volumes={_named(number): np.flatnonzero(numbers == number) for number in np.unique(numbers).tolist() if number},
-        facets={_named(number): _rows(rows) for number, rows in facets.items() if number},
+        shells={_named(number): _rows(rows) for number, rows in facets.items() if number},
     )
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
 
 from gearwhine.rotors.errors import RotorError
 from gearwhine.rotors.model.bearing import Bearing, Pedestal
@@ -81,26 +82,63 @@ def lateral_mass(entry: Entry) -> float:
 
 def _tables(entry: Entry, remarks: Remarks) -> tuple[FloatArray | None, dict[str, FloatArray]]:
     """Speeds, or None where the coefficients are constant, and each coefficient over them."""
-    frequency = None if entry.values.get("frequency") is None else entry.series("frequency")
-    size = 1 if frequency is None else len(frequency)
+    speed, frequency = (
+        None if entry.values.get(name) is None else np.array(entry.series(name)) for name in ("speed", "frequency")
+    )
+    if speed is not None and frequency is not None and len(speed) > 1 and len(frequency) > 1:
+        return _synchronous(entry, speed, frequency, remarks)
+    # An axis of one value is none.
+    axis = frequency if speed is None or (len(speed) == 1 and frequency is not None) else speed
+    size = 1 if axis is None else len(axis)
+    if axis is frequency and size > 1 and entry.of_ross_3:
+        remarks.add(
+            entry.place, "table over the frequency of whirl, taken over the speed of rotation, as if synchronous"
+        )
     tables = {}
     for letter in "kcm":
         for place in PLACES:
             name = letter + place
             # As in ROSS, y defaults to x, which must be given.
             fallback = letter + "xx" if place == "yy" and name not in entry.values else name
-            values = entry.series(fallback, default=None if fallback in ("kxx", "cxx") else 0.0)
+            values = np.ravel(entry.nested(fallback, default=None if fallback in ("kxx", "cxx") else 0.0))
             if len(values) == 1:
-                values = values * size
+                values = np.repeat(values, size)
             if len(values) != size:
-                count = "one value" if size == 1 else f"{size} values, one for each frequency"
+                what = "speed or frequency" if entry.of_ross_3 else "frequency"
+                count = "one value" if size == 1 else f"{size} values, one for each {what}"
                 raise entry.error(fallback, count)
-            tables[name] = np.array(values)
+            tables[name] = values
     _remark_on_the_rest(entry, tables, remarks)
-    if size == 1:
-        return None, tables
-    assert frequency is not None
-    return np.array(frequency), tables
+    return (None if size == 1 else axis), tables
+
+
+def _synchronous(
+    entry: Entry, speed: FloatArray, frequency: FloatArray, remarks: Remarks
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Coefficients of a table over speed and frequency where both are the same, over the speeds within both axes."""
+    inside = (speed >= frequency[0]) & (speed <= frequency[-1])
+    if np.any(np.diff(frequency) <= 0.0) or np.count_nonzero(inside) < 2:
+        raise entry.error("frequency", "ascending frequencies, with two or more of the table's speeds between them")
+    remarks.add(
+        entry.place, "table over speed and frequency of whirl, taken where both are the same, as if synchronous"
+    )
+    if not inside.all():
+        remarks.add(entry.place, "speeds outside of the table's frequencies are left out")
+    shape = (len(speed), len(frequency))
+    tables = {}
+    for letter in "kcm":
+        for place in PLACES:
+            name = letter + place
+            fallback = letter + "xx" if place == "yy" and name not in entry.values else name
+            values = entry.nested(fallback, default=None if fallback in ("kxx", "cxx") else 0.0)
+            if values.size == 1:
+                values = np.full(shape, values.item())
+            if values.shape != shape:
+                raise entry.error(fallback, f"one value, or {shape[0]} lists of {shape[1]}")
+            along = PchipInterpolator(frequency, values, axis=1)
+            tables[name] = np.array([along(at)[row] for row, at in enumerate(speed) if inside[row]])
+    _remark_on_the_rest(entry, tables, remarks)
+    return speed[inside], tables
 
 
 def _matrix(tables: dict[str, FloatArray], letter: str, speeds: FloatArray | None) -> FloatArray:
@@ -121,8 +159,13 @@ def _remark_on_the_rest(entry: Entry, tables: dict[str, FloatArray], remarks: Re
             largest = float(np.abs(values).max())
             remarks.add(entry.place, f"{name} is up to {largest:g} kg; the added mass is left out")
     for name in entry.values:
-        if name not in tables and _COEFFICIENT.fullmatch(name) and any(entry.series(name)):
+        if name not in tables and _COEFFICIENT.fullmatch(name) and np.any(entry.nested(name)):
             remarks.add(entry.place, f"{name} is not read")
+    if entry.values.get("interpolation", "pchip") != "pchip" and any(
+        np.ptp(values) > 0.0 for values in tables.values()
+    ):
+        text = f"interpolation is {entry.values['interpolation']!r}; here the table follows a monotone cubic"
+        remarks.add(entry.place, text)
 
 
 DISC = "DiskElement"
@@ -154,9 +197,10 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
 
     ROSS itself is not needed. Elements become exact segments, cones included, so that frequencies are those that ROSS
     approaches as its mesh is refined. A bearing with ``n_link`` stands on a pedestal: the point mass at that node,
-    on the bearings from there to the ground. Tables over ``frequency`` become tables over the speed of rotation, as
-    ROSS takes them at whirl speed; between their speeds ROSS follows a spline, and a `gearwhine.rotors.Bearing` a
-    monotone cubic.
+    on the bearings from there to the ground. Tables over ``speed`` (ROSS 3) or ``frequency`` become tables over the
+    speed of rotation, as ROSS takes them at whirl speed; between their speeds ROSS 2 follows a spline, and ROSS 3 and
+    a `gearwhine.rotors.Bearing` a monotone cubic. Elements between the same two nodes, as a sleeve on its shaft,
+    become one segment.
 
     Parameters
     ----------
@@ -167,8 +211,7 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
     ------
     RotorError
         Names file, key and value of what is malformed, or has no place in a `Rotor` and would change its motion at
-        large: two shafts, elements side by side, a coupling that leaves the shafts apart, a support that is no plain
-        pedestal.
+        large: two shafts, a coupling that leaves the shafts apart, a support that is no plain pedestal.
     """
     remarks = Remarks()
     entries = read_entries(path, remarks)

@@ -13,7 +13,7 @@ rigid in shear to ten digits.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from gearwhine.rotors.errors import RotorError
 from gearwhine.rotors.model.material import ElasticMaterial, Section, ShaftMaterial, ShearFormula
 from gearwhine.rotors.model.segment import Coupling, Segment, forces_beside
 from gearwhine.rotors.model.shaft import Disc
+from gearwhine.rotors.ross.sleeves import side_by_side
 from gearwhine.rotors.ross.tables import Entry, Remarks
 
 RIGID_IN_SHEAR: Final = 1e9
@@ -81,6 +82,7 @@ _COUPLING_KEYS = frozenset(
 )
 # Length that ROSS gives to a coupling without one, and the distance of its nodes.
 _COUPLING_LENGTH = 0.2
+_AXIAL_ERROR = 1e-3  # relative error of the axial stiffness of elements between the same nodes, beyond which it is said
 
 
 @dataclass(frozen=True)
@@ -125,17 +127,20 @@ def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
     row = _in_a_row(entries)
     segments: list[Segment | Coupling] = []
     halves = []
-    for entry in row:
+    for beside in row:
+        first = beside[0]
         try:
-            if entry.kind == COUPLING:
-                coupling, ends = _coupling(entry, remarks)
+            if first.kind == COUPLING:
+                coupling, ends = _coupling(first, remarks)
                 segments.append(coupling)
                 halves.append((len(segments), ends))
+            elif len(beside) == 1:
+                segments.append(_segment(first, remarks))
             else:
-                segments.append(_segment(entry, remarks))
+                segments.append(_together(beside, remarks))
         except RotorError as error:
-            raise error if entry.file in str(error) else RotorError(f"{entry.file}: {entry.key}: {error}") from None
-    segments = _passing_on(row, segments, remarks)
+            raise error if first.file in str(error) else RotorError(f"{first.file}: {first.key}: {error}") from None
+    segments = _passing_on([beside[0] for beside in row], segments, remarks)
     lengths = np.array([0.0, *(segment.length for segment in segments)], dtype=np.longdouble)
     positions = tuple(np.cumsum(lengths).astype(np.float64).tolist())
     discs = [
@@ -143,26 +148,40 @@ def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
         for number, ends in halves
         for side, (mass, polar, diametral) in enumerate(ends)
     ]
-    return ReadShaft(tuple(segments), tuple(discs), row[0].node() or 0, positions)
+    return ReadShaft(tuple(segments), tuple(discs), row[0][0].node() or 0, positions)
 
 
-def _in_a_row(entries: Sequence[Entry]) -> list[Entry]:
-    """Sort the elements by their left nodes; keep the order of the file if none is given."""
+def _in_a_row(entries: Sequence[Entry]) -> list[list[Entry]]:
+    """Sort the elements by their left nodes, those between the same two together; by the file if none is given."""
     nodes = [entry.node() for entry in entries]
     if all(node is None for node in nodes):
-        return list(entries)
+        return [[entry] for entry in entries]
     for entry, node in zip(entries, nodes, strict=True):
         if node is None:
             raise entry.error("n", "a node, since other elements of the shaft have one")
-    row = sorted(entries, key=Entry.required_node)
+    row = [list(beside) for _, beside in groupby(sorted(entries, key=Entry.required_node), key=Entry.required_node)]
     for left, right in pairwise(row):
-        if right.node() == left.node():
-            beside = f"a node of its own; {left.key} is there too, and elements side by side have no place here"
-            raise right.error("n", beside)
-        if right.required_node() != left.required_node() + 1:
-            gap = f"{left.required_node() + 1}: one shaft, its elements end to end"
-            raise right.error("n", gap)
+        if right[0].required_node() != left[0].required_node() + 1:
+            gap = f"{left[0].required_node() + 1}: one shaft, its elements end to end"
+            raise right[0].error("n", gap)
+    for beside in row:
+        for entry in beside if len(beside) > 1 else ():
+            if entry.kind == COUPLING:
+                other = next(one for one in beside if one is not entry)
+                raise entry.error(
+                    "n", f"a node of its own; {other.key} is there too, and a coupling has none beside it"
+                )
     return row
+
+
+def _together(beside: Sequence[Entry], remarks: Remarks) -> Segment:
+    """Read elements between the same two nodes as one segment."""
+    segment, axial_error = side_by_side([_segment(entry, remarks) for entry in beside])
+    text = "is one segment with what stands between the same nodes: stiffness and mass of all, which bend as one"
+    if abs(axial_error) > _AXIAL_ERROR:
+        text += f"; its axial stiffness is {'lower' if axial_error < 0.0 else 'higher'} than theirs"
+    remarks.add(beside[0].place, text)
+    return segment
 
 
 def _segment(entry: Entry, remarks: Remarks) -> Segment:

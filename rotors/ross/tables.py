@@ -1,8 +1,8 @@
 """Element tables of a ROSS file, read with messages that name the file and the key.
 
-``rotor.save("x.toml")`` of ROSS 2 writes ``ross_version``, a table ``parameters``, and for each element a table named
-by its class and its tag, such as ``["ShaftElement_Shaft Element 0"]``, that holds the arguments of its constructor in
-SI, except those that are None. With the suffix ``.json`` it writes the same as JSON.
+``rotor.save("x.toml")`` of ROSS 2 and 3 writes ``ross_version`` (since 2.1), a table ``parameters``, and for each
+element a table named by its class and its tag, such as ``["ShaftElement_Shaft Element 0"]``, that holds the arguments
+of its constructor in SI, except those that are None. With the suffix ``.json`` it writes the same as JSON.
 
 `Remarks` collects the properties that a file format cannot hold, each once for all elements concerned.
 """
@@ -16,6 +16,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeGuard
+
+import numpy as np
+import numpy.typing as npt
 
 from gearwhine.rotors.errors import RotorError
 
@@ -58,11 +61,20 @@ class Entry:
         Key of the element's table, such as ``ShaftElement_Shaft Element 0``.
     values : mapping of str to Any
         Keys and values of the table as they stand in the file.
+    version : str
+        Version of ROSS that saved the file; empty where it does not say.
     """
 
     file: str
     key: str
     values: Mapping[str, Any]
+    version: str = ""
+
+    @property
+    def of_ross_3(self) -> bool:
+        """Whether the file says that it is of ROSS 3 or later, whose ``frequency`` is that of whirl."""
+        major = self.version.partition(".")[0]
+        return major.isdecimal() and int(major) >= 3
 
     @property
     def place(self) -> str:
@@ -90,7 +102,7 @@ class Entry:
         value = self.values.get(name)
         if not isinstance(value, Mapping):
             raise self.error(name, "a table")
-        return Entry(self.file, f"{self.key}.{name}", value)
+        return Entry(self.file, f"{self.key}.{name}", value, self.version)
 
     def number(self, name: str, default: float | None = None) -> float:
         """Return a finite number; without a default the key must be there."""
@@ -130,6 +142,16 @@ class Entry:
             raise self.error(name, "a finite number, or a list of them")
         return [float(entry) for entry in values]
 
+    def nested(self, name: str, default: float | None = 0.0) -> npt.NDArray[np.float64]:
+        """Return a number, a list of them or a list of lists of one length, as an array."""
+        value = self.values.get(name, default)
+        if isinstance(value, list) and value and all(isinstance(row, list) for row in value):
+            rows = [[float(entry) for entry in row if _is_number(entry)] for row in value]
+            if len(set(map(len, rows))) == 1 and sum(map(len, rows)) == sum(map(len, value)) > 0:
+                return np.array(rows)
+            raise self.error(name, "lists of finite numbers, of one length")
+        return np.array(self.series(name, default))
+
 
 def read_entries(path: str | os.PathLike[str], remarks: Remarks) -> list[Entry]:
     """Elements of a file in its order.
@@ -142,12 +164,13 @@ def read_entries(path: str | os.PathLike[str], remarks: Remarks) -> list[Entry]:
     place = Path(path)
     document = _document(place)
     entries = []
+    version = str(document.get("ross_version", ""))
     for key, value in document.items():
         if key in _NOT_ELEMENTS or key.startswith("_"):
             continue
         if not isinstance(value, Mapping):
             raise RotorError(f"{place.name}: {key} is {value!r}; expected a table, an element of a rotor saved by ROSS")
-        entries.append(Entry(place.name, key, value))
+        entries.append(Entry(place.name, key, value, version))
     if not entries:
         raise RotorError(f"{place.name}: no elements; expected a rotor saved by ROSS, with tables ShaftElement_…")
     parameters = document.get("parameters", {})

@@ -29,6 +29,32 @@ def test_a_machine_that_runs_faster_is_stepped_finer() -> None:
     assert coarsest_step(oscillator(), nominal, 100.0) == pytest.approx(np.pi / 6.0, rel=1e-12)
 
 
+def test_steps_shrink_and_grow_to_the_tolerance() -> None:
+    """The period error (w h)²/12 of the fastest motion that is left takes most of the tolerance, and no more."""
+    fast, slow = 2.0 * np.pi * 2000.0, 2.0 * np.pi * 200.0
+    stiffness, damping = np.diag([fast**2, slow**2]), np.diag([0.1 * fast, 0.0])
+    system = CoupledSystem((Component("masses", ("torsion",) * 2, stiffness, damping, np.zeros((2, 2))),), (0.0,))
+    outputs, tolerance = TransientOutputs(*np.zeros((3, 0, 2))), 1e-4
+
+    def steps(duration: float) -> tuple[int, float]:
+        settings = TransientSettings(duration, 0.0, 0.01, 1.0, tolerance=tolerance)
+        result = simulate(system, settings, outputs, initial=(np.ones(2), np.zeros(2)))
+        assert result.error <= tolerance
+        return result.steps, result.smallest_step
+
+    (before, smallest), (after, _) = steps(3.0), steps(6.0)
+    allowed = np.sqrt(12.0 * tolerance)
+    assert 0.8 * allowed / fast < smallest <= allowed / fast
+    assert 1.0 <= (after - before) * allowed / slow / 3.0 < 1.2
+
+
+def test_steps_grow_no_larger_than_the_coarsest() -> None:
+    settings, nothing = TransientSettings(2000.0, 0.0, 1.0, 0.1, tolerance=1.0), np.zeros((0, 1))
+    outputs = TransientOutputs(nothing, nothing, nothing)
+    result = simulate(oscillator(), settings, outputs, initial=(np.ones(1), np.zeros(1)))
+    assert 20000 <= result.steps < 20200
+
+
 def test_a_load_that_repeats_with_every_coarse_step_is_no_constant_load() -> None:
     """x'' + 4 x = cos 12 t from rest, x = (cos 12 t - cos 2 t) / (4 - 144): the coarsest step is a period of it."""
     load = HarmonicLoad(12.0, np.ones(1, dtype=np.complex128))

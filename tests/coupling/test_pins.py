@@ -118,6 +118,12 @@ def test_the_walls_wind_up_and_the_pins_tilt() -> None:
         force = torque / (COUNT * OFFSET)
         bent = force * (SPAN**3 / (192.0 * bending) + SPAN / (4.0 * SHEAR))
         assert along > bent
+        # The tilt of its pin is the carrier's part of the misalignment at sun and ring, along both planes of action.
+        causes = [one.misalignment_by_cause for one in point.pairs if f"p {number + 1}" in one.pair.label]
+        assert len(causes) == 2
+        assert all(one["housing"] == 0.0 for one in causes)
+        by_carrier = -0.5 * sum(one["carrier"] for one in causes)
+        assert by_carrier == pytest.approx(slope * math.cos(math.radians(20.0)), rel=5e-3)
 
 
 def test_thin_pins_raise_the_face_load_of_the_planets() -> None:

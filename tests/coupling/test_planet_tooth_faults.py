@@ -136,5 +136,5 @@ def test_lines_of_a_faulty_gear_have_its_turn_on_the_carrier_and_the_turn_of_tha
         named = [expected.format(f"{one.driver} -> {one.driven}") for one in pairs]
         if on == "r":
             # All meshes have this line, and are named together.
-            named = [expected.format("planets' meshes of c")]
+            named = [expected.format("planets' meshes")]
         assert found.name.split(", ")[0] in named

@@ -7,8 +7,12 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
-from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.carrier_sidebands import farthest_turns, forced_sidebands
+from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.turning_response import SIDEBANDS, TurningResponse
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.coupling.signals.transfer_paths import housing_connections, housing_paths
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.coupling.time.histories import histories, transient_outputs
@@ -89,14 +93,16 @@ def _machine(speed: float = 300.0) -> CoupledMachine:
     return Machine(**parts, housing=_ring_housing(), speed=speed, torque=200.0).assembled
 
 
-def test_motion_by_harmonic_balance_satisfies_the_equations_in_time() -> None:
+@pytest.mark.parametrize("turns", [None, 4.05, 4.0])
+def test_motion_by_harmonic_balance_satisfies_the_equations_in_time(turns: float | None) -> None:
+    """At 950 Hz, and at or near four turns of the carrier, where a motion of the free train stands or nearly so."""
     machine = _machine()
     system = machine.system
     model = TurningResponse(system, mean_contact(system), sidebands=12)
     carrier = machine.speeds["carrier"]
     assert model.rates == pytest.approx([2.0 * carrier, 3.0 * carrier]) or model.rates == pytest.approx([carrier])
     number = next(n for n, contact in enumerate(system.contacts) if contact.name == "planet gear 1 -> ring gear")
-    w = 2.0 * np.pi * 950.0
+    w = 2.0 * np.pi * 950.0 if turns is None else turns * abs(carrier)
     motion = {order: moved[0] for order, moved in model.respond(w, [model.mesh_error(number, w)]).items()}
     times = np.linspace(0.0, 2.0 * np.pi / carrier, 9)
     orders = [(w + model.shift(order), q) for order, q in motion.items()]
@@ -193,3 +199,30 @@ def test_sidebands_at_a_sensor_are_those_of_moving_forces() -> None:
     # Equal planets in phase leave lines at multiples of three turns of the carrier; a line is `turns` bins a turn.
     strong = np.flatnonzero(np.abs(found[: count // 8]) > 1e-3 * np.abs(found[: count // 8]).max())
     assert np.all(strong % (3 * turns) == 0)
+
+
+def test_names_of_all_sidebands_are_those_that_the_linear_response_follows() -> None:
+    """Lines of a bore of three orders: each is named as the harmonic balance has it, none as free vibration."""
+    machine = _machine()
+    carrier = machine.speeds["carrier"]
+    model = MeshHarmonicModel(machine)
+    followed = farthest_turns(forced_sidebands(machine))
+    # Bores of 2 and 3 waves: half again as far as 3 turns is less than what is handed on six times by one turn each.
+    assert followed == {"carrier": max(SIDEBANDS, 1.5 * 3)}
+    model_orders = {abs(dict(one.turns)["carrier"]) for one in model.turning.followed}
+    assert max(model_orders) == followed["carrier"]
+    frequency = abs(machine.system.contacts[0].mesh_frequency)
+    modes = coupled_modes(machine.system, model.contact)
+    turns = range(-int(followed["carrier"]), int(followed["carrier"]) + 1)
+    lines = [harmonic * frequency + k * carrier / (2.0 * np.pi) for harmonic in (1, 2) for k in turns]
+    named = line_names(machine, lines, 1e-3 * carrier / (2.0 * np.pi), modes)
+    for number, one in enumerate(named):
+        harmonic, k = 1 + number // len(turns), turns[number % len(turns)]
+        off = f" {'-' if k < 0 else '+'} {abs(k)}× carrier" if k else ""
+        assert one.name == f"{harmonic}× planets' meshes{off}"
+        assert one.kind == ("sideband" if k else "mesh")
+    # The mean load that circles has the orders of the carrier alone.
+    (mean,) = line_names(machine, [3.0 * carrier / (2.0 * np.pi)], 1e-3 * carrier, modes)
+    assert (mean.kind, mean.name) == ("shaft", "3× carrier")
+    beyond = line_names(machine, [frequency + (followed["carrier"] + 1) * carrier / (2.0 * np.pi)], 1e-3, modes)
+    assert beyond[0].kind not in ("sideband", "mesh")

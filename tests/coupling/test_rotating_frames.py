@@ -57,7 +57,7 @@ def _described(count: int, standing: tuple[str, ...] = (), damping: float = 0.0)
     return Machine(**parts)
 
 
-def _assembled(machine: Machine, carrier_speed: float) -> CoupledMachine:
+def _assembled(machine: Machine, carrier_speed: float, speed_range: tuple[float, float] = (1.0, 1.0)) -> CoupledMachine:
     """The machine with sun and carrier driven at two speeds."""
     ratios = {"sun": float(SUN_RATIO), "carrier": 1.0}
     planet = 1.0 - (SUN_RATIO - 1.0) * TEETH[0] / TEETH[1]
@@ -71,6 +71,7 @@ def _assembled(machine: Machine, carrier_speed: float) -> CoupledMachine:
         meshes=[machine._mesh(pair, components) for pair in machine.loaded_pairs()],
         torque_supports=machine.torque_supports,
         speed_ratios=ratios,
+        speed_range=speed_range,
     )
 
 
@@ -208,3 +209,28 @@ def test_a_base_that_moves_over_time_under_a_turning_carrier_is_refused() -> Non
     twisted = TorqueOverTime(np.array([0.0, 1.0]), np.array([0.0, 5.0]))
     assert replace(machine, torque_over_time=twisted).assembled.system.timed_loads
     assert replace(machine, base=over_time, speed=0.0, torque=0.0).assembled.system.timed_loads
+
+
+@pytest.mark.parametrize("standing", [(), ("sun",)])
+def test_a_run_up_has_at_each_speed_the_terms_of_a_machine_at_that_speed(
+    standing: tuple[str, ...],
+) -> None:
+    """Bearings' dashpots in a frame, the geometric stiffness of the pins, the planets' centrifugal forces."""
+    described, speed = _described(3, standing, 2e-4), 400.0
+    running = _assembled(described, speed, (0.3, 1.5)).system
+    # Between the ends a term of s'^2 is a table's chord.
+    for part, error in ((0.3, 1e-12), (1.0, 1e-3), (1.5, 1e-12)):
+        steady = _assembled(described, part * speed).system
+        assert [one.name for one in running.linear] == [one.name for one in steady.linear]
+        followed = 0
+        for found, expected in zip(running.linear, steady.linear, strict=True):
+            table = found.over_speed
+            laws = (found.stiffness, found.damping) if table is None else table.at(part)
+            followed += table is not None
+            for law, constant in zip(laws, (expected.stiffness, expected.damping), strict=True):
+                assert np.allclose(law, constant, rtol=error, atol=error * np.abs(constant).max())
+        # Three pins and the shafts' bearings with dashpots that are alike all round.
+        assert followed > 3
+        centrifugal = (part**2 - 1.0) * running.centrifugal_load
+        assert np.abs(running.centrifugal_load).max() > 1.0
+        assert np.allclose(running.load + centrifugal, steady.load, rtol=1e-12, atol=1e-9)

@@ -34,7 +34,7 @@ def test_sidebands_have_the_power_of_their_own_frequencies() -> None:
             2.0 * np.pi * (HARMONIC + turns * TURN),
             ((0, 1),),
             size * 1e-9 * shape,
-            sidebands=(Sideband((("carrier", turns),), (3,)),),
+            sidebands=(Sideband((("carrier", turns),)),),
         )
         for turns, size in ((-3.0, 1.0), (0.0, 0.5), (3.0, 2.0), (-81.0, 1e3))
     ]

@@ -33,9 +33,9 @@ def contacts(phase: float, turned: float) -> Contacts:
     """One, of some phase at t = 0, that turns by so much through an element [mesh periods]."""
     no, number = np.zeros((1, 0)), np.zeros(1, dtype=np.int64)
     return Contacts(
-        direction=no, law=LAW, law_at=number + AT, shares_at=number - 1, phase=np.array([phase]),
-        mesh_frequency=np.array([turned / LENGTH]), errors=np.zeros((1, 0, 3)), clearance=np.zeros(1),
-        friction_row=number - 1, friction=np.zeros((1, 3)), sliding=np.zeros((1, 2)),
+        direction=no, spans=np.zeros((1, 2), dtype=np.int64), law=LAW, law_at=number + AT, shares_at=number - 1,
+        phase=np.array([phase]), mesh_frequency=np.array([turned / LENGTH]), errors=np.zeros((1, 0, 3)),
+        clearance=np.zeros(1), friction_row=number - 1, friction=np.zeros((1, 3)), sliding=np.zeros((1, 2)),
     )  # fmt: skip
 
 

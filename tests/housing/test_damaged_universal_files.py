@@ -96,9 +96,11 @@ def test_a_file_with_any_bytes_changed_is_read_or_refused_by_name(tmp_path: Path
         read_universal(path)
 
 
-def test_shapes_without_points_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(MeasuredDataError, match="holds shapes but no points"):
-        read_universal(by_pyuff(tmp_path / "shapes.uff", SHAPE))
+def test_functions_without_points_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(MeasuredDataError, match=r"holds functions but no points.*name both, in a list"):
+        read_universal(by_pyuff(tmp_path / "functions.uff", FUNCTION))
+    with pytest.raises(MeasuredDataError, match="holds no points, no shapes of modes and no frequency responses"):
+        read_universal(by_pyuff(tmp_path / "history.uff", FUNCTION | {"func_type": 1}))
 
 
 def test_unknown_nodes_are_named(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import pytest
 from gearwhine.housing import HousingError
 from gearwhine.housing.errors import MeasuredDataError
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredResponses, StabilityRule, identify_modes
+from gearwhine.housing.measured.residues import fit_residues, refine_poles
 
 FREQUENCIES_HZ = np.array([120.3, 180.0, 196.0, 401.7, 610.2, 890.5])
 RATIOS = np.array([0.01, 0.008, 0.012, 0.005, 0.02, 0.003])
@@ -105,3 +106,18 @@ def test_uneven_frequencies_and_nonsense_rules_are_refused() -> None:
         )
     with pytest.raises(HousingError, match="is no rule"):
         StabilityRule(orders=0)
+
+
+@pytest.mark.parametrize("power", [0, 1, 2])
+def test_residues_stand_beside_a_residual_mass_and_stiffness(power: int) -> None:
+    """(iω)ᵖ [A/(iω - λ) + A*/(iω - λ*) - B/ω² + C] with complex B and C, of which the fit is one."""
+    rng = np.random.default_rng(1)
+    omega, pole = 2 * np.pi * np.arange(20.0, 200.0), 2 * np.pi * 90.0 * complex(-0.02, 1.0)
+    residues, mass, stiffness = rng.normal(size=(3, 5, 1)) + 1j * rng.normal(size=(3, 5, 1))
+    s = 1j * omega
+    terms = residues / (s - pole) + residues.conj() / (s - np.conj(pole)) + 9e4 * mass / s**2 + 0.01 * stiffness
+    fit = fit_residues(s**power * terms, omega, np.array([pole]), power)
+    assert fit.misfit < 1e-10
+    np.testing.assert_allclose(fit.residues, residues, rtol=1e-8)
+    away = refine_poles(s**power * terms, omega, np.array([pole * complex(1.01, 0.002)]), power)
+    np.testing.assert_allclose(away, [pole], rtol=1e-7)

@@ -138,6 +138,9 @@ def _xml_component(one: dict[str, Any], coded: bool) -> list[str]:
             text = "true" if value else "false"
         elif isinstance(value, list) and coded and not any(isinstance(entry, bool) for entry in value):
             text = f'<array code="float64">{_code(value)}</array>'
+        elif isinstance(value, list) and value and isinstance(value[0], list):
+            rows = "".join("<r>" + "".join(f"<c>{entry!r}</c>" for entry in row) + "</r>" for row in value)
+            text = f"<matrix>{rows}</matrix>"
         elif isinstance(value, list):
             text = "<array>" + "".join(f"<c>{str(entry).lower()}</c>" for entry in value) + "</array>"
         else:
@@ -215,6 +218,27 @@ def _unit(file: RexsFile) -> None:
     file.add(
         "material", "steel 1", elastic_modulus=(206e3, "MPa"), poisson_ratio=(0.3, "none"), density=(7.85, "kg / dm^3")
     )
+
+
+POINTS = {
+    "6205": (95.0, 0.0, 0.0),
+    "front": (5.0, 0.0, 0.0),
+    "NU 207": (12.0, 60.0, -80.0),
+    "rear": (90.0, 60.0, -80.0),
+}
+"""Places of the bearings of the helical stage along u, v, w of the gear unit [mm]."""
+
+
+def add_reduced_casing(file: RexsFile, matrix: list[list[float]], place: Values, **more: tuple[Any, str]) -> int:
+    """Add a stiffness of the helical stage's casing, with a reduction point at each of its bearings."""
+    attributes = {"reduced_static_stiffness_matrix": (matrix, "none")} | more
+    group = file.add("assembly_group", "casing by finite elements", **place, **attributes)
+    file.relate("reference", origin=2, referenced=group)
+    for bearing, (u, v, w) in POINTS.items():
+        point = file.add("reduction_point", f"at {bearing}", **_at(u, v, w))
+        file.relate("ordered_assembly", assembly=group, part=point)
+        file.relate("reference", origin=point, referenced=file.number(bearing))
+    return group
 
 
 HELIX = math.radians(15.0)

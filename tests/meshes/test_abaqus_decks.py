@@ -168,6 +168,72 @@ def test_only_the_part_that_is_instanced_is_read(tmp_path: Path) -> None:
         read_mesh(_deck(tmp_path, deck.partition("*ASSEMBLY")[0]))
 
 
+def _assembly(*instances: str, more: str = "") -> str:
+    wall = CUBES.replace('ELSET="right part"', "ELSET=right").replace("all nodes", "every")
+    lid = "*NODE, NSET=every\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 0., 1., 0.\n4, 0., 0., 1.\n"
+    lid += "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3, 4\n"
+    parts = f"*PART, NAME=Wall\n{wall}*END PART\n*PART, NAME=Lid\n{lid}*ELSET, ELSET=own\n5\n*END PART\n"
+    return (
+        parts + "*ASSEMBLY, NAME=a\n" + "".join(f"{one}*END INSTANCE\n" for one in instances) + more + "*END ASSEMBLY\n"
+    )
+
+
+def test_instances_stand_where_they_are_moved_to(tmp_path: Path) -> None:
+    """The lid is shifted by (0, 1, 2), then turned by 90° about the line through (1, 0, 0) along z.
+
+    The turn takes (x, y) to (1 - y, x - 1). A reference point of the assembly has the number of a node of the parts.
+    """
+    more = "*NODE\n1, 50., 50., 50.\n*NSET, NSET=reference\n1\n"
+    deck = _assembly(
+        "*INSTANCE, NAME=wall-1, PART=Wall\n",
+        "*INSTANCE, NAME=lid-1, PART=Lid\n0., 1., 2.\n1., 0., 0., 1., 0., 7., 90.\n",
+        more=more,
+    )
+    mesh = read_mesh(_deck(tmp_path, deck))
+    assert mesh.kinds == {"hexahedron": 2, "tetra": 1}
+    lid = next(block for block in mesh.blocks if block.kind == "tetra")
+    places = {tuple(place) for place in np.round(mesh.points[lid.nodes[0]], 12).tolist()}
+    assert places == {(0.0, -1.0, 2.0), (0.0, 0.0, 2.0), (-1.0, -1.0, 2.0), (0.0, -1.0, 3.0)}
+    assert mesh.points.max() == 3.0
+    assert mesh.element_volumes.sum() == pytest.approx(2.0 + 1.0 / 6.0)
+
+
+def test_sets_of_instances_have_their_own_name_or_that_of_the_instance_before_it(tmp_path: Path) -> None:
+    """Two lids beside one wall, which all have nodes called `every`; only the lids share elements called `own`."""
+    more = "*ELSET, ELSET=picked, INSTANCE=lid-2\n5\n*SURFACE, TYPE=ELEMENT, NAME=base\nlid-2.own, S1\nlid-1.own, S2\n"
+    more += "*SURFACE, TYPE=ELEMENT, NAME=end\nwall-1.right, S4\nwall-1.5, S6\n"
+    deck = _assembly(
+        "*INSTANCE, NAME=wall-1, PART=Wall\n",
+        "*INSTANCE, NAME=lid-1, PART=Lid\n0., 0., 9.\n",
+        "*INSTANCE, NAME=lid-2, PART=Lid\n0., 0., 5.\n",
+        more=more,
+    )
+    mesh = read_mesh(_deck(tmp_path, deck))
+    heights = {name: mesh.centers[members][:, 2].round(6).tolist() for name, members in mesh.volumes.items()}
+    assert heights == {"right": [0.5], "lid-1.own": [9.25], "lid-2.own": [5.25], "picked": [5.25]}
+    faces = mesh.points[facet_nodes(mesh.surface("base"))]
+    assert sorted(set(faces[:, 2])) == [5.0, 9.0, 10.0]
+    assert set(mesh.points[facet_nodes(mesh.surface("end")), 0]) == {0.0, 2.0}
+    assert {"wall-1.every", "lid-1.every", "lid-2.every"} <= set(mesh.surfaces)
+
+
+@pytest.mark.parametrize(
+    ("system", "axes"),
+    [
+        ("1., 2., 3.\n", [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+        ("1., 2., 3., 1., 9., 3.\n", [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]),
+        ("1., 2., 3., 1., 2., 4.\n1., 3., 4.\n", [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]),
+    ],
+)
+def test_nodes_of_a_local_system(tmp_path: Path, system: str, axes: list[list[int]]) -> None:
+    """Its origin (1, 2, 3), a point on its x and one in its x, y plane; after an empty *SYSTEM nodes are global."""
+    deck = f"*SYSTEM\n{system}{CUBES}*SYSTEM\n*NODE\n900, 70., 0., 0.\n901, 71., 0., 0.\n"
+    deck += "902, 70., 1., 0.\n903, 70., 0., 1.\n*ELEMENT, TYPE=C3D4\n900, 900, 901, 902, 903\n"
+    plain, mesh = read_mesh(_deck(tmp_path, CUBES)), read_mesh(_deck(tmp_path, deck))
+    np.testing.assert_allclose(mesh.points[:12], np.array([1, 2, 3]) + plain.points @ np.array(axes), atol=1e-12)
+    assert mesh.points[12].tolist() == [70.0, 0.0, 0.0]
+
+
 def test_cylindrical_nodes(tmp_path: Path) -> None:
     """A prism on a quarter of a ring, radius 1 to 2, height 1: its volume by chords is (4 - 1) / 2 sin 90°."""
     ring = [(1, 0, 0), (2, 0, 0), (2, 90, 0), (1, 90, 0), (1, 0, 1), (2, 0, 1), (2, 90, 1), (1, 90, 1)]
@@ -220,6 +286,18 @@ def test_names_of_sets_are_one_in_any_case(tmp_path: Path) -> None:
         write_mesh(twice, tmp_path / "twice.inp")
 
 
+def test_numbers_are_as_short_as_calculix_reads_them(tmp_path: Path) -> None:
+    """CalculiX refuses -1.3877787807814457e-17, which has 23 characters; it reads 20."""
+    mesh = read_mesh(_deck(tmp_path, CUBES))
+    points = mesh.points.copy()
+    points[0] = -1.3877787807814457e-17, 1.0 / 3.0, -123456.78901234567
+    write_mesh(replace(mesh, points=points), tmp_path / "long.inp")
+    line = (tmp_path / "long.inp").read_text().splitlines()[1]
+    fields = line.split(", ")[1:]
+    assert max(map(len, fields)) <= 20
+    np.testing.assert_allclose([float(field) for field in fields], points[0], rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
@@ -227,7 +305,8 @@ def test_names_of_sets_are_one_in_any_case(tmp_path: Path) -> None:
         ("*NCOPY, CHANGE NUMBER=100\n", r"\*NCOPY is not known here"),
         ("*NGEN\n1, 3\n", r"\*NGEN is not known here"),
         ("*ElCopy\n", r"\*ELCOPY is not known here"),
-        ("*System\n1., 0., 0.\n", r"\*SYSTEM is not known here"),
+        ("*System\n1., 0.\n", r"\*SYSTEM has 2 coordinates; expected those of 1, 2 or 3 points"),
+        ("*System\n0., 0., 0., 1., 0., 0.\n2., 0., 0.\n", r"the points of \*SYSTEM lie on one line"),
         ("*ELEMENT, TYPE=C3D5\n6, 1, 2, 3, 4, 15\n", "elements of type C3D5, which are not known here"),
         ("*ELEMENT, TYPE=C3D4\n6, 1, 2, 3\n", "elements of type C3D4 have 4 nodes each"),
         ("*ELEMENT, TYPE=C3D4\n6, 1, 2, 3, 999\n", "names node 999, which is not in it"),
@@ -236,8 +315,12 @@ def test_names_of_sets_are_one_in_any_case(tmp_path: Path) -> None:
         ("*SURFACE, NAME=s\n5, S7\n", "names face 'S7' of a hexahedron; expected S1 to S6"),
         ("*SURFACE, NAME=s\n5, SNEG\n", "names face 'SNEG'"),
         ("*SURFACE, NAME=s\n77, S1\n", "names element 77, which is no solid"),
-        ("*INSTANCE, NAME=a, PART=p\n*INSTANCE, NAME=b, PART=p\n", "assembles 2 instances; write one flat deck"),
-        ("*INSTANCE, NAME=a, PART=p\n1., 0., 0.\n", "an instance is moved"),
+        ("*PART, NAME=q\n*END PART\n*INSTANCE, NAME=a, PART=p\n", "instance of part 'p', which is not there"),
+        (
+            "*INSTANCE, NAME=a, PART=p\n1., 0., 0.\n1., 0., 0., 2., 0., 0.\n",
+            "moved by 2 lines; expected 3 numbers, and 7",
+        ),
+        ("*INSTANCE, NAME=a, PART=p\n0.\n1., 0., 0., 1., 0., 0., 9.\n", "turned about an axis of no length"),
         ("*ELEMENT, TYPE=C3D4\n6, 1, two, 3, 4\n", r"cannot be read: ValueError.*'two'"),
     ],
 )

@@ -151,3 +151,43 @@ def test_facets_of_shells_are_the_surface_of_their_property(tmp_path: Path) -> N
 def test_decks_that_cannot_be_taken_are_refused(tmp_path: Path, more: str, message: str) -> None:
     with pytest.raises(GeometryError, match=message):
         read_mesh(_deck(tmp_path, _grids() + BRICK + more))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"SOL 103\nCEND\nBEGIN BULK\n{{0}}{BRICK}ENDDATA\n",
+        f"$ a deck of bulk data alone\n{{0}}{BRICK}",
+        "init master(s)\nnastran system(442)=-1\nsol 103\ncend\nbegin bulk\n{0}" + BRICK.lower() + "enddata\n",
+        "{0}INCLUDE 'brick.dat'\n",
+    ],
+)
+def test_a_file_dat_with_cards_of_nastran_is_a_deck(tmp_path: Path, text: str) -> None:
+    (tmp_path / "brick.dat").write_text(BRICK)
+    path = tmp_path / "model.dat"
+    path.write_text(text.replace("{0}", _grids()))
+    assert read_mesh(path).element_volumes.tolist() == [1.0]
+    assert companion_files(path) == ((tmp_path / "brick.dat",) if "INCLUDE" in text else ())
+
+
+@pytest.mark.parametrize("text", ["$ENTER COMPONENT NAME = PART\n$COOR\n1 0. 0. 0.\n", "12.5 3.1\n1e3 4\n", ""])
+def test_a_file_dat_of_another_program_is_no_deck(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "results.dat"
+    path.write_text(text)
+    with pytest.raises(GeometryError, match=r"results\.dat (is broken, or of a format|cannot be read|is empty)"):
+        read_mesh(path)
+
+
+def test_a_continuation_may_have_a_blank_where_the_next_line_has_a_plus_sign(tmp_path: Path) -> None:
+    fields = "".join(f"{number:8d}" for number in (1, 4, 1, 2, 3, 4, 5, 6))
+    deck = f"CHEXA   {fields} C 1\n+C 1    {7:8d}{8:8d}\n"
+    assert read_mesh(_deck(tmp_path, _grids() + deck)).element_volumes.tolist() == [1.0]
+
+
+def test_shells_of_one_property_may_lie_on_the_solids_in_part(tmp_path: Path) -> None:
+    """One quadrilateral is the brick's lid, another stands above it: the region is the lid alone."""
+    shells = "CQUAD4,20,6,5,6,7,8\nCQUAD4,21,6,9,10,11,12\nCQUAD4,22,7,9,10,11,12\n"
+    mesh = read_mesh(_deck(tmp_path, _grids() + SECOND + BRICK + shells))
+    assert list(mesh.surfaces) == ["property-6"]
+    (lid,) = mesh.surface("property-6")
+    np.testing.assert_array_equal(mesh.points[lid.nodes[0], 2], 1.0)

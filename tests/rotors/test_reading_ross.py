@@ -219,7 +219,15 @@ WRONG: dict[str, tuple[Document, str]] = {
     "no modulus": (without(two_elements(), FIRST, "material", "E"), f"{FIRST}.material.Poisson is 'missing'"),
     "unknown shear formula": (document(element(0, shear_method_calc="x")), f"{FIRST}.shear_method_calc is 'x'"),
     "flag that is none": (document(element(0, gyroscopic=1)), f"{FIRST}.gyroscopic is 1; expected true or false"),
-    "side by side": (document(element(0), element(1), element(1, tag="b")), "ShaftElement_b.n is 1; expected a node"),
+    "side by side of two lengths": (document(element(0), element(1), element(1, tag="b", L=0.3)),
+                                    "elements between the same two nodes have lengths 0.25, 0.3 m"),
+    "beside a coupling": (document(element(0), element(1), element(2), CouplingElement_c=WHOLE),
+                          "CouplingElement_c.n is 2; expected a node of its own; ShaftElement_Shaft Element 2 is"),
+    "cones of two materials": (document(element(0, odr=0.06), element(0, tag="b", idl=0.05, idr=0.06, odl=0.08,
+                               odr=0.08, material={"rho": 1.0, "E": 1e9, "Poisson": 0.3})), "expected them to be of"),
+    "lists of unlike length": (two_elements(BearingElement_b=bearing(0, "b", kxx=[[1.0, 2.0], [3.0]])), "lists of"),
+    "frequencies beside the speeds": (two_elements(BearingElement_b=bearing(0, "b", speed=[0.0, 9.0],
+        kxx=[[1.0, 2.0], [3.0, 4.0]], kyy=0.0, frequency=[50.0, 60.0])), "b.frequency is [50.0, 60.0]; expected asc"),
     "two shafts": (document(element(0), element(2)), "Shaft Element 2.n is 2; expected 1: one shaft"),
     "one unnumbered": (document(element(0), element(1, n=None)), "Shaft Element 1.n is 'missing'"),
     "half a node": (document(element(0, n=0.5)), f"{FIRST}.n is 0.5; expected a node: a whole number from 0"),
@@ -276,3 +284,119 @@ def test_what_is_no_such_file_is_said(name: str, content: bytes, said: str, tmp_
         read_ross(tmp_path / name)
     with pytest.raises(RotorError, match="expected a rotor saved by ROSS"):
         read_ross(tmp_path / "missing.toml")
+
+
+def together(folder: Path, *beside: Document) -> tuple[Segment, tuple[str, ...]]:
+    (segment,), _, remarks = (lambda read: (read.rotor.segments, read.bearings, read.warnings))(
+        read_ross(saved(folder, document(*beside)))
+    )
+    return segment, remarks
+
+
+def test_a_sleeve_of_the_same_material_makes_one_section_with_its_shaft(tmp_path: Path) -> None:
+    """Areas and second moments of a shaft of 50 mm and a sleeve of 50 to 80 mm are those of one of 80 mm."""
+    sleeve = element(0, tag="sleeve", idl=0.05, idr=0.05, odl=0.08, odr=0.08, axial_force=50.0)
+    segment, remarks = together(tmp_path, element(0, axial_force=100.0), sleeve)
+    assert (segment.outer_diameter, segment.inner_diameter, segment.length) == (0.08, 0.0, 0.25)
+    assert segment.axial_force == 150.0
+    nu = 211.0 / (2.0 * 81.2) - 1.0
+    shares = [
+        (25.0, shear_coefficient("cowper", 0.0, nu)),
+        (39.0, shear_coefficient("cowper", 0.625, nu)),
+    ]  # 5², 8² - 5²
+    assert segment.shear_coefficient == pytest.approx(sum(area * factor for area, factor in shares) / 64.0)
+    assert len(remarks) == 1
+    assert "one segment with what stands between the same nodes" in remarks[0]
+    assert "axial" not in remarks[0]
+
+
+def test_a_conical_sleeve_keeps_both_ends(tmp_path: Path) -> None:
+    sleeve = element(0, tag="sleeve", idl=0.05, idr=0.06, odl=0.08, odr=0.1)
+    segment, _ = together(tmp_path, sleeve, element(0, odr=0.06, idl=0.01, idr=0.02))
+    assert segment.end_diameters == ((0.08, 0.01), (0.1, 0.02))
+
+
+@pytest.mark.parametrize("density", [2700.0, 11300.0])
+def test_a_sleeve_of_another_material_adds_its_stiffness_and_mass(tmp_path: Path, density: float) -> None:
+    """Sums of E I, G J, κ G A, ρ A and ρ I, computed here from diameters in a file's own terms."""
+    soft = {"rho": density, "E": 70e9, "G_s": 26e9}
+    sleeve = element(0, tag="sleeve", idl=0.05, idr=0.05, odl=0.08, odr=0.08, material=soft)
+    segment, remarks = together(tmp_path, element(0), sleeve)
+    rings = [(0.05, 0.0, 211e9, 81.2e9, 7810.0), (0.08, 0.05, 70e9, 26e9, density)]
+    areas = [math.pi / 4 * (outer**2 - inner**2) for outer, inner, *_ in rings]
+    moments = [math.pi / 64 * (outer**4 - inner**4) for outer, inner, *_ in rings]
+    factors = [shear_coefficient("cowper", inner / outer, e / (2 * g) - 1.0) for outer, inner, e, g, _ in rings]
+    section = segment.section(0.5)
+    assert section.bending_stiffness == pytest.approx(sum(r[2] * i for r, i in zip(rings, moments, strict=True)))
+    assert section.torsional_stiffness == pytest.approx(2 * sum(r[3] * i for r, i in zip(rings, moments, strict=True)))
+    assert section.shear_stiffness == pytest.approx(
+        sum(k * r[3] * a for k, r, a in zip(factors, rings, areas, strict=True))
+    )
+    assert section.mass_per_length == pytest.approx(sum(r[4] * a for r, a in zip(rings, areas, strict=True)))
+    assert section.polar_inertia_per_length == pytest.approx(
+        2 * sum(r[4] * i for r, i in zip(rings, moments, strict=True))
+    )
+    assert (segment.inner_diameter > 0.0) == (density > 7810.0)
+    assert "its axial stiffness is lower than theirs" in remarks[0]
+
+
+def test_nodes_are_counted_by_places_and_not_by_elements(tmp_path: Path) -> None:
+    """A bearing at node 2 stands at the end of two elements, however many are beside the first one."""
+    rings = [(0.05, 0.06), (0.06, 0.07), (0.07, 0.08)]
+    sleeves = [element(0, tag=f"to {d}", idl=b, idr=b, odl=d, odr=d) for b, d in rings]
+    read = read_ross(saved(tmp_path, document(element(1), element(0), *sleeves, BearingElement_b=bearing(2, "b"))))
+    assert [segment.outer_diameter for segment in read.rotor.segments] == [0.08, 0.05]
+    assert read.bearings[0].at == 0.5
+
+
+@pytest.mark.parametrize("version", ["3.1.0", "2.3.0", "1.6.1", None])
+def test_files_of_every_version_are_read(tmp_path: Path, version: str | None) -> None:
+    """ROSS 3 calls the axis of a table over the speed of rotation `speed`; before it was `frequency`."""
+    axis = "speed" if version == "3.1.0" else "frequency"
+    table = bearing(0, "b", **{axis: [0.0, 50.0, 100.0]}) | {"kxx": [1e6, 2e6, 4e6], "kyy": [1e6] * 3}
+    for name in ("kxy", "kyx", "kzz", "cxx", "cxy", "cyx", "cyy", "czz", "mxx", "mxy", "myx", "myy", "mzz"):
+        table[name] = [0.0] * 3
+    if axis == "speed":
+        table |= {"interpolation": "pchip", "radial_clearance": 1e-4}
+    content = two_elements(BearingElement_b=table)
+    del content["ross_version"]
+    _, (read,), remarks = read_ross(
+        saved(tmp_path, content if version is None else {"ross_version": version} | content)
+    )
+    np.testing.assert_array_equal(read.speeds, [0.0, 50.0, 100.0])
+    np.testing.assert_array_equal(read.stiffness[:, 0, 0], [1e6, 2e6, 4e6])
+    assert remarks == ()
+
+
+def test_a_table_over_the_frequency_of_whirl_is_taken_as_synchronous_and_said(tmp_path: Path) -> None:
+    """Magnetic bearings and squeeze-film dampers of ROSS 3; its other interpolation is said, too."""
+    table = bearing(0, "b", frequency=[0.0, 100.0]) | {"kxx": [1e6, 2e6], "kyy": [1e6, 2e6], "interpolation": "linear"}
+    content = two_elements(MagneticBearingElement_b=table) | {"ross_version": "3.1.0"}
+    _, (read,), remarks = read_ross(saved(tmp_path, content))
+    np.testing.assert_array_equal(read.speeds, [0.0, 100.0])
+    assert sorted("as if synchronous" in remark for remark in remarks) == [False, True]
+    assert any("interpolation is 'linear'" in remark for remark in remarks)
+
+
+def test_a_table_over_speed_and_frequency_is_taken_where_both_are_the_same(tmp_path: Path) -> None:
+    """k = 1e6 + 1e3 speed + 1e2 frequency is 1e6 + 1.1e3 ω; speeds beyond the frequencies are left out."""
+    speed, frequency = [0.0, 40.0, 80.0, 300.0], [0.0, 50.0, 100.0]
+    stiffness = [[1e6 + 1e3 * s + 1e2 * f for f in frequency] for s in speed]
+    names = [letter + place for letter in "kcm" for place in ("xx", "xy", "yx", "yy", "zz")]
+    table = {name: [[0.0] * 3 for _ in speed] for name in names} | {"kxx": stiffness, "kyy": stiffness}
+    table |= {"n": 0, "tag": "b", "speed": speed, "frequency": frequency}
+    _, (read,), remarks = read_ross(saved(tmp_path, two_elements(BearingElement_b=table)))
+    np.testing.assert_array_equal(read.speeds, [0.0, 40.0, 80.0])
+    np.testing.assert_allclose(read.stiffness[:, 1, 1], 1e6 + 1.1e3 * np.array([0.0, 40.0, 80.0]), rtol=1e-12)
+    assert any("left out" in remark for remark in remarks)
+
+
+@pytest.mark.parametrize(
+    ("kind", "kxx", "cxx"),
+    [("SealElement", -2e5, 300.0), ("SqueezeFilmDamper", 0.0, 5e4), ("MagneticBearingElement", -4e6, 10.0)],
+)
+def test_seals_dampers_and_magnetic_bearings_keep_their_sign(tmp_path: Path, kind: str, kxx: float, cxx: float) -> None:
+    others = {f"{kind}_x": bearing(1, "x", kxx=[kxx], kyy=[kxx], cxx=[cxx], cyy=[cxx])}
+    _, (read,), _ = read_ross(saved(tmp_path, two_elements(**others)))
+    np.testing.assert_array_equal(read.stiffness, kxx * np.eye(2))
+    np.testing.assert_array_equal(read.damping, cxx * np.eye(2))

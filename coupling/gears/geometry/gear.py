@@ -35,7 +35,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple, Protocol
 
@@ -247,6 +247,24 @@ class Gear:
         """Deviations larger than the teeth, and what is unlikely of sizes, deviations and material."""
         material = material_findings(("gear", self.name), self.youngs_modulus, self.poisson_ratio, self.density)
         return (*_deviation_findings(self), *_size_findings(self), *material)
+
+    @cached_property
+    def sound(self) -> Gear:
+        """The gear with involute flanks, without modifications, deviations and faults of its teeth."""
+        of_flanks = (self.tip_relief, self.root_relief, self.profile_deviation, self.helix_deviation)
+        if not (any(of_flanks) or self.pitch_deviations or self.faults or self.eccentricity):
+            return self
+        return replace(
+            self,
+            eccentricity=0.0,
+            eccentricity_phase=0.0,
+            pitch_deviations=(),
+            faults=(),
+            tip_relief=None,
+            root_relief=None,
+            profile_deviation=None,
+            helix_deviation=None,
+        )
 
     # ----------------------------------------------------- external or internal
 

@@ -220,6 +220,14 @@ class GearPairGeometry:
         return middle, middle - self.axial_offset
 
     @cached_property
+    def sound(self) -> GearPairGeometry:
+        """The pair with involute flanks, without modifications, deviations and faults of its teeth."""
+        driver, driven = self.driver.sound, self.driven.sound
+        if driver is self.driver and driven is self.driven:
+            return self
+        return replace(self, driver=driver, driven=driven)
+
+    @cached_property
     def carrying_gears(self) -> tuple[Gear, Gear]:
         """Driver and driven gear, each with its effective face width for the load on the common face.
 

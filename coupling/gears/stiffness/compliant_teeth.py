@@ -32,8 +32,8 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import ClassVar, Literal, NamedTuple
+from functools import lru_cache, partial, wraps
+from typing import ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -57,8 +57,28 @@ REFERENCE_LINE_LOAD = 300e3
 """Load per face width at which Weber's contact is taken where none is given [N/m]: within the 100 to 1600 N/mm that the
 constants of ISO 6336-1 are for."""
 
+_PAIRS = 64  # pairs of gears whose teeth are kept
 _CROSS_NODES = 4
 _PLACES = 24
+
+
+_Of = TypeVar("_Of")
+
+
+def _of_sound_teeth(
+    solve: Callable[[CompliantTeeth, GearPairGeometry], _Of],
+) -> Callable[[CompliantTeeth, GearPairGeometry], _Of]:
+    """Solve for the pair with involute flanks, and keep it: pairs that differ in their flanks alone have it in common.
+
+    Gears of one drawing have other flanks in each gearbox, and the same compliance.
+    """
+    kept = lru_cache(maxsize=_PAIRS)(solve)
+
+    @wraps(solve)
+    def of_pair(self: CompliantTeeth, geometry: GearPairGeometry) -> _Of:
+        return kept(self, geometry.sound)
+
+    return of_pair
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,6 +217,7 @@ class CompliantTeeth(ABC):
         """
         return sum(self._shared_by_gear(geometry))
 
+    @_of_sound_teeth
     def rim_compliances(self, geometry: GearPairGeometry) -> tuple[RimCompliance, RimCompliance]:
         """Parts of `shared_compliance` by which the rims of the driver and of the driven gear move on their hubs.
 
@@ -219,6 +240,7 @@ class CompliantTeeth(ABC):
             compliances.append(RimCompliance(twist, shift, body.state))
         return compliances[0], compliances[1]
 
+    @_of_sound_teeth
     def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
         """Compliance that pairs share under loads that vary over the face like Legendre's polynomials p_m [m/N].
 
@@ -234,7 +256,7 @@ class CompliantTeeth(ABC):
         middle = 0.5 * geometry.contact_ratio
         radii = geometry.driver_radius(middle), geometry.driven_radius(middle)
         # What a ring's support yields is plane, of an even load; the tilt of a rim between its bolts is left out.
-        shares = self._shared_by_gear(geometry, supported=False)
+        shares = self._shared_by_bodies(geometry, supported=False)
         for gear, radius, shared in zip(geometry.carrying_gears, radii, shares, strict=True):
             body = self.shared_body(gear)
             if body is None or shared == 0.0:
@@ -243,10 +265,15 @@ class CompliantTeeth(ABC):
             at = spur_radius(np.asarray(radius, dtype=np.float64))
             width = geometry.face_width / abs(gear.root_circle_radius)
             total += shared * uneven_shares(spur, float(at), width, twists=body.twists)
+        total.flags.writeable = False
         return total
 
-    def _shared_by_gear(self, geometry: GearPairGeometry, *, supported: bool = True) -> tuple[float, float]:
+    @_of_sound_teeth
+    def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
         """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
+        return self._shared_by_bodies(geometry, supported=True)
+
+    def _shared_by_bodies(self, geometry: GearPairGeometry, *, supported: bool) -> tuple[float, float]:
         # Helical teeth with less than one pair in a plane share their bodies along the face: as at a ratio of one.
         both = max(geometry.contact_ratio - 1.0, 0.0)
         driver, driven = (self._neighbours(gear, supported) for gear in geometry.carrying_gears)
@@ -327,6 +354,7 @@ class CompliantTeeth(ABC):
         approach = line_contact(geometry, at.ravel()).secant_compliance(load).reshape(at.shape)
         return np.asarray(approach / math.cos(geometry.driver.base_helix_angle), dtype=np.float64)
 
+    @_of_sound_teeth
     def mean_flattening(self, geometry: GearPairGeometry) -> float:
         """Mean of `contact_compliance` over the path of contact, under the model's own load [m/N]."""
         nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
@@ -354,6 +382,7 @@ class CompliantTeeth(ABC):
         at = np.asarray(position, dtype=np.float64)
         return self.teeth_compliance(geometry)(at) + self.contact_compliance(geometry, at, force)
 
+    @_of_sound_teeth
     def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
         """Stiffness [N/m] by position; the table is checked against the model to 1e-9."""
         length, teeth = geometry.contact_ratio, self.teeth_compliance(geometry)

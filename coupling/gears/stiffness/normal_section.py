@@ -114,16 +114,10 @@ def _reach(gear: Gear, radius: FloatArray) -> FloatArray:
 
 def _spur(gear: Gear, teeth: int) -> Gear:
     return replace(
-        gear,
+        gear.sound,
         teeth=teeth,
         helix_angle=0.0,
         # The body under the teeth is scaled: bore and rim keep their share of the radius.
         bore=gear.bore * teeth / gear.teeth * math.cos(gear.helix_angle),
-        pitch_deviations=(),
-        faults=(),
-        tip_relief=None,
-        root_relief=None,
-        profile_deviation=None,
-        helix_deviation=None,
         allow_undercut=True,
     )

@@ -193,6 +193,7 @@ def _of_machine(case: Case) -> Iterator[Finding]:
 
 
 def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFinding]:
+    from gearwhine.coupling.description.parts import rim_findings
     from gearwhine.coupling.description.solids import (
         force_findings,
         machine_findings,
@@ -210,6 +211,9 @@ def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFindi
     for shaft, rotor in zip(shafts, parts.rotors, strict=True):
         tip = max((mounted.gear.outer_radius for mounted in parts.gears_on(shaft.name)), default=0.0)
         yield from unbalance_findings(shaft, rotor, tip)
+    rings = [] if housing is None else [seat.name for seat in housing.seat if seat.ring_orders]
+    for shaft in shafts:
+        yield from rim_findings(shaft, parts.gears_on(shaft.name), rings)
     by_name = {shaft.name: shaft.rotor for shaft in shafts}
     for place, force in enumerate(() if parts.operation is None else parts.operation.force):
         yield from force_findings(force.build(), by_name[force.rotor], place)

@@ -258,6 +258,7 @@ def warnings_of(case: Case) -> tuple[str, ...]:
     for bearing in case.bearing:
         if bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             warnings.append(f'bearing "{bearing.name}": its pedestal has no mass: `rotors` alone takes it')
+    on_bolts = {one.held_rotor(case.gear) for one in case.planetary if one.fixed is not None and one.fixed.bolts}
     for rotor in case.rotor:
         coefficients = [rotor.shear_coefficient, *(getattr(part, "shear_coefficient", None) for part in rotor.segments)]
         above = [value for value in coefficients if isinstance(value, float) and value > 1.0]
@@ -268,8 +269,8 @@ def warnings_of(case: Case) -> tuple[str, ...]:
             )
         if rotor.saved is not None:
             warnings += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]
-        has_own_bearings = rotor.saved is not None and rotor.saved.bearings
-        if not has_own_bearings and not any(bearing.rotor == rotor.name for bearing in case.bearing):
+        is_held = rotor.name in on_bolts or (rotor.saved is not None and bool(rotor.saved.bearings))
+        if not is_held and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             warnings.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
     if either is not None:
         warnings += _seat_warnings(case.bearing)

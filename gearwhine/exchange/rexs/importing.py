@@ -29,6 +29,7 @@ from gearwhine.exchange.rexs.operation import (
 )
 from gearwhine.exchange.rexs.placement import Placements
 from gearwhine.exchange.rexs.quantities import rpm
+from gearwhine.exchange.rexs.reduced_casing import casing_of, housing_table
 from gearwhine.exchange.rexs.shaft_places import place_shafts
 from gearwhine.exchange.rexs.shafts import Body, find_bodies, rotor_table
 from gearwhine.exchange.rexs.toml_text import toml_text
@@ -56,8 +57,8 @@ _WHY_LEFT_OUT = {
     "lubricant": "a case has no lubricant: damping and friction are keys of its bearings and gear pairs",
     "stage_gear_data": "results of the file's program",
     "cylindrical_stage_gear_data": "results of the file's program",
-    "assembly_group": "a reduced stiffness of the housing is not taken yet: bearings stand on rigid ground",
-    "reduction_point": "a reduced stiffness of the housing is not taken yet",
+    "assembly_group": "no reduced stiffness of the casing against the ground: finite elements and CAD are not taken",
+    "reduction_point": "no reduced stiffness of the casing is taken",
     "bevel_stage": "a case has cylindrical gears on parallel shafts alone",
     "worm_stage": "a case has cylindrical gears on parallel shafts alone",
 }
@@ -158,17 +159,22 @@ def case_of(model: RexsModel, name: str = "", load_case: str = "") -> ImportedCa
     if unusual:
         document["unusual"] = unusual
     document["rotor"] = rotors
+    casing = casing_of(unit.model)
+    on_ground: dict[int, dict[str, Any]] = {}
     mounted = [one for one in find_bearings(unit, bodies, train.carriers, standing) if one.body in geared]
     bearings: list[dict[str, Any]] = []
     for one in mounted:
         table = bearing_table(unit, one, len(bearings))
         if table is not None:
             bearings.append(table)
+            on_ground[one.component.number] = table
     for body in geared:
         for coupling in bodies.holds(body):
             table = support_table(unit, body, coupling, len(bearings))
             if table is not None:
                 bearings.append(table)
+    if casing is not None and (housing := housing_table(unit, casing, name, on_ground)) is not None:
+        document["housing"] = housing
     if bearings:
         document["bearing"] = bearings
     in_mesh = dict.fromkeys(gear for mesh in train.meshes for gear in (mesh.first, mesh.second))
@@ -184,7 +190,7 @@ def case_of(model: RexsModel, name: str = "", load_case: str = "") -> ImportedCa
         document["operation"] = operation
     if sweep is not None:
         document["sweep"] = sweep
-    _note_the_rest(unit)
+    _note_the_rest(unit, () if casing is None else ("assembly_group", "reduction_point"))
     origin = f"{readable(name) or 'a file'} ({model.origin})"
     shown = [] if chosen is None else [described_load_case(model, chosen)]
     shown += [described_load_case(model, one) for one in model.load_cases if one is not chosen]
@@ -229,11 +235,11 @@ def _require_moderate(model: RexsModel) -> None:
         raise RexsError(problems)
 
 
-def _note_the_rest(unit: GearUnit) -> None:
+def _note_the_rest(unit: GearUnit, taken: tuple[str, ...]) -> None:
     """Note each type of component that nothing was taken of, once with all that are of it."""
     kinds: dict[str, list[str]] = {}
     for component in unit.model.components.values():
-        if component.kind not in _TAKEN:
+        if component.kind not in _TAKEN and component.kind not in taken:
             kinds.setdefault(component.kind, []).append(str(component.number))
     for kind, numbers in kinds.items():
         shown = ", ".join(numbers[:6]) + (f" and {len(numbers) - 6} more" if len(numbers) > 6 else "")

@@ -22,7 +22,8 @@ def xml_text(model: RexsModel) -> str:
     }
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', _tag("model", heading), "<relations>"]
     for relation in model.relations:
-        lines.append(_tag("relation", {"id": relation.number, "type": relation.kind}))
+        ordered = {"order": relation.order} if relation.order else {}
+        lines.append(_tag("relation", {"id": relation.number, "type": relation.kind, **ordered}))
         for role, number in relation.roles:
             reference = {"id": number, "role": role, "hint": model.components[number].kind}
             lines.append(_tag("ref", reference, end="/"))
@@ -51,6 +52,9 @@ def _components(components: Iterable[Component]) -> Iterator[str]:
 
 
 def _value(attribute: Attribute) -> str:
+    if isinstance(attribute.value, tuple) and attribute.value and isinstance(attribute.value[0], tuple):
+        rows = ("".join(f"<c>{_text(entry)}</c>" for entry in row) for row in attribute.value)
+        return "<matrix>" + "".join(f"<r>{row}</r>" for row in rows) + "</matrix>"
     if isinstance(attribute.value, tuple):
         cells = "".join(f"<c>{_text(entry)}</c>" for entry in attribute.value)
         return f"<array>{cells}</array>"

@@ -36,6 +36,7 @@ from gearwhine.figures.style import (
     column_width,
     draw_column,
     draw_row,
+    legend,
     legend_below,
     legend_height,
     mark_operation,
@@ -71,6 +72,8 @@ _DECADES = 4.0  # decades of amplitude that a panel shows at most
 _MOST_COLOURED_CURVES = 8  # number of curves that a panel distinguishes by colour
 _MOST_PANELS = 4  # sensors whose lines are drawn
 _NAMED_LINES = 4  # highest lines of a sensor that have their name
+_ABOVE_LINES = 10.0  # top of a panel of lines over its highest one: room for names
+_NAMES_APART = 0.03  # part of a panel's width that names of lines which lean alike are apart
 _LINE_GAP = 9.0  # gap between two panels of lines [mm]
 _COLUMNS = 4  # columns of their names above it
 _CAMPBELL_COLUMNS = 8  # columns of the kinds of modes below the Campbell diagram
@@ -270,35 +273,40 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
         least = top * 10.0**-_DECADES
         axes.set_yscale("log")
         if top > 0.0:
-            axes.set_ylim(least, 50.0 * top)
+            axes.set_ylim(least, _ABOVE_LINES * top)
         for kind, color in LINE_COLORS.items():
             own = np.array([line.kind == kind for line in lines]) & (heights > least)
             axes.vlines(frequencies[own], least, heights[own], color=color, lw=1.4, label=kind, zorder=3)
-        for place in np.argsort(-heights)[:_NAMED_LINES].tolist():
-            if heights[place] > least:
-                at = (frequencies[place], heights[place])
-                text = _place_beside_harmonic(lines[place])
-                # Names of lines below and above a harmonic lean apart.
-                is_below = sum(turns for _, turns in lines[place].sidebands[0].turns) < 0
-                side, lean = ("right", -60) if is_below else ("left", 60)
-                axes.annotate(
-                    text,
-                    at,
-                    (-4 if is_below else 4, 3),
-                    textcoords="offset points",
-                    rotation=lean,
-                    rotation_mode="anchor",
-                    ha=side,
-                    fontsize=NOTE,
-                )
-        axes.set_xlim(0.9 * float(frequencies.min()), 1.1 * float(frequencies.max()))
+        low, high = 0.9 * float(frequencies.min()), 1.1 * float(frequencies.max())
+        named: list[tuple[int, float]] = []
+        for place in np.argsort(-heights)[: 2 * _NAMED_LINES].tolist():
+            if len(named) == _NAMED_LINES or heights[place] <= least:
+                break
+            # Names of lines below and above a harmonic lean apart; one that would stand in another is left out.
+            turns = sum(number for _, number in lines[place].sidebands[0].turns)
+            side = 0 if turns == 0 else 1 if turns > 0 else -1
+            gap = _NAMES_APART * (high - low)
+            if any(abs(frequencies[place] - at) < gap * (1 if side == other else 0.5) for other, at in named):
+                continue
+            named.append((side, float(frequencies[place])))
+            axes.annotate(
+                _place_beside_harmonic(lines[place]),
+                (frequencies[place], heights[place]),
+                (2 * side, 3),
+                textcoords="offset points",
+                rotation=60 * side,
+                rotation_mode="anchor",
+                ha=("right", "center", "left")[1 + side],
+                fontsize=NOTE,
+            )
+        axes.set_xlim(low, high)
         axes.set_ylabel(f"{shortened(name, 14)} [m/s²]")
         if number == 0:
             axes.set_xlabel("frequency [Hz]")
         else:
             axes.tick_params(labelbottom=False)
         if number == len(sensors) - 1:
-            axes.legend(loc="upper right", ncols=3, fontsize=NOTE, frameon=False)
+            legend(figure, axes.get_legend_handles_labels()[0])
     return figure
 
 

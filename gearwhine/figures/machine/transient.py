@@ -146,7 +146,7 @@ def draw_sensor_spectra(
 
 
 def _text(line: TracedLine) -> str:
-    name = line.named.name.replace(" mode of ", " ").replace(" -> ", "→")
+    name = line.named.name.replace(" mode of ", " ").replace(" -> ", "→").replace("planets' meshes", "planets")
     return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
 
 
@@ -158,6 +158,7 @@ _LINES, _MOST_LINES = 3, 8  # lines of each sensor, and of all on a sheet
 _PARTS = 6  # parts of each kind
 _BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, width of its name, and gap above a panel [mm]
 _MARGIN = 4.0
+_ROOM_OF_LETTER = 0.07  # part of the bars' range that a letter of a value takes beside a bar
 _VISIBLE_PART = 0.05  # size below which a part counts as zero [%]
 
 
@@ -219,7 +220,8 @@ def _draw(axes: Axes, parts: list[tuple[str, float]], color: str) -> None:
     axes.invert_yaxis()
     axes.axvline(0.0, color=GREY, lw=0.7)
     low, high = min(0.0, *shares), max(0.0, *shares)
-    room = 0.2 * (high - low) or 1.0
+    longest = max(len(_percent(share)) for share in shares)
+    room = max(0.2, _ROOM_OF_LETTER * longest) * (high - low) or 1.0
     # A value stands beyond its bar, on the left of negative ones.
     axes.set_xlim(low - (room if min(shares) <= -_VISIBLE_PART else 0.0), high + room)
     for place, share in enumerate(shares):
@@ -480,8 +482,8 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
         below.plot([0.0], [0.0], marker="+", color=RED, ms=7)
         for axes, size in ((above, reach[0]), (below, reach[1])):
             axes.set(xlim=(-size, size), ylim=(-size, size), aspect="equal", xlabel="x [µm]")
-            axes.yaxis.set_major_locator(MaxNLocator(5))
-            axes.xaxis.set_major_locator(MaxNLocator(5))
+            axes.yaxis.set_major_locator(MaxNLocator(4))
+            axes.xaxis.set_major_locator(MaxNLocator(4))
             if number % columns == 0:
                 axes.set_ylabel("y [µm]")
         above.set_title(shortened(name, 20), fontsize=LABEL, loc="left", pad=3.0, parse_math=False)

@@ -132,9 +132,11 @@ def _add_rolling(
     attributes |= _mounting(rolling, kind, static, sheet, about)
     number = sheet.add(detail, name, attributes)
     if row:
-        of_row = sheet.part(number, "rolling_bearing_row", attributes=row)
+        of_row = sheet.add("rolling_bearing_row", attributes=row)
+        sheet.relate_in_order("ordered_assembly", 1, assembly=number, part=of_row)
         if element:
-            sheet.part(of_row, "rolling_element", attributes=element)
+            of_element = sheet.add("rolling_element", attributes=element)
+            sheet.relate_in_order("ordered_assembly", 1, assembly=of_row, part=of_element)
     return number
 
 

@@ -9,11 +9,13 @@ from typing import Any
 
 import gearwhine
 from gearwhine.case import Case, require
+from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.exchange.rexs.gear_unit import readable
 from gearwhine.exchange.rexs.model import RexsModel, checked_model
 from gearwhine.exchange.rexs.notes import Note
 from gearwhine.exchange.rexs.xml_writer import xml_text
 from gearwhine.from_case.rexs.bearings import add_bearings
+from gearwhine.from_case.rexs.casing import add_casing_stiffness
 from gearwhine.from_case.rexs.gears import add_gears, add_stages
 from gearwhine.from_case.rexs.loads import add_load_case, add_loads, gravity_of
 from gearwhine.from_case.rexs.shafts import Shafts, add_materials, add_shafts
@@ -22,7 +24,6 @@ from gearwhine.from_case.rexs.sheet import Sheet, plain
 VERSION = "1.7"
 """Version of the schema that is written."""
 _TABLES = {
-    "housing": "the housing: bearings stand in the casing",
     "transient": "settings of the computation",
     "rotor_analysis": "settings of the computation",
     "sweep": "speeds of a sweep",
@@ -53,7 +54,7 @@ class ExportedUnit:
         return xml_text(self.model)
 
 
-def rexs_of(case: Case, load: Mapping[str, Any] | None = None) -> ExportedUnit:
+def rexs_of(case: Case, load: Mapping[str, Any] | None = None, housing: HousingComponent | None = None) -> ExportedUnit:
     """Return the gear unit of a case as a REXS model.
 
     Parameters
@@ -61,6 +62,8 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None) -> ExportedUnit:
     case : Case
     load : mapping, optional
         Document of its operating point, as ``gearwhine load`` writes it: the model then has a load case.
+    housing : HousingComponent, optional
+        Solved housing, whose static stiffness at the seats the model then has.
 
     Raises
     ------
@@ -84,6 +87,10 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None) -> ExportedUnit:
         add_load_case(shafts, given, bearings, load)
         if case.housing is not None and load["seats"] == "rigid":
             sheet.notes.changed("load case", "the operating point is that of rigid seats, without the housing")
+    has_stiffness = housing is not None and add_casing_stiffness(case, shafts, bearings, housing)
+    if case.housing is not None or case.reduced_housing is not None:
+        stands = "its static stiffness at the seats is written" if has_stiffness else "bearings stand in the casing"
+        sheet.notes.left_out("[housing]", f"the housing: {stands}")
     for key, text in _TABLES.items():
         if getattr(case, key):
             sheet.notes.left_out(f"[{key}]", text)

@@ -116,7 +116,8 @@ def _add_flanks(gear: Gear, number: int, sheet: Sheet, about: str) -> None:
             rack, settings = sheet.add("rack_shaped_tool", gear.name, tool), "cylindrical_gear_manufacturing_settings"
             setting = sheet.add(settings, gear.name)
             for flank in flanks:
-                sheet.relate("manufacturing_step", workpiece=flank, tool=rack, manufacturing_settings=setting)
+                roles = {"workpiece": flank, "tool": rack, "manufacturing_settings": setting}
+                sheet.relate_in_order("manufacturing_step", 1, **roles)
         else:
             sheet.notes.left_out(about, "root_radius")
     sheet.left_out(about, gear.errors, ("profile", "helix"), "errors.")

@@ -67,7 +67,11 @@ class Sheet:
 
     def relate(self, kind: str, **roles: int) -> None:
         """Add a relation of components by their roles."""
-        self.relations.append(Relation(len(self.relations) + 1, kind, tuple(roles.items())))
+        self.relate_in_order(kind, 0, **roles)
+
+    def relate_in_order(self, kind: str, order: int, **roles: int) -> None:
+        """Add a relation with its place, from 1, among those of its kind and assembly; 0 for none."""
+        self.relations.append(Relation(len(self.relations) + 1, kind, tuple(roles.items()), order))
 
     def in_load_case(self, number: int, attributes: Attributes) -> None:
         """Give a component attributes in the load case."""

@@ -18,8 +18,9 @@ _READERS: dict[str, tuple[str, ...]] = {
     "acoustics": ("check", "load", "run", "simulate", "sound", "sweep"),
     "measured": ("check", "compare", "render", "run", "update"),
     "rotor_analysis": ("check", "rotors", "run"),
-    "sweep": ("check", "rotors", "run", "steady", "sweep", "system"),
+    "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary"),
     "update": ("check", "load", "update"),
+    "variation": ("vary",),
 }
 """Commands that read a table of the case; other tables are read by all, but for those of :data:`_UNREAD`."""
 _UNREAD: dict[str, tuple[str, ...]] = {

@@ -44,8 +44,15 @@ def test_system_tells_sidebands_exponents_and_the_error_of_frozen_carriers(tmp_p
     strongest = max(document["mesh_lines"], key=lambda line: line["sensor_acceleration_m_per_s2"]["together"]["x"])
     # Of 83 teeth, three planets keep the line one turn above the first harmonic.
     assert strongest["frequency_hz"] == pytest.approx((RING + 1) * carrier, rel=1e-9)
-    assert strongest["cause"] == "1× planets' meshes of carrier + 1× carrier"
-    assert strongest["kind"] == "carrier sideband"
+    assert strongest["cause"] == "1× planets' meshes + 1× carrier"
+    assert strongest["kind"] == "planet pass"
+    assert (strongest["harmonic"], strongest["turns"]) == (1, {"carrier": 1.0})
+    assert strongest["phasing"] == pytest.approx(strongest["ideal_phasing"], abs=1e-9)
+    limits = document["mesh_line_limits"]
+    (followed,) = limits["carriers"]
+    assert (followed["turns"], followed["planets"], followed["symmetry"]) == (6.0, 3, 3)
+    (meshes,) = limits["meshes"]
+    assert meshes["harmonics"] == int(limits["limit_hz"] / (RING * carrier))
     assert not strongest["suppressed"]
     assert strongest["order"] == pytest.approx((RING + 1) * carrier * 2.0 * np.pi / 300.0, rel=1e-9)
     (cancelled,) = (
@@ -53,8 +60,14 @@ def test_system_tells_sidebands_exponents_and_the_error_of_frozen_carriers(tmp_p
     )
     assert cancelled["suppressed"]
     text = [str(one) for section in sections(document) for one in section.content if isinstance(one, str)]
-    (told,) = (one for one in text if one.startswith("Suppressed by the phasing of the planets"))
-    assert f"{(RING - 1) * carrier:.1f} Hz (1× planets' meshes of carrier - 1× carrier)" in told
+    (told,) = (one for one in text if one.startswith("Equal planets would cancel in"))
+    count = sum((round(line["frequency_hz"] / carrier) % 3) != 0 for line in document["mesh_lines"])
+    assert f"in {count} of {len(document['mesh_lines'])} lines" in told
+    assert "Of the cancelled lines less than 0.1 % of the highest line is left." in text
+    (told,) = (one for one in text if one.startswith("Mesh frequency of planets' meshes"))
+    above = (meshes["harmonics"] + 1) * RING * carrier
+    assert above > limits["limit_hz"]
+    assert f"{meshes['harmonics'] + 1}× is left out" in told
 
     (frozen,) = (one for one in document["warnings"] if one["name"] == "carrier frozen")
     listed = [mode for mode in document["modes"] if mode["turning_frequency_hz"] is not None]

@@ -55,6 +55,30 @@ def test_a_file_is_found_from_the_case_and_read(tmp_path: Path, name: str) -> No
     assert "survey" in dump_case(case)
 
 
+def test_a_list_of_files_is_one_survey(tmp_path: Path) -> None:
+    """Points and shapes apart: the file of shapes is the whole one without its data set of points."""
+    write_survey(tmp_path / "points.uff", SurveyData(a_survey().geometry))
+    write_survey(tmp_path / "whole.uff", a_survey())
+    text = (tmp_path / "whole.uff").read_text(encoding="ascii")
+    lines = text.splitlines(keepends=True)
+    start = next(number for number, line in enumerate(lines) if line.strip() == "2411") - 1
+    end = next(number for number in range(start + 1, len(lines)) if lines[number].strip() == "-1") + 1
+    (tmp_path / "shapes.uff").write_text("".join(lines[:start] + lines[end:]), encoding="ascii")
+    case = case_with(tmp_path, file=["points.uff", "shapes.uff"])
+    np.testing.assert_allclose(read_measured(case.measured).shapes, a_survey().modes.shapes, atol=1e-5)
+    assert document_of(MEASURED, case.measured)["file"] == f"{tmp_path / 'points.uff'} and {tmp_path / 'shapes.uff'}"
+    assert parse_case(case_document(case), folder="/") == case
+    alone = case_with(tmp_path, file="shapes.uff")
+    assert not alone.measured.has_shapes
+    assert alone.measured.paired_by == "nearest"
+    for files, key in ((["points.uff", "gone.uff"], "measured.file[1]"), ([], "measured.file")):
+        with pytest.raises(CaseError) as caught:
+            case_with(tmp_path, file=files)
+        assert [problem.key for problem in caught.value.problems] == [key]
+    write_survey(tmp_path / "points.uff", SurveyData(a_survey(10).geometry))
+    assert case_with(tmp_path, file=["points.uff", "shapes.uff"]).measured != case.measured
+
+
 def test_check_says_what_was_read_and_assumed(tmp_path: Path) -> None:
     write_survey(tmp_path / "f.csv", SurveyData(modes=MeasuredModes(2 * np.pi * np.array([658.0]))))
     document = check_document(case_with(tmp_path, file="f.csv"))

@@ -16,7 +16,7 @@ from gearwhine.from_case.rexs import ExportedUnit, rexs_of
 
 BUNDLED = (
     *("spur-pair", "helical-pair", "small-gearbox", "three-stage", "two-stage-reducer", "nasa-gear-noise-rig"),
-    "planetary-stage",
+    *("planetary-stage", "planetary-helical"),
 )
 """Bundled cases with gears on rotors; gear-62-62 has no rotors."""
 NOT_HELD = {

@@ -12,6 +12,7 @@ from reduced_frames import write_dmig
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.housing.reduced import read_matrix, reduced_matrices
 from gearwhine.results.first_page import machine_section
 
 SEATS = {"input-back": 11, "input-front": 12, "output-back": 21, "output-front": 22}
@@ -71,6 +72,40 @@ def test_frequencies_of_bodies_on_springs(document: dict[str, Any]) -> None:
     assert housing.kinds == ("housing",) * 24
 
 
+def test_check_holds_the_interface_against_a_static_stiffness(document: dict[str, Any], tmp_path: Path) -> None:
+    """Along z the weak beams between the seats of each shaft are all the stiffness that the files have."""
+    coordinates = [(node, 3) for node in SEATS.values()]
+    beams = 1e5 * np.kron(np.eye(2), [[1.0, -1.0], [-1.0, 1.0]])
+    write_dmig(tmp_path / "static.pch", {"KAAX": 1.25 * beams}, coordinates, field="large")
+    document["housing"]["reduced"]["static"] = str(tmp_path / "static.pch")
+    checked = gw.build(**document).check()
+    assert checked.document["reduced_housing"]["certificate"]["static_difference"] == pytest.approx(0.2)
+    assert "held_frequency_hz" not in checked.document["reduced_housing"]["certificate"]
+    assert any("differs by up to 20 %" in one for one in checked.warnings)
+    write_dmig(tmp_path / "other.pch", {"KAAX": beams[:1, :1]}, [(99, 3)], field="large")
+    document["housing"]["reduced"]["static"] = str(tmp_path / "other.pch")
+    with pytest.raises(CaseError, match=r"housing.reduced.static: expected .* lack component 3 of node 99"):
+        gw.build(**document).check()
+
+
+def test_a_mapping_names_the_rows(document: dict[str, Any], tmp_path: Path) -> None:
+    """The bodies at the seats by order, with their nodes in a file of their own; one row less is refused by its key."""
+    read = {kind: read_matrix(tmp_path / "housing.pch", kind=kind) for kind in ("mass", "stiffness")}
+    matrices = reduced_matrices(read)
+    np.savez(tmp_path / "box.npz", mass=matrices.mass, stiffness=matrices.stiffness)
+    lines = [f"{node}.123456" for node in SEATS.values()]
+    (tmp_path / "rows.dof").write_text("\n".join(lines))
+    named = gw.build(**document).check().document["reduced_housing"]["frequencies_hz"]
+    files = {key: str(tmp_path / "box.npz") for key in ("mass", "stiffness")}
+    document["housing"]["reduced"] = files | {"mapping": str(tmp_path / "rows.dof")}
+    np.testing.assert_allclose(
+        gw.build(**document).check().document["reduced_housing"]["frequencies_hz"], named, rtol=1e-12
+    )
+    (tmp_path / "rows.dof").write_text("\n".join(lines[:3]))
+    with pytest.raises(CaseError, match=r"housing.reduced.mass: .* is of order 24; expected 18, the rows"):
+        gw.build(**document).check()
+
+
 def test_the_load_deflects_the_seats_by_their_springs(document: dict[str, Any]) -> None:
     """Across the shaft each seat stands on its own springs and moves by the bearing's force over their stiffness."""
     document["housing"]["support"][0]["stiffness"] = document["housing"]["support"][0]["stiffness"] | {"y": 5e7}
@@ -118,7 +153,11 @@ def test_commands_that_need_shapes_say_so(document: dict[str, Any], command: str
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        (("reduced", "mass_name"), "MBBX", r"housing.reduced.mass: expected a file of the mass matrix; .* it has MAAX"),
+        (
+            ("reduced", "mass_name"),
+            "MBBX",
+            r"housing.reduced.mass: expected a file of the mass matrix; .* it has 'MAAX'",
+        ),
         (("reduced", "nodes"), [11], r"housing.reduced.nodes: expected none beside files that name their nodes"),
         (("reduced", "units"), "inch", r"housing.reduced.units: expected one of 'SI' or 'mm-t-s', got 'inch'"),
         (("reduced", "stiff"), 1, r"housing.reduced.stiff: expected no such key"),

@@ -21,8 +21,8 @@ from gearwhine.rotors.rolling_bearings import RollingBearing, rolling_equilibriu
 from gearwhine.solve.machine import load_of_case, solve_pairs
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
-from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.solution import solve_point
+from gearwhine.workers import code_digest
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 

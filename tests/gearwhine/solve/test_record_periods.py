@@ -7,10 +7,11 @@ from coupled_cases import about_operating_point
 import gearwhine as gw
 from gearwhine.case import load_case
 from gearwhine.coupling import CouplingError
-from gearwhine.coupling.analyses.recording import Sampling, sampling
+from gearwhine.coupling.analyses.recording import Sampling, TransientPlan, sampling
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.solve.machine import plan_of
+from tests.machines.turning_set import turning_machine
 
 SHAFT = 5500.0 / 60.0  # both shafts of the pair [Hz]
 # 9 balls of 9 mm on a pitch circle of 46 mm pass 9/2 (1 - 9/46) = 333/92 times in a revolution.
@@ -176,3 +177,14 @@ def test_the_spectrum_of_a_run_of_no_whole_number_of_revolutions_is_that_of_its_
     (at,) = np.flatnonzero(np.abs(spectrum.frequencies - mesh) < 1e-6 * mesh)
     fitted = 2.0 * np.mean(histories.mesh_force[name] * np.exp(-2j * np.pi * mesh * histories.times))
     assert spectrum.amplitude[at] == pytest.approx(abs(fitted), rel=1e-6)
+
+
+@pytest.mark.parametrize(("recorded", "window"), [(108, "uniform"), (100, "hann")])
+def test_a_record_of_whole_turns_of_the_carrier_is_whole_whatever_planets_turn(recorded: int, window: str) -> None:
+    """A sun of 25 teeth in a ring of 83: the carrier turns 25 times in 108, a planet of 29 after 29 of these."""
+    plan = TransientPlan(108 + recorded, discard=108)
+    chosen = sampling(turning_machine((900.0, 1300.0)), plan, 1e3, 1, 1, largest=1 << 40)
+    assert chosen.window == window
+    if window == "uniform":
+        turns = chosen.stretch * chosen.settings.sample_interval * 300.0 / (2.0 * np.pi)
+        assert turns == pytest.approx(recorded, rel=1e-9)

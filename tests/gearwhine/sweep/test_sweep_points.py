@@ -23,9 +23,9 @@ from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
-from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.run import run_sweep
 from gearwhine.sweep.solution import outdated_points, read_point, solve_point, write_point
+from gearwhine.workers import code_digest
 
 COARSE = ("housing.box.mesh_size=50 mm", "transient.revolutions=2", "transient.discard=1", "transient.tolerance=1e-3")
 

@@ -65,18 +65,18 @@ def strings(column: FloatArray) -> list[tuple[int, FloatArray]]:
     return [(int(run[0]) + 1, column[run]) for run in runs]
 
 
-def binary(matrix: FloatArray, *, order: str = "<", single: bool = False, sparse: str = "") -> bytes:
+def binary(matrix: FloatArray, *, order: str = "<", single: bool = False, sparse: str = "", word: int = 4) -> bytes:
     def record(*parts: bytes) -> bytes:
         content = b"".join(parts)
         size = struct.pack(order + "i", len(content))
         return size + content + size
 
     def whole(*numbers: int) -> bytes:
-        return struct.pack(f"{order}{len(numbers)}i", *numbers)
+        return struct.pack(f"{order}{len(numbers)}{'i' if word == 4 else 'q'}", *numbers)
 
-    words, kind = (1, "f4") if single else (2, "f8")
+    words, kind = (1, "f4") if single and word == 4 else (8 // word, "f8")
     rows = -len(matrix) if sparse == "two" else len(matrix)
-    content = record(whole(len(matrix.T), rows, 2, 1 if single else 2), b"KGG     ")
+    content = record(whole(len(matrix.T), rows, 2, 1 if single else 2), b"KGG".ljust(2 * word))
     for number, column in enumerate(matrix.T, start=1):
         parts = strings(column)
         if not sparse and parts:
@@ -88,19 +88,21 @@ def binary(matrix: FloatArray, *, order: str = "<", single: bool = False, sparse
             head = {"": b"", "one": whole(first + 65536 * length), "two": whole(length, first)}[sparse]
             data += head + numbers.astype(order + kind).tobytes()
         if parts:
-            content += record(whole(number, 0 if sparse else parts[0][0], len(data) // 4), data)
+            content += record(whole(number, 0 if sparse else parts[0][0], len(data) // word), data)
     return content + record(whole(len(matrix.T) + 1, 1, 1), np.array([1.0], order + kind).tobytes())
 
 
 @pytest.mark.parametrize("sparse", ["", "one", "two"])
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("single", [False, True])
-def test_binary_files_of_each_kind(tmp_path: Path, sparse: str, order: str, single: bool) -> None:
+@pytest.mark.parametrize("word", [4, 8])
+def test_binary_files_of_each_kind(tmp_path: Path, sparse: str, order: str, single: bool, word: int) -> None:
     rng = np.random.default_rng(5)
     matrix = np.where(rng.random((30, 30)) < 0.4, rng.normal(size=(30, 30)), 0.0).astype(
         np.float32 if single else float
     )
-    (tmp_path / "k.op4").write_bytes(binary(matrix.astype(float), order=order, single=single, sparse=sparse))
+    content = binary(matrix.astype(float), order=order, single=single, sparse=sparse, word=word)
+    (tmp_path / "k.op4").write_bytes(content)
     np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4", name="kgg").values, matrix)
 
 
@@ -109,6 +111,14 @@ def test_text_without_strings_and_other_exponents(tmp_path: Path) -> None:
     lines += ["       1       1       2", "  1.50000D+03 -2.50000D+00", "       2       2       1", "  4.00000D-01"]
     (tmp_path / "k.op4").write_text("\n".join([*lines, "       3       1       1", "  1.00000D+00", ""]))
     np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4").values, [[1500.0, 0.0], [-2.5, 0.4]])
+
+
+def test_strings_of_single_precision_as_text(tmp_path: Path) -> None:
+    """A string of two numbers of one word each, from row 1 on: 1 + 65536 (2 + 1)."""
+    lines = ["       2       2       2       1KGG     1P,5E16.9", "       1       0       3", "      196609"]
+    lines += [" 4.500000000E+00-1.500000000E+00", "       3       1       1", " 1.000000000E+00", ""]
+    (tmp_path / "k.op4").write_text("\n".join(lines))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4").values, [[4.5, 0.0], [-1.5, 0.0]])
 
 
 def text(*lines: str) -> Callable[[], bytes]:
@@ -126,7 +136,7 @@ HEAD = "       2       2       2       2KGG     1P,2E13.5"
         (lambda: binary(STIFFNESS)[:-30], "expected whole records"),
         (lambda: binary(STIFFNESS)[:100], "expected whole records"),
         (lambda: binary(STIFFNESS[:, :3]), "is 4 x 3; expected a square matrix"),
-        (lambda: struct.pack("<i", 48) + bytes(60), "integers of 64 bits"),
+        (lambda: struct.pack("<i", 48) + bytes(60), "that at byte 0 is cut off"),
         (lambda: binary(np.where(STIFFNESS == 5.0, np.nan, STIFFNESS)), "not finite"),
         (lambda: binary(STIFFNESS, sparse="one").replace(struct.pack("<i", 1 + 65536 * 5), bytes(4)), "whole strings"),
         (
@@ -150,9 +160,9 @@ def test_damaged_files(tmp_path: Path, content: Callable[[], bytes], words: str)
 
 def test_which_matrix_is_asked(tmp_path: Path) -> None:
     (tmp_path / "k.op4").write_bytes(base64.b64decode(RECORDS_OF_PYYETI))
-    with pytest.raises(HousingError, match="expected the name of one of its matrices, such as KAA, MAA"):
+    with pytest.raises(HousingError, match="expected the name of one of its matrices; it has 'KAA', 'MAA'"):
         read_matrix(tmp_path / "k.op4")
-    with pytest.raises(HousingError, match="expected a matrix 'kgg'; it has KAA, MAA"):
+    with pytest.raises(HousingError, match="expected a matrix 'KGG'; it has 'KAA', 'MAA'"):
         read_matrix(tmp_path / "k.op4", name="kgg")
 
 

@@ -31,8 +31,10 @@ from gearwhine.housing.reduced import (
     NodeSpring,
     ReducedHousing,
     ReducedMatrices,
+    StaticStiffness,
     read_matrix,
     reduced_matrices,
+    static_stiffness,
 )
 
 SEATS = (NodeSeat("back", 101, PLACES[101]), NodeSeat("front", 205, PLACES[205]))
@@ -212,3 +214,86 @@ def test_files_that_name_their_nodes_beside_one_that_does_not() -> None:
         reduced_matrices({"mass": replace(labelled, values=mass), "stiffness": labelled}, nodes=(101, 205))
     with pytest.raises(HousingError, match="units is 'inches'; expected one of SI, mm-t-s"):
         reduced_matrices({"mass": replace(labelled, values=mass), "stiffness": labelled}, units="inches")
+
+
+def one_node_known() -> ReducedHousing:
+    """The frame with its front body as internal coordinates, mixed with each other and with the motions of the back."""
+    mass, stiffness = frame()
+    mixed = np.eye(12)
+    mixed[6:] += 0.3 * np.random.default_rng(7).normal(size=(6, 12))
+    coordinates = [*FRAME_COORDINATES[:6], *((number, 0) for number in range(6))]
+    matrices = ReducedMatrices(mixed.T @ mass @ mixed, mixed.T @ stiffness @ mixed, tuple(coordinates))
+    return free_frame(matrices=matrices, seats=SEATS[:1], limit=6000.0)
+
+
+def test_rigid_motions_by_one_node_of_known_place() -> None:
+    """What is not known to move rigidly follows without a load, so that the mass is that of both bodies."""
+    beside = ReducedMatrices(*frame(), tuple(FRAME_COORDINATES))
+    for housing in (one_node_known(), free_frame(matrices=beside, seats=SEATS[:1])):
+        certificate = housing.certificate
+        assert certificate is not None
+        assert certificate.is_free
+        assert certificate.mass == pytest.approx(2.0 * MASS, rel=1e-9)
+        assert certificate.rigid_mass[3, 3] == pytest.approx(2.0 * TILT_INERTIA + MASS * LENGTH**2, rel=1e-9)
+        assert certificate.rigid_mass[5, 5] == pytest.approx(2.0 * POLAR_INERTIA, rel=1e-9)
+
+
+def test_the_last_mode_with_the_nodes_held_bounds_the_band() -> None:
+    """The front body on the beam whose back is held moves along at √(EA/(L m)), above its tilt and its twist."""
+    housing = one_node_known()
+    assert housing.certificate is not None
+    along = np.sqrt(YOUNGS_MODULUS * AREA / (LENGTH * MASS))
+    assert housing.certificate.held_frequency == pytest.approx(along, rel=1e-9)
+    assert not any("nodes held" in one["message"] for one in housing.warnings)
+    beyond = replace(housing, limit=1.3 * along).warnings
+    assert any("keeps modes with its nodes held up to 1153 Hz" in one["message"] for one in beyond)
+    assert free_frame().certificate.held_frequency is None  # type: ignore[union-attr]
+
+
+def test_static_stiffness_of_the_interface() -> None:
+    """The back pulls the beam along and a spring k to the ground behind it: 1/(L/EA + 1/k)."""
+    spring = 3e8
+    mass, stiffness = frame()
+    stiffness[6:, 6:] += spring * np.eye(6)
+    series = 1.0 / (LENGTH / (YOUNGS_MODULUS * AREA) + 1.0 / spring)
+    in_millimetres = LabelledMatrix(np.array([[1.02 * series * 1e-3]]), ((101, 3),))
+    housings = [
+        free_frame(matrices=ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES)), static=static)
+        for static in (
+            StaticStiffness(np.array([[series]]), ((101, 3),)),
+            static_stiffness(in_millimetres, units="mm-t-s"),
+        )
+    ]
+    differences = [one.certificate.static_difference for one in housings]  # type: ignore[union-attr]
+    np.testing.assert_allclose(differences, [0.0, 0.02 / 1.02], atol=1e-10)
+    assert not any("static" in one["message"] for one in housings[0].warnings)
+    assert any("differs by up to 1.96 % from the one given" in one["message"] for one in housings[1].warnings)
+
+
+def test_static_stiffness_that_there_cannot_be() -> None:
+    with pytest.raises(HousingError, match="these lack component 3 of node 7"):
+        free_frame(static=StaticStiffness(np.eye(1), ((7, 3),)))
+    with pytest.raises(HousingError, match="six rows for each of the 1 nodes; its order is 5"):
+        static_stiffness(LabelledMatrix(np.eye(5)), [101])
+    with pytest.raises(HousingError, match="expected finite numbers"):
+        static_stiffness(LabelledMatrix(np.full((1, 1), np.nan), ((1, 1),)))
+    with pytest.raises(HousingError, match="a symmetric matrix"):
+        static_stiffness(LabelledMatrix(np.array([[1.0, 2.0], [0.0, 1.0]]), ((1, 1), (1, 2))))
+
+
+def test_a_stiffness_alone_is_a_static_housing() -> None:
+    """Its coordinates keep the static compliance Φ Φᵀ/Ω², which is the inverse of the stiffness; no mode is its own."""
+    stiffness = frame()[1] + 1e7 * np.eye(12)
+    made = reduced_matrices({"stiffness": LabelledMatrix(stiffness, tuple(FRAME_COORDINATES))})
+    housing = free_frame(matrices=made, limit=2.0 * np.pi * 1000.0)
+    assert made.is_static
+    assert len(housing.frequencies_hz) == 0
+    vectors = housing.modes.vectors
+    np.testing.assert_allclose(
+        vectors @ vectors.T / housing.modes.static_frequency**2 @ stiffness, np.eye(12), atol=1e-10
+    )
+    assert any("without resonances of its own" in one["message"] for one in housing.warnings)
+    with pytest.raises(HousingError, match="stiffness of every motion that has no mass"):
+        _ = free_frame(matrices=replace(made, stiffness=frame()[1])).modes
+    with pytest.raises(HousingError, match="a mass of zero of a static housing"):
+        replace(made, mass=np.eye(12))

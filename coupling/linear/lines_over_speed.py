@@ -1,0 +1,110 @@
+r"""Lines of sensors over speed: mesh harmonics of a machine that is linear about one operating point.
+
+The mean load and with it stiffness, transmission error and load shuttling of the meshes stay as the speed changes; the
+frequencies of the harmonics and the gyroscopic terms follow it, as do bearings with tables over speed. At the part s of
+the nominal speed the motion of the harmonic of frequency s ω_n is
+
+    (K(s) + i s ω_n C(s) - s² ω_n² I) q_n = f_n,      C(s) = C + (s - 1) G,
+
+f_n as of :mod:`gearwhine.coupling.linear.mesh_harmonics`: one assembled machine gives all speeds.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.statics.mean_mesh import linear_matrices
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class LinesOverSpeed:
+    """Mesh harmonics at the sensors over speed.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (s,)
+        Signed speeds of the first driver's shaft [rad/s].
+    orders : ndarray, shape (l,)
+        Frequency of each line over the speed.
+    sensors : tuple of str
+    amplitudes : ndarray, shape (o, s, l)
+        Peak amplitudes of acceleration [m/s²]; NaN above the limit.
+    """
+
+    speeds: FloatArray
+    orders: FloatArray
+    sensors: tuple[str, ...]
+    amplitudes: FloatArray
+
+    @property
+    def rms(self) -> FloatArray:
+        """Root mean square of all lines together at each sensor and speed [m/s²], shape (o, s)."""
+        return _rms(self.amplitudes)
+
+
+def _rms(amplitudes: FloatArray) -> FloatArray:
+    """Root mean square of lines together, along the last axis, by their peak amplitudes."""
+    return np.asarray(np.sqrt(0.5 * np.nansum(amplitudes**2, axis=-1)))
+
+
+def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
+    """Root mean square at each sensor of all mesh harmonics and their sidebands up to a limit [rad/s], (o,) [m/s²]."""
+    lines = MeshHarmonicModel(machine).responses(limit)
+    moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
+    rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
+    return _rms(np.abs(rows @ moved.T))
+
+
+def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: float) -> LinesOverSpeed:
+    """Solve the mesh harmonics at the sensors of a machine at some speeds.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+        Assembled about its operating point.
+    speeds : sequence of float
+        Signed speeds of the first driver's shaft, in the sense of the machine's [rad/s].
+    limit : float
+        Highest frequency [rad/s].
+
+    Raises
+    ------
+    CouplingError
+        Where the machine stands still, a speed is 0 or of the other sense, or directions turn with a carrier: their
+        sidebands are not these lines.
+    """
+    system, nominal = machine.system, machine.speed
+    if system.turns:
+        raise CouplingError("lines over speed: directions turn with a carrier; expected a machine without such")
+    ratios = [speed / nominal for speed in speeds] if nominal != 0.0 else []
+    if not ratios or min(ratios) <= 0.0:
+        raise CouplingError(f"lines over speed: speeds of {list(speeds)} rad/s beside {nominal:g}; expected one sense")
+    model = MeshHarmonicModel(machine)
+    loads = model.loads(limit / min(ratios))
+    stiffness, damping = linear_matrices(system, model.contact)
+    here = system.connector_matrices()
+    rows = np.array(list(machine.sensor_rows.values())).reshape(-1, system.size)
+    amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
+    for place, ratio in enumerate(ratios):
+        there = system.connector_matrices(ratio)
+        held = stiffness + (there[0] - here[0])
+        resisted = damping + (ratio - 1.0) * system.gyroscopic + (there[1] - here[1])
+        for number, load in enumerate(loads):
+            w = ratio * load.frequency
+            if w > limit * (1.0 + 1e-9):
+                continue
+            dynamic = held + 1j * w * resisted
+            dynamic[np.diag_indices(system.size)] -= w**2
+            moved = linalg.solve(dynamic, load.load, overwrite_a=True, check_finite=False)
+            amplitudes[:, place, number] = w**2 * np.abs(rows @ moved)
+    orders = np.array([load.frequency for load in loads]) / abs(nominal)
+    return LinesOverSpeed(np.array(speeds, dtype=np.float64), orders, tuple(machine.sensor_rows), amplitudes)

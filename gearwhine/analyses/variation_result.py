@@ -1,0 +1,222 @@
+"""Result of a varied case: its gearboxes, solved in parallel, with their statistics."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.analyses.origin import Origin
+from gearwhine.analyses.result import Result
+from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
+from gearwhine.case.analysis_speeds import with_sense_of
+from gearwhine.case.errors import UNSAID
+from gearwhine.case.model import lacking
+from gearwhine.case.variation import Variation
+from gearwhine.numerics.distributions import correlated
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.sampling import IndexPoints, index_points, sobol_points
+from gearwhine.output import file_stems
+from gearwhine.results.variation import varied_dataset, varied_document
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import reduce_housing
+from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
+from gearwhine.variation.quantities import Wanted
+from gearwhine.variation.run import run_samples
+from gearwhine.variation.samples import VariedCase
+from gearwhine.variation.statistics import VariedResult, require_known_limits
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.figure import Figure
+
+_NEEDS = {
+    "gears": ("gear_pair",),
+    "load": ("rotor", "bearing", "operation"),
+    "rotors": ("rotor",),
+    "lines": ("rotor", "operation", "gear_pair"),
+    "motion": ("rotor", "operation", "transient"),
+}
+"""Tables that an analysis needs of a case."""
+MOST_GEARBOXES = 10_000_000
+"""Most gearboxes of a study."""
+
+
+def solve_variation(
+    case: Case,
+    source: CaseSource,
+    folder: Path,
+    *,
+    samples: int | None = None,
+    indices: bool = False,
+    seed: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[VariedResult]:
+    """Solve the gearboxes of a varied case, in parallel.
+
+    Parameters
+    ----------
+    case : Case
+        Case with its variation.
+    source : CaseSource
+        Content that the case is made of, from which the samples are made, too.
+    folder : path
+        Folder of the samples; those that it holds already are not solved again.
+    samples, indices, seed, workers, scheduler
+        As of :meth:`gearwhine.case_study.CaseStudy.vary`.
+    fresh : bool
+        Whether to solve all samples anew.
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        Where a key cannot be varied, or a distribution or a limit cannot be.
+    gearwhine.failures.WorkersError
+        Where the processes do not start.
+    """
+    start = time.perf_counter()
+    variation = case.variation
+    if variation is None:
+        raise lacking(case, "variation", command="vary")
+    if not variation.vary:
+        raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
+    inputs = varied_inputs(source, variation)
+    count = variation.samples if samples is None else samples
+    points, design = _points(inputs, variation, count, variation.seed if seed is None else seed, indices=indices)
+    wanted = _wanted(case, variation)
+    plain = replace(source, written={key: table for key, table in source.written.items() if key != "variation"})
+    plain = replace(plain, changes=tuple(text for text in source.changes if not text.startswith("variation.")))
+    varied = VariedCase(plain, inputs, wanted)
+    housing = None
+    if case.housing is not None and not varied.changes_housing:
+        housing = solve_housing(case, progress, command="vary", folder=folder, fresh=fresh)
+        varied = replace(varied, housing=reduce_housing(case, housing))
+    _require_distributions(varied, variation)
+    progress("the gearbox without changes")
+    nominal = varied.evaluation(varied.case(None))
+    require_known_limits(variation.limit, list(nominal.numbers))
+    if design is not None:
+        progress(f"{design.rows} rows of {len(inputs)} inputs for Sobol' indices: {len(points)} gearboxes")
+    solved = run_samples(
+        varied,
+        points,
+        folder,
+        progress,
+        workers=workers,
+        scheduler=scheduler,
+        fresh=fresh,
+    )
+    speeds = np.array(wanted.speeds or ([] if case.operation is None else [case.operation.speed]))
+    result = VariedResult(
+        inputs=inputs,
+        points=points,
+        values=varied.values(points),
+        nominal=nominal,
+        outcomes=solved.outcomes,
+        limits=variation.limit,
+        speeds=speeds,
+        design=design,
+        resumed=solved.resumed,
+    )
+    return _result(Origin(case.title, case=case, housing=housing), varied, result, start)
+
+
+def _points(
+    inputs: tuple[Input, ...], variation: Variation, samples: int, seed: int, *, indices: bool
+) -> tuple[npt.NDArray[np.float64], IndexPoints | None]:
+    """Return the points of the samples, and their design where indices are wanted."""
+    correlation = correlation_matrix(inputs, variation)
+    total = samples * (len(inputs) + 2) if indices else samples
+    if total > MOST_GEARBOXES:
+        raise CaseError([Problem("the number of gearboxes", total, f"at most {MOST_GEARBOXES}")])
+    if not indices:
+        points = sobol_points(samples, len(inputs), seed)
+        return (points if correlation is None else correlated(points, correlation)), None
+    if correlation is not None:
+        expected = "no correlations beside --indices: the variance splits into parts of independent inputs alone"
+        raise CaseError([Problem("variation.correlation", UNSAID, expected)])
+    design = index_points(samples, tuple((number,) for number in range(len(inputs))), seed)
+    return design.points, design
+
+
+def _wanted(case: Case, variation: Variation) -> Wanted:
+    """Return what is found of each gearbox: as asked for, else what the case allows."""
+    analyses: tuple[str, ...]
+    if variation.analyses is not None:
+        for name in variation.analyses:
+            require(case, *_NEEDS[name], command=f"vary, analyses = ['{name}']")
+        analyses = variation.analyses
+    else:
+        listens = case.housing is not None and bool(case.housing.sensor)
+        listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
+        allowed = {"gears": True, "load": case.parts.is_loaded, "lines": listens and case.parts.is_loaded}
+        analyses = tuple(
+            name for name, held in allowed.items() if held and all(getattr(case, table) for table in _NEEDS[name])
+        )
+        if not analyses:
+            expected = "a gear pair, a loaded machine or sensors on a housing: nothing of this case can be varied"
+            raise CaseError([Problem("variation.analyses", UNSAID, expected)])
+    speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
+    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else ())
+
+
+def _require_distributions(varied: VariedCase, variation: Variation) -> None:
+    """Refuse a key that does not take its median; what the parts make together is refused with its gearbox.
+
+    Raises
+    ------
+    CaseError
+    """
+    problems = dict[Problem, None]()
+    for one in varied.inputs:
+        try:
+            varied.source.changed(texts := list(one.overrides(0.5)))
+        except CaseError as error:
+            sources = [f"--set {text}" for text in texts]
+            own = [problem for problem in error.problems if problem.source in sources]
+            problems |= dict.fromkeys(replace(problem, source=f"variation.vary, {one.name}") for problem in own)
+    if problems:
+        raise CaseError(problems)
+
+
+def _result(origin: Origin, varied: VariedCase, result: VariedResult, start: float) -> Result[VariedResult]:
+    document = {"title": origin.title} | varied_document(result)
+    document["seconds"] = {"total": time.perf_counter() - start}
+    dataset = varied_dataset(result, origin.title)
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures.variation import draw_variation
+
+        return draw_variation(origin.title, result)
+
+    def worst_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
+        """Write the worst gearboxes as cases."""
+        for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
+            for rank, number in enumerate(one.worst, start=1):
+                worst = varied.case(result.points[number])
+                title = f"{origin.title}: gearbox {number}, {one.name} = {one.values[number]:.6g}".strip(": ")
+                text = dump_case(worst.model_copy(update={"title": title}))
+                (place / f"worst-{stem}-{rank}.toml").write_text(text, encoding="utf-8")
+        return {}
+
+    return Result(
+        "vary",
+        origin.case,
+        result,
+        document,
+        _arrays=lambda: dataset,
+        _figures=figures,
+        _files=worst_cases,
+        _data_file="vary.nc",
+        _housing=origin.housing,
+        _started=start,
+        _title=origin.title,
+    )

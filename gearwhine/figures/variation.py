@@ -1,0 +1,212 @@
+"""Figures of varied gearboxes: distributions, what they follow from, scatter over inputs, and bands over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    INK,
+    LABEL,
+    LEFT,
+    PALE,
+    RED,
+    SERIES,
+    TICK,
+    panel,
+    panel_pair,
+    panel_title,
+    sheet,
+    shortened,
+)
+from gearwhine.figures.style import HEAD as STYLE_HEAD
+from gearwhine.output.named_quantities import part_of, shown_quantity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from gearwhine.variation.statistics import QuantityStatistics, VariedResult
+
+_MOST_QUANTITIES = 6
+_MOST_INPUTS = 8
+_HEIGHT, _GAP = 38.0, 16.0  # of a panel, and between two [mm]
+HEAD = STYLE_HEAD + 5.0  # for the titles of the upper panels [mm]
+_BAR = 5.0  # height of a bar [mm]
+_NAMES = 52.0  # width for the names of inputs beside bars [mm]
+_MOST_CURVES = 8
+_LONG_LABEL = 30  # letters beyond which a label is smaller than a panel's height
+
+
+def draw_variation(title: str, varied: VariedResult) -> Iterator[tuple[str, Figure]]:
+    """Draw a varied case: yields the name of each figure and the figure."""
+    headlines = varied.headlines[:_MOST_QUANTITIES]
+    if not headlines:
+        return
+    yield "vary-distributions", _distributions(title, headlines)
+    drawn = [one for one in headlines if one.importance()]
+    if drawn:
+        yield "vary-importance", _importance(title, drawn)
+        yield "vary-scatter", _scatter(title, varied, drawn[0])
+    if len(varied.speeds) > 1 and varied.nominal.curves:
+        yield "vary-speeds", _over_speed(title, varied)
+
+
+def _distributions(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
+    columns = min(len(quantities), 2)
+    rows, below = -(-len(quantities) // columns), 2.0
+    figure = sheet(
+        HEAD + FOOT + below + rows * _HEIGHT + (rows - 1) * _GAP,
+        "Distributions of varied gearboxes",
+        f"{shortened(title, 50)}; blue: without changes, red: limit, grey: 5 %, median, 95 %.",
+    )
+    for number, one in enumerate(quantities):
+        row, column = divmod(number, columns)
+        _histogram(_place(figure, FOOT + below + (rows - 1 - row) * (_HEIGHT + _GAP), column, columns), one)
+    return figure
+
+
+def _place(figure: Figure, bottom: float, column: int, columns: int) -> Axes:
+    """Return a panel of a row of one or two."""
+    if columns == 1:
+        return panel(figure, bottom, _HEIGHT)
+    pair = panel_pair(figure, bottom, _HEIGHT)
+    pair[1 - column].remove()
+    return pair[column]
+
+
+def _histogram(axes: Axes, one: QuantityStatistics) -> None:
+    name, factor = shown_quantity(one.name)
+    values = factor * one.found
+    bins = min(max(int(np.sqrt(values.size)), 8), 40)
+    axes.hist(values, bins=bins, color=PALE, edgecolor=GREY, linewidth=0.5)
+    for value in one.quantiles.values():
+        axes.axvline(factor * value, color=GREY, lw=0.8)
+    axes.axvline(factor * one.nominal, color=BLUE, lw=1.2)
+    if one.limit is not None:
+        for end in (one.limit.at_least, one.limit.at_most):
+            if end is not None:
+                axes.axvline(factor * end, color=RED, lw=1.2)
+    axes.set_xlabel(name)
+    axes.set_ylabel("gearboxes")
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
+    share = one.share
+    within = "" if share is None else f": {100.0 * share.share:.1f} % within"
+    panel_title(axes, f"{part_of(one.name)}{within}")
+
+
+def _importance(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
+    by_index = quantities[0].indices is not None
+    note = "total-order Sobol' index with its 95 % interval" if by_index else "rank correlation with the input"
+    counts = [min(len(one.importance()), _MOST_INPUTS) for one in quantities]
+    heights = [count * _BAR for count in counts]
+    gap = 13.0
+    figure = sheet(
+        HEAD + FOOT + sum(heights) + gap * (len(heights) - 1), "What matters", f"{shortened(title, 60)}; {note}."
+    )
+    bottom = FOOT
+    for one, height in reversed(list(zip(quantities, heights, strict=True))):
+        axes = panel(figure, bottom, height, left=LEFT + _NAMES, width=160.0 - LEFT - _NAMES - 6.0)
+        _bars(axes, one)
+        bottom += height + gap
+    return figure
+
+
+def _bars(axes: Axes, one: QuantityStatistics) -> None:
+    importance = one.importance()
+    names = sorted(importance, key=lambda name: -importance[name])[:_MOST_INPUTS]
+    places = np.arange(len(names))[::-1]
+    if one.indices is None:
+        values = np.array([one.rank_correlations[name] for name in names])
+        axes.barh(places, values, height=0.62, color=[BLUE if value > 0.0 else SERIES[1] for value in values])
+        axes.set_xlim(-1.0, 1.0)
+        axes.axvline(0.0, color=INK, lw=0.8)
+    else:
+        rows = [one.input_names.index(name) for name in names]
+        values, interval = one.indices.total[rows], one.indices.total_interval[rows]
+        axes.barh(places, values, height=0.62, color=BLUE)
+        axes.hlines(places, interval[:, 0], interval[:, 1], color=INK, lw=0.9)
+        axes.set_xlim(0.0, max(1.0, float(interval.max())))
+    axes.set_yticks(places, [shortened(name, 40) for name in names], fontsize=TICK)
+    axes.set_ylim(-0.6, len(names) - 0.4)
+    axes.grid(visible=False, axis="y")
+    panel_title(axes, f"{part_of(one.name)}: {shown_quantity(one.name)[0].partition(' [')[0]}")
+
+
+def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figure:
+    """Draw a quantity over the inputs that matter most to it."""
+    importance = one.importance()
+    names = sorted(importance, key=lambda name: -importance[name])[:4]
+    columns = min(len(names), 2)
+    rows = -(-len(names) // columns)
+    label, factor = shown_quantity(one.name)
+    figure = sheet(
+        HEAD + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
+        f"{part_of(one.name)}: {label.partition(' [')[0]}",
+        f"{shortened(title, 60)}; each dot is a gearbox, red where it is beyond a limit.",
+    )
+    good = varied.good if varied.limits else np.ones(len(varied.outcomes), dtype=bool)
+    chosen = np.isfinite(one.values)
+    for number, name in enumerate(names):
+        row, column = divmod(number, columns)
+        axes = _place(figure, FOOT + (rows - 1 - row) * (_HEIGHT + _GAP), column, columns)
+        place = one.input_names.index(name)
+        of_input = varied.inputs[place]
+        for mask, colour in ((chosen & good, BLUE), (chosen & ~good, RED)):
+            axes.plot(
+                one.inputs[mask, place],
+                factor * one.values[mask],
+                ".",
+                color=colour,
+                ms=2.2,
+                alpha=0.6,
+                rasterized=True,
+            )
+        axes.set_xlabel(shortened(f"{name} [{of_input.unit}]" if of_input.unit else name, 44))
+        if of_input.words:
+            shown = range(len(of_input.words))
+            axes.set_xticks(list(shown), [shortened(word, 12) for word in of_input.words])
+        else:
+            axes.xaxis.set_major_locator(MaxNLocator(5))
+        if column == 0:
+            axes.set_ylabel(label, size=TICK if len(label) > _LONG_LABEL else LABEL)
+    return figure
+
+
+def _over_speed(title: str, varied: VariedResult) -> Figure:
+    curves = list(varied.nominal.curves)[:_MOST_CURVES]
+    height, gap = 34.0, 8.0
+    figure = sheet(
+        HEAD + FOOT + len(curves) * height + (len(curves) - 1) * gap,
+        "Levels over speed",
+        f"{shortened(title, 40)}; line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest.",
+    )
+    rpm = np.abs(varied.speeds) * 30.0 / np.pi
+    order = np.argsort(rpm)
+    for number, name in enumerate(reversed(curves)):
+        axes = panel(figure, FOOT + number * (height + gap), height)
+        values = varied.curve(name)[varied.representative]
+        values = values[np.all(np.isfinite(values), axis=1)][:, order]
+        if len(values):
+            low, high = np.quantile(values, (0.05, 0.95), axis=0)
+            axes.fill_between(rpm[order], low, high, color=PALE, edgecolor=GREY, lw=0.5)
+            axes.plot(rpm[order], values.max(axis=0), "--", color=GREY, lw=0.8)
+        axes.plot(rpm[order], varied.nominal.curves[name][order], color=BLUE, lw=1.2)
+        limit = varied.limits.get(name)
+        for end in () if limit is None else (limit.at_least, limit.at_most):
+            if end is not None:
+                axes.axhline(end, color=RED, lw=1.0)
+        axes.set_ylabel("level [dB]")
+        panel_title(axes, part_of(name))
+        if number:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel("speed [rpm]")
+    return figure

@@ -1,0 +1,108 @@
+"""Housing of another program's matrices for an imported gear unit: seats under its bearings, and sensors at these."""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gearwhine.case import CaseError, Problem, parse_case
+from gearwhine.exchange.rexs.importing import ImportedCase
+from gearwhine.exchange.rexs.notes import Note
+from gearwhine.exchange.rexs.quantities import mm, of
+from gearwhine.housing import HousingError
+from gearwhine.housing.reduced import LabelledMatrix, read_matrix
+from gearwhine.housing.reduced.assignment import assign_nodes
+
+LIMIT_HZ = 3000.0
+"""Frequency limit of a reduction that states none [Hz]."""
+REVOLUTIONS, DISCARDED = 40.0, 20.0
+"""Revolutions of the input over which the motion is integrated, and those left out as its beginning."""
+
+
+def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | None, folder: Path) -> ImportedCase:
+    """Return an imported gear unit whose bearings on the ground stand in a housing of reduced matrices.
+
+    Each of these bearings gets a seat at a node, and a sensor there along y. The nodes and the units of the matrices
+    are those by which the rigid motions of the housing are free; where nothing proves them, they are noted as assumed.
+
+    Parameters
+    ----------
+    imported : ImportedCase
+    stiffness : path
+        File of the stiffness, and of the mass where it has both.
+    mass : path or None
+        File of the mass, where it is another one.
+    folder : path
+        Folder of the case, from which it names the files.
+
+    Raises
+    ------
+    CaseError
+        Where a file cannot be read, no bearing stands on the ground, or the matrices have too few nodes for them.
+    """
+    document: dict[str, Any] = json.loads(json.dumps(imported.document))
+    case = parse_case(document)
+    rotors = {rotor.name: rotor for rotor in case.rotor}
+    standing = [place for place, bearing in enumerate(case.bearing) if bearing.seat == "ground"]
+    if not standing:
+        raise CaseError([Problem("--housing", stiffness.name, "a gear unit with bearings in its casing")])
+    places = []
+    for place in standing:
+        bearing = case.bearing[place]
+        rotor = rotors[bearing.rotor]
+        places.append((*rotor.axis, rotor.start + bearing.at))
+    try:
+        read = _read(stiffness, mass)
+        found = assign_nodes(read, places)
+    except HousingError as error:
+        raise CaseError([Problem("--housing", stiffness.name, f"matrices of a housing; {error}")]) from error
+
+    def way(path: Path) -> str:
+        return Path(os.path.relpath(path, folder)).as_posix()
+
+    reduced: dict[str, Any] = {"stiffness": way(stiffness)}
+    if "mass" in read:
+        reduced["mass"] = way(mass or stiffness)
+    if found.by_order:
+        reduced["nodes"] = sorted(found.nodes)
+    reduced["units"] = found.units
+    seats, sensors, shown = [], [], []
+    for place, node, center in zip(standing, found.nodes, places, strict=True):
+        bearing = document["bearing"][place]
+        bearing["seat"] = name = f"{bearing['name']} seat"
+        at = [mm(float(value)) for value in center]
+        seats.append({"name": name, "node": node, "center": at})
+        sensors.append({"name": f"at {bearing['name']}", "node": node, "position": at, "direction": "y"})
+        shown.append(f"{node} at {bearing['name']}")
+    tables = {"frequency_limit": of(LIMIT_HZ, "Hz"), "damping_ratio": 0.01, "reduced": reduced}
+    housing = {**tables, "seat": seats, "sensor": sensors}
+    proof = "its rigid motions are free by them" if found.is_proved else "in their order, which nothing proves"
+    about = f"housing {stiffness.name}"
+    notes = [
+        Note("assumed", about, f"nodes {', '.join(shown)}, in {found.units}: {proof}", ("housing", "reduced")),
+        Note("assumed", about, "a band, which the files of a reduction do not state", ("housing", "frequency_limit")),
+        Note("assumed", about, "1 % of critical damping", ("housing", "damping_ratio")),
+        Note("assumed", about, "a sensor along y at each seat", ("housing", "sensor", 0)),
+    ]
+    if "operation" in document and "transient" not in document:
+        document["transient"] = {"revolutions": REVOLUTIONS, "discard": DISCARDED}
+        text = f"{REVOLUTIONS:g} revolutions of the input, {DISCARDED:g} of them to settle"
+        notes.append(Note("assumed", "motion", text, ("transient",)))
+    before = ("title", "notes", "unusual", "material")
+    first = {key: document[key] for key in before if key in document}
+    first["notes"] += "".join(f"{note}\n" for note in notes)
+    rest = {key: value for key, value in document.items() if key not in first}
+    return replace(imported, document={**first, "housing": housing, **rest}, notes=(*imported.notes, *notes))
+
+
+def _read(stiffness: Path, mass: Path | None) -> Mapping[str, LabelledMatrix]:
+    """Read stiffness and mass; a file of one matrix alone has no mass."""
+    read = {"stiffness": read_matrix(stiffness, kind="stiffness")}
+    of_mass = read_matrix(stiffness if mass is None else mass, kind="mass")
+    if mass is not None or not np.array_equal(of_mass.values, read["stiffness"].values):
+        read["mass"] = of_mass
+    return read

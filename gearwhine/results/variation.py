@@ -1,0 +1,263 @@
+"""Varied gearboxes: distributions of their quantities, what they follow from, and the yield, as tables."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.numerics.result_warnings import ResultWarning, warning
+from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearwhine.numerics.sobol_indices import SobolIndices
+    from gearwhine.variation.statistics import QuantityStatistics, VariedResult
+
+_MOST_INPUTS = 3  # of a quantity in the table of what matters
+_MOST_FAILURES = 5  # told one by one
+_WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
+
+
+def _indices(which: str) -> Any:
+    """Return the function that lists an index of each input with its interval."""
+
+    def of(one: "QuantityStatistics") -> dict[str, list[float]] | None:
+        found: SobolIndices | None = one.indices
+        if found is None:
+            return None
+        values, intervals = getattr(found, which), getattr(found, f"{which}_interval")
+        rows = zip(one.input_names, values.tolist(), intervals.tolist(), strict=True)
+        return {name: [value, *interval] for name, value, interval in rows}
+
+    return of
+
+
+SHARE = (Quantity("share"), Quantity("low"), Quantity("high"))
+"""Quantities of a part of the gearboxes, with its interval."""
+
+QUANTITY = (
+    Quantity("name"),
+    Quantity("unit"),
+    Quantity("nominal"),
+    Quantity("mean"),
+    Quantity("std", "deviation"),
+    Quantity("quantiles"),
+    Quantity(
+        "limit", lambda one: None if one.limit is None else one.limit.model_dump(exclude_none=True), optional=True
+    ),
+    Part("within", "share", SHARE, optional=True),
+    Quantity("rank_correlation", "rank_correlations"),
+    Quantity("sobol_first", _indices("first"), optional=True),
+    Quantity("sobol_total", _indices("total"), optional=True),
+    Quantity("worst"),
+)
+"""Quantities of a quantity's distribution; a row is a :class:`gearwhine.variation.statistics.QuantityStatistics`."""
+
+VARIED = (
+    Quantity("samples", lambda varied: len(varied.outcomes)),
+    Quantity("resumed"),
+    Rows(
+        "inputs",
+        lambda varied: list(zip(varied.inputs, varied.values.T, strict=True)),
+        (
+            Quantity("key", "0.name"),
+            Quantity("unit", "0.unit"),
+            Quantity("mean", lambda row: float(row[1].mean())),
+            Quantity("std", lambda row: float(row[1].std())),
+        ),
+    ),
+    Rows(
+        "failed",
+        lambda varied: list(varied.failures.items()),
+        (
+            Quantity("number", "0"),
+            Quantity("message", "1.message"),
+            Quantity("traceback", lambda row: row[1].traceback or None, optional=True),
+        ),
+    ),
+    Rows("quantities", "quantities", QUANTITY),
+    Quantity("headlines", lambda varied: [one.name for one in varied.headlines]),
+    Part("yield", "yielded", SHARE, optional=True),
+)
+"""Quantities of a varied case; the object is a :class:`gearwhine.variation.statistics.VariedResult`."""
+
+
+def varied_document(varied: "VariedResult") -> dict[str, Any]:
+    """Return a varied case as the command's JSON."""
+    return document_of(VARIED, varied) | {"warnings": list(_warnings(varied))}
+
+
+def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
+    failed = len(varied.failures)
+    if failed:
+        first = next(iter(varied.failures.values()))
+        message = f"{failed} of {len(varied.outcomes)} gearboxes cannot be solved: {first.message}"
+        yield warning("failed samples", message, failed=failed)
+    wide = [
+        one.name
+        for one in varied.headlines
+        if one.indices is not None and float(np.ptp(one.indices.total_interval, axis=1).max()) > _WIDE_INTERVAL
+    ]
+    if wide:
+        message = (
+            f"the total-order indices of {', '.join(wide[:3])} are known to no better than ±0.1: take more samples"
+        )
+        yield warning("few samples", message)
+
+
+def varied_dataset(varied: "VariedResult", title: str) -> "xr.Dataset":
+    """Return every sample with its inputs and its quantities as one labelled dataset."""
+    import xarray as xr
+
+    from gearwhine import __version__
+
+    names = [one.name for one in varied.quantities]
+    curves = list(varied.nominal.curves)
+    coordinates: dict[str, Any] = {
+        "sample": ("sample", np.arange(len(varied.outcomes)), {"long_name": "number of the gearbox"}),
+        "input": ("input", [one.name for one in varied.inputs], {"long_name": "varied key of the case"}),
+        "input_unit": ("input", [one.unit or "1" for one in varied.inputs], {}),
+        "quantity": ("quantity", names, {"long_name": "name of the quantity, with its unit at the end"}),
+        "quantity_unit": ("quantity", [one.unit or "1" for one in varied.quantities], {}),
+    }
+    each = "see input_unit", "see quantity_unit"
+    values = np.array([varied.all_values(name) for name in names]).reshape(len(names), len(varied.outcomes)).T
+    variables: dict[str, Any] = {
+        "input_value": (("sample", "input"), varied.values, {"units": each[0], "long_name": "value of the varied key"}),
+        "value": (("sample", "quantity"), values, {"units": each[1], "long_name": "value of the quantity"}),
+        "nominal": (
+            "quantity",
+            [one.nominal for one in varied.quantities],
+            {"units": each[1], "long_name": "value of the gearbox without changes"},
+        ),
+        "representative": (
+            "sample",
+            varied.representative,
+            {"long_name": "whether the sample stands for the production, and not for the indices alone"},
+        ),
+        "failure": (
+            "sample",
+            [varied.failures[n].message if n in varied.failures else "" for n in range(len(varied.outcomes))],
+            {"long_name": "why there is no result"},
+        ),
+    }
+    if curves:
+        rpm = np.abs(varied.speeds) * 30.0 / np.pi
+        coordinates["speed"] = ("speed", rpm, {"units": "rpm", "long_name": "speed of the first driver"})
+        coordinates["curve"] = ("curve", curves, {"long_name": "name of the quantity over speed"})
+        over_speed = np.array([varied.curve(name) for name in curves]).swapaxes(0, 1)
+        attributes = {"units": "dB", "long_name": "level over speed"}
+        variables["value_over_speed"] = (("sample", "curve", "speed"), over_speed, attributes)
+    return xr.Dataset(variables, coordinates, {"title": title, "source": f"gearwhine {__version__}"})
+
+
+def _limit(row: Document) -> str:
+    """Return the limit of a quantity in words."""
+    limit, factor = row.get("limit") or {}, shown_quantity(row["name"])[1]
+    ends = (("at_least", "≥"), ("at_most", "≤"))
+    return ", ".join(f"{sign} {factor * limit[key]:.4g}" for key, sign in ends if key in limit)
+
+
+def _share(row: Document) -> str:
+    share = row.get("within")
+    return "" if share is None else f"{100.0 * share['share']:.1f} %"
+
+
+def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callable[[Document], str]:
+    """Return the function that shows a number of a row in the unit that is shown."""
+
+    def text(row: Document) -> str:
+        value = of(row)
+        return "" if value is None else format(shown_quantity(row["name"])[1] * value, form)
+
+    return text
+
+
+_COLUMNS = (
+    Column("of", lambda row: part_of(row["name"])),
+    Column("quantity", lambda row: shown_quantity(row["name"])[0]),
+    Column("nominal", _number(lambda row: row["nominal"])),
+    Column("mean", _number(lambda row: row["mean"])),
+    Column("std", _number(lambda row: row["std"], ".3g")),
+    Column("5 %", _number(lambda row: row["quantiles"]["0.05"])),
+    Column("median", _number(lambda row: row["quantiles"]["0.5"])),
+    Column("95 %", _number(lambda row: row["quantiles"]["0.95"])),
+    Column("limit", _limit),
+    Column("within", _share),
+)
+
+
+def _told(document: Document) -> list[Document]:
+    """Return the quantities that have values."""
+    return [row for row in document["quantities"] if row["mean"] is not None and row["mean"] == row["mean"]]
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Return the distributions, what matters, and the yield."""
+    return (Section("", tuple(_content(document))),)
+
+
+def report(document: Document) -> Section:
+    """Return the chapter of the report."""
+    pictures = (
+        Picture("vary-distributions", "How the quantities scatter, with their limits and the gearbox without changes."),
+        Picture("vary-importance", "Which inputs the scatter follows from."),
+        Picture("vary-scatter", "Each gearbox by the inputs that matter most."),
+        Picture(
+            "vary-speeds", "Levels over speed: the gearbox without changes, and the band of nine in ten gearboxes."
+        ),
+    )
+    return Section("Varied gearboxes", tuple(_content(document)), pictures=pictures)
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    rows = _told(document)
+    yield from table_of(_COLUMNS, rows, "Distributions")
+    yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
+    for failure in document["failed"][:_MOST_FAILURES]:
+        yield f"Gearbox {failure['number']} failed: {failure['message']}"
+    if len(document["failed"]) > _MOST_FAILURES:
+        yield f"and {len(document['failed']) - _MOST_FAILURES} more"
+    if "yield" in document:
+        share = document["yield"]
+        low, value, high = (100.0 * share[key] for key in ("low", "share", "high"))
+        yield f"Yield: {value:.1f} % of the gearboxes are within all limits (95 % interval {low:.1f} to {high:.1f} %)."
+    resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
+    failed = f"; {len(document['failed'])} failed" if document["failed"] else ""
+    yield f"{document['samples']} gearboxes{resumed}{failed}"
+
+
+def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
+    """Yield a table of the most important inputs of the quantities that scatter."""
+    shown = list[Document]()
+    by_index = any("sobol_total" in row for row in rows)
+    for row in rows:
+        total, ranks = row.get("sobol_total"), row["rank_correlation"]
+        values = {key: value[0] for key, value in total.items()} if total else ranks
+        first = sorted(values, key=lambda key: -abs(values[key]))[:_MOST_INPUTS]
+        for place, key in enumerate(first):
+            shown.append(
+                {
+                    "of": "" if place else part_of(row["name"]),
+                    "quantity": "" if place else shown_quantity(row["name"])[0].partition(" [")[0],
+                    "input": key,
+                    "value": f"{values[key]:.2f}" if total else f"{values[key]:+.2f}",
+                    "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
+                }
+            )
+    caption = (
+        "What matters: total-order Sobol' index, the part of the variance that would go with the input"
+        if by_index
+        else "What matters: rank correlation with the input"
+    )
+    columns = (
+        Column("of", "of"),
+        Column("quantity", "quantity"),
+        Column("input", "input"),
+        Column("index" if by_index else "correlation", "value"),
+        Column("95 % interval", "interval"),
+    )
+    yield from table_of(columns, shown, caption)

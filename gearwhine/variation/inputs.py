@@ -1,0 +1,360 @@
+"""Varied inputs of a case: each takes some coordinates of a sample's point and changes keys of the case."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import CaseError, CaseSource, Problem, case_document
+from gearwhine.case.errors import NOTHING, UNSAID, Location, key_of, look_up
+from gearwhine.case.input_files import InputFiles
+from gearwhine.case.overrides import matching_places, parse_key_path
+from gearwhine.case.units import si_amount, split_quantity
+from gearwhine.case.variation import Variation, Varied, built_distribution, in_one_unit
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.accuracy import FlankTolerances, flank_tolerances, random_pitch_deviations
+from gearwhine.numerics.distributions import Discrete, Distribution, DistributionError, Measured, Normal, Rayleigh
+from gearwhine.numerics.names import did_you_mean
+from gearwhine.numerics.tolerance_zones import ToleranceZoneError, limit_deviations
+
+FloatArray = npt.NDArray[np.float64]
+
+_THIRD = 3.0  # standard deviations from the middle of a tolerance to its end
+_RAYLEIGH_END = np.sqrt(
+    -2.0 * np.log(0.0027)
+)  # of the same part of all beyond it, in scales of Rayleigh's distribution
+_MICROMETRES, _MILLIMETRES = 1e6, 1e3
+_SEEDS = 2**31
+_LARGEST_TABLE = 20_000_000  # bytes
+
+
+@dataclass(frozen=True)
+class Pitches:
+    """Pitch deviations of all teeth of a gear in a tolerance class, which a coordinate draws.
+
+    Attributes
+    ----------
+    tolerances : FlankTolerances
+    teeth : int
+    """
+
+    tolerances: FlankTolerances
+    teeth: int
+
+    def drawn(self, coordinate: float) -> tuple[float, ...]:
+        """Cumulative pitch deviations [m]."""
+        return random_pitch_deviations(self.tolerances, self.teeth, int(coordinate * _SEEDS))
+
+
+@dataclass(frozen=True)
+class Input:
+    """A varied quantity: its distribution, and the keys that take its values.
+
+    Attributes
+    ----------
+    name : str
+        Key path as the case names it; with an entry's own where each has a value of its own.
+    law : Distribution or Pitches
+    unit : str
+        Unit of the values; empty for plain numbers, in SI.
+    words : tuple of str
+        Texts that a value stands for by its number; empty where it is one itself.
+    keys : tuple of (str, float)
+        Key paths, and the factor by which each takes the value.
+    """
+
+    name: str
+    law: Distribution | Pitches
+    unit: str
+    words: tuple[str, ...]
+    keys: tuple[tuple[str, float], ...]
+
+    def value(self, coordinate: float) -> float:
+        """Value at a coordinate in (0, 1): in the unit, the number of a word, or the range of pitch deviations [m]."""
+        if isinstance(self.law, Pitches):
+            return float(np.ptp(self.law.drawn(coordinate)))
+        return float(self.law.quantile(np.array([coordinate]))[0])
+
+    def text(self, value: float) -> str:
+        """Value as it is written into the case where it is no pitch deviation."""
+        if self.words:
+            return self.words[round(value)]
+        return f"{value!r} {self.unit}" if self.unit else repr(value)
+
+    def overrides(self, coordinate: float) -> Iterator[str]:
+        """Yield the ``key.path=value`` of every key at a coordinate."""
+        if isinstance(self.law, Pitches):
+            listed = ", ".join(map(repr, self.law.drawn(coordinate)))
+            yield from (f"{key}=[{listed}]" for key, _ in self.keys)
+            return
+        value = self.value(coordinate)
+        for key, factor in self.keys:
+            yield f"{key}={self.text(value if self.words else factor * value)}"
+
+
+def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]:
+    """Return the inputs of a variation, in its order.
+
+    A `*` stands for every entry that takes the key, whether it has it already or not.
+
+    Parameters
+    ----------
+    source : CaseSource
+        Content of the case whose keys are varied.
+    variation : Variation
+
+    Raises
+    ------
+    CaseError
+        With every key that leads nowhere, and every distribution that cannot be.
+    """
+    inputs, problems, keys = list[Input](), list[Problem](), _Keys(source)
+    for key, varied in variation.vary.items():
+        try:
+            inputs += keys.inputs(key, varied)
+        except _CannotVaryError as error:
+            problems.append(Problem(key_of(("variation", "vary", key, *error.at)), error.value, error.expected))
+    if problems:
+        raise CaseError(problems)
+    taken: dict[str, str] = {}
+    for one in inputs:
+        for path, _ in one.keys:
+            if path in taken:
+                expected = f"each key once: {path} is varied by {taken[path]!r}, too"
+                problems.append(Problem(key_of(("variation", "vary", one.name)), UNSAID, expected))
+            taken[path] = one.name
+    if problems:
+        raise CaseError(problems)
+    return tuple(inputs)
+
+
+class _CannotVaryError(Exception):
+    def __init__(self, expected: str, *at: str | int, value: object = UNSAID) -> None:
+        self.expected, self.at, self.value = expected, at, value
+
+
+_Law = tuple[Distribution | Pitches, str, tuple[str, ...]]
+"""A distribution, its unit and its words."""
+
+
+class _Keys:
+    """Keys of a case, as its variation names them."""
+
+    def __init__(self, source: CaseSource) -> None:
+        case = source.changed_case()
+        self._source, self._document, self._files = source, case_document(case), case.input_files
+        self._gears = [case.parts.gears[table.name] for table in case.gear]
+
+    def inputs(self, key: str, varied: Varied) -> Iterator[Input]:
+        """Yield the inputs of a varied key: one, or one for each entry where these are independent."""
+        document = self._document
+        places = _places(document, key)
+        there = [place for place in places if look_up(document, place) is not NOTHING]
+        if len(places) > 1:
+            # Entries without the key have it from now on, where they take it.
+            one = Input("", *self._law((there or places)[0], varied), ((key_of((there or places)[0]), 1.0),))
+            text = next(one.overrides(0.5)).partition("=")[2]
+            places = [place for place in places if place in there or self._takes(f"{key_of(place)}={text}")]
+        if not places:
+            raise _CannotVaryError("a key that some entries of the case take")
+        names = [name for place in places for name in _names(document, place)]
+        if unknown := sorted(set(varied.factor) - set(names)):
+            hint = did_you_mean(unknown[0], names)
+            raise _CannotVaryError(f"names of entries that {key!r} leads to{hint}", "factor", value=unknown[0])
+        if varied.independent:
+            for place in places:
+                name = key_of(_named_place(document, place))
+                yield Input(name, *self._law(place, varied), ((key_of(place), 1.0),))
+            return
+        if varied.kind in ("fit", "class") and len(places) > 1:
+            raise _CannotVaryError(
+                f"independent = true beside {varied.kind!r}: each of the {len(places)} entries has a size of its own"
+            )
+        keys = tuple((key_of(place), _factor(document, place, varied)) for place in places)
+        yield Input(key, *self._law(places[0], varied), keys)
+
+    def _takes(self, override: str) -> bool:
+        """Whether the case takes a value at a key."""
+        try:
+            self._source.changed_case([override])
+        except CaseError:
+            return False
+        return True
+
+    def _law(self, place: Location, varied: Varied) -> _Law:
+        """Return the law of a key; what it cannot be is said of it."""
+        try:
+            if (built := built_distribution(varied)) is not None:
+                return (*built, ())
+            if varied.file is not None:
+                return (*_of_file(varied.file, varied.column, self._files), ())
+            if varied.fit is not None:
+                return (*_of_fit(look_up(self._document, place), varied.fit, key_of(place)), ())
+            if varied.tolerance_class is not None:
+                law = self._of_class(varied.tolerance_class, place)
+                return law, "m" if isinstance(law, Pitches) else "um", ()
+            return _of_values(varied.values or (), varied.weights)
+        except (ValueError, DistributionError, ToleranceZoneError, GearError) as error:
+            findings = getattr(error, "findings", ())
+            text = "; ".join(finding.expected for finding in findings) or str(error)
+            raise _CannotVaryError(text, varied.kind) from None
+
+    def _of_class(self, tolerance_class: int, place: Location) -> Distribution | Pitches:
+        """Return the distribution of an error of a gear in a tolerance class [µm], of pitches [m]."""
+        error = tuple(place[3:])
+        if place[:1] != ("gear",) or place[2:3] != ("errors",):
+            raise ValueError(f"a key of the errors of a gear: gear.NAME.errors. and {_OF_CLASS}")
+        gear = self._gears[int(place[1])]
+        tolerances = flank_tolerances(gear, tolerance_class)
+        if error == ("pitch",):
+            return Pitches(tolerances, abs(gear.teeth))
+        slopes: dict[Location, float] = {
+            ("profile", "slope"): tolerances.profile_slope,
+            ("helix", "slope"): tolerances.helix_slope,
+        }
+        sizes: dict[Location, float] = {("runout",): tolerances.runout, ("profile", "form"): tolerances.profile_form}
+        if error in slopes:
+            slope = _MICROMETRES * slopes[error]
+            return Normal(0.0, slope / _THIRD, -slope, slope)
+        if error in sizes:
+            size = _MICROMETRES * sizes[error]
+            return Rayleigh(size / float(_RAYLEIGH_END), size)
+        raise ValueError(f"one of the errors {_OF_CLASS}")
+
+
+_OF_CLASS = "pitch, runout, profile.slope, profile.form or helix.slope"
+
+
+def _of_values(values: Sequence[Any], weights: Sequence[float]) -> tuple[Discrete, str, tuple[str, ...]]:
+    plain = [float(one) if isinstance(one, int) and not isinstance(one, bool) else one for one in values]
+    if all(isinstance(one, float) or (isinstance(one, str) and split_quantity(one)) for one in plain):
+        whole = all(isinstance(one, int) for one in values)
+        numbers, unit = in_one_unit(tuple(plain))
+        if not whole:
+            return Discrete(numbers, weights), unit, ()
+    # Whole numbers stay such, as numbers of teeth must.
+    words = tuple(one if isinstance(one, str) else _toml(one) for one in values)
+    return Discrete([float(number) for number in range(len(words))], weights), "", words
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (int, float)):
+        return repr(value)
+    raise ValueError("quantities, numbers, words or truth values")
+
+
+def _of_file(path: Path, column: str, files: InputFiles) -> tuple[Measured, str]:
+    """Return the distribution of a column of a table, and its unit."""
+    if path.stat().st_size > _LARGEST_TABLE:
+        raise ValueError(f"a table of at most {_LARGEST_TABLE // 10**6} MB")
+    rows: list[list[str]] = files.read(path, _rows_of)
+    heads = [head.strip() for head in rows[0]] if rows else []
+    names = [re.sub(r"\s*\[[^\]]*\]$", "", head) for head in heads]
+    if column and column not in names:
+        raise ValueError(f"a table with the column {column!r}; it has {', '.join(names)}{did_you_mean(column, names)}")
+    if not column and len(heads) != 1:
+        raise ValueError(f"the name of one of the {len(heads)} columns, 'column': {', '.join(names)}")
+    place = names.index(column) if column else 0
+    unit = (re.search(r"\[([^\]]*)\]$", heads[place]) or ["", ""])[1]
+    if unit and split_quantity(f"1 {unit}") is None:
+        raise ValueError(f"a known unit in brackets behind {names[place]!r}; {unit!r} is none")
+    numbers = []
+    for number, row in enumerate(rows[1:], start=2):
+        try:
+            numbers.append(float(row[place]))
+        except (ValueError, IndexError):
+            raise ValueError(f"a number in line {number} of {path.name}, column {names[place]!r}") from None
+    return Measured(numbers), unit
+
+
+def _rows_of(path: Path) -> list[list[str]]:
+    with path.open(encoding="utf-8-sig", newline="") as stream:
+        return [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+
+
+def _of_fit(written: object, zone: str, key: str) -> tuple[Normal, str]:
+    """Return the distribution of a length in a tolerance zone [mm]."""
+    nominal = si_amount(written)
+    if nominal is None or nominal <= 0.0:
+        raise ValueError(f"a key with a length in the case, about which the zone lies; {key} has none")
+    low, high = (_MILLIMETRES * (nominal + deviation) for deviation in limit_deviations(zone, nominal))
+    return Normal(0.5 * (low + high), 0.5 * (high - low) / _THIRD, low, high), "mm"
+
+
+def _places(document: Mapping[str, Any], key: str) -> list[Location]:
+    """Return the places of a key in the case, with `*` expanded, also in entries that do not have it yet."""
+    steps = parse_key_path(key) or ()
+    after = max((number for number, step in enumerate(steps, start=1) if step == "*"), default=0)
+    places = list[Location]()
+    for entry in matching_places(document, steps[:after]):
+        inside = look_up(document, entry)
+        # A table that the case does not have at all is no place: its name may be wrong.
+        found = list(matching_places(inside, steps[after:])) or _new_places(inside, steps[after:], least=not entry)
+        places += [(*entry, *place) for place in found]
+    if not places:
+        raise _CannotVaryError("a key path that leads to something in the case")
+    return places
+
+
+def _new_places(inside: object, steps: Sequence[str], least: int) -> list[Location]:
+    """Return the place of a key that nothing has yet, such as an error of a gear, below at least some of its steps."""
+    for length in range(len(steps) - 1, least - 1, -1):
+        for found in matching_places(inside, steps[:length]):
+            return [(*found, *steps[length:])] if isinstance(look_up(inside, found), Mapping) else []
+    return []
+
+
+def _named_place(document: Mapping[str, Any], place: Location) -> Location:
+    """Return a place with the names of list entries in place of their numbers."""
+    named: list[str | int] = []
+    for depth, step in enumerate(place):
+        entry = look_up(document, place[: depth + 1])
+        named.append(
+            entry["name"] if isinstance(step, int) and isinstance(entry, Mapping) and "name" in entry else step
+        )
+    return tuple(named)
+
+
+def _names(document: Mapping[str, Any], place: Location) -> list[str]:
+    """Return the names by which a factor can mean a place: of the entries that hold it, and its whole path."""
+    named = _named_place(document, place)
+    of_entries = (str(step) for step, own in zip(named, place, strict=True) if step != own)
+    return [*of_entries, key_of(named), key_of(place)]
+
+
+def _factor(document: Mapping[str, Any], place: Location, varied: Varied) -> float:
+    return next((varied.factor[name] for name in _names(document, place) if name in varied.factor), 1.0)
+
+
+def correlation_matrix(inputs: Sequence[Input], variation: Variation) -> FloatArray | None:
+    """Return the correlation of the inputs' normal scores, shape (d, d); None where they are independent.
+
+    Raises
+    ------
+    CaseError
+        Where a key has several values of its own, or the coefficients cannot be together.
+    """
+    if not variation.correlation:
+        return None
+    from gearwhine.numerics.distributions import correlation_findings
+
+    names, matrix = [one.name for one in inputs], np.eye(len(inputs))
+    for number, pair in enumerate(variation.correlation):
+        for place, key in enumerate(pair.keys):
+            if key not in names:
+                expected = "a key with one value; this one has an independent value for each entry"
+                raise CaseError([Problem(f"variation.correlation[{number}].keys[{place}]", key, expected)])
+        first, second = (names.index(key) for key in pair.keys)
+        matrix[first, second] = matrix[second, first] = pair.coefficient
+    if findings := list(correlation_findings(matrix)):
+        raise CaseError([Problem("variation.correlation", UNSAID, finding.expected) for finding in findings])
+    return matrix

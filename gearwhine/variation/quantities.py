@@ -1,0 +1,212 @@
+"""Quantities of one varied gearbox: numbers with names that end in their unit, and curves over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
+from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.analyses.shafts_alone import bearings_on_rigid_seats
+from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.gears.loaded.transmission_error import transmission_error_phasors
+from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
+from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
+from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
+from gearwhine.rotors.analyses.critical_speeds import critical_speeds
+
+FloatArray = npt.NDArray[np.float64]
+
+HARMONICS = 3
+"""Number of harmonics of a transmission error."""
+_CRITICAL_SPEEDS = 3
+_RPM = 30.0 / np.pi
+_SILENCE = 1e-12  # acceleration that stands for none [m/s²]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is found of each gearbox.
+
+    Attributes
+    ----------
+    analyses : tuple of str
+        Names of :data:`ANALYSES`, in the order wanted.
+    speeds : tuple of float
+        Signed speeds of lines [rad/s].
+    plan : TransientPlan, optional
+        Stretch of the motion.
+    needs_load : bool
+        Whether parts of the machine are left to the operating point explicitly.
+    """
+
+    analyses: tuple[str, ...]
+    speeds: tuple[float, ...] = ()
+    plan: TransientPlan | None = None
+    needs_load: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Quantities of a gearbox.
+
+    Attributes
+    ----------
+    numbers : dict of str to float
+        By name.
+    curves : dict of str to ndarray, shape (s,)
+        Over the speeds.
+    """
+
+    numbers: dict[str, float]
+    curves: dict[str, FloatArray] = field(default_factory=dict)
+
+
+def evaluate(machine: Machine, wanted: Wanted) -> Evaluation:
+    """Find the quantities of a gearbox.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError, ...
+        Where a machine with these values cannot be solved.
+    """
+    gearbox, numbers, curves = _Gearbox(machine, wanted), dict[str, float](), dict[str, FloatArray]()
+    for analysis in wanted.analyses:
+        for name, value in _ANALYSES[analysis](gearbox):
+            if isinstance(value, np.ndarray):
+                curves[name] = value
+            else:
+                numbers[name] = float(value)
+    return Evaluation(numbers, curves)
+
+
+@dataclass(frozen=True, eq=False)
+class _Gearbox:
+    """A machine, and what several analyses have in common of it."""
+
+    machine: Machine
+    wanted: Wanted
+
+    @cached_property
+    def load(self) -> SolvedLoad | None:
+        """Operating point; None where nothing loads the machine or none is found."""
+        if not self.machine.is_loaded:
+            return None
+        return find_load(self.machine, is_needed=self.wanted.needs_load or "load" in self.wanted.analyses)[0]
+
+    @cached_property
+    def loaded(self) -> LoadedMachine:
+        """Machine about its operating point."""
+        return load_machine(self.machine, None if self.load is None else self.load.point)
+
+    @cached_property
+    def pairs(self) -> Sequence[LoadedGearPair]:
+        """Gear pairs under load; of an assembled machine those of it."""
+        if {"lines", "motion"} & set(self.wanted.analyses):
+            return self.loaded.pairs
+        left_to_load = any(pair.misalignment is None for pair in self.machine.gear_pairs)
+        point = self.load.point if left_to_load and self.load is not None else None
+        return self.machine.linearised(point).loaded_pairs()
+
+
+Named = Iterator[tuple[str, float | FloatArray]]
+
+
+def _of_gears(gearbox: _Gearbox) -> Named:
+    for pair in gearbox.pairs:
+        name = f"gear_pair.{pair.geometry.driver.name}-{pair.geometry.driven.name}"
+        mesh = pair.static if pair.hunting is None else pair.hunting
+        yield f"{name}.transmission_error_peak_to_peak_m", mesh.peak_to_peak_transmission_error
+        periods = 1 if pair.hunting is None else pair.carrying_flanks.hunting_period
+        for number, size in enumerate(np.abs(transmission_error_phasors(mesh, HARMONICS, periods)), start=1):
+            yield f"{name}.transmission_error_{number}_m", float(size)
+        yield f"{name}.mesh_stiffness_n_per_m", mesh.mean_mesh_stiffness
+
+
+def _of_load(gearbox: _Gearbox) -> Named:
+    load = gearbox.load
+    if load is None:
+        raise CouplingError("load: nothing loads the machine; expected a torque, a force or weight")
+    for pair in load.point.pairs:
+        if pair.force == 0.0:
+            continue
+        name = f"gear_pair.{pair.names[0]}-{pair.names[1]}"
+        yield f"{name}.k_h_beta", pair.k_h_beta
+        yield f"{name}.misalignment_rad", pair.misalignment
+        yield f"{name}.contact_pressure_pa", pair.peak_pressure
+    for bearing in load.bearings:
+        name = f"bearing.{bearing.load.name}"
+        yield f"{name}.force_n", float(np.linalg.norm(bearing.load.force[:3]))
+        life = None if bearing.rated is None else bearing.rated.reference_life
+        if life is not None:
+            yield f"{name}.life_h", life
+    for one in load.planetary:
+        yield f"planetary.{one.name}.mesh_load_factor", one.mesh_load_factor
+
+
+def _of_rotors(gearbox: _Gearbox) -> Named:
+    machine = gearbox.machine
+    for name, (bearings, _) in bearings_on_rigid_seats(machine).items():
+        found = critical_speeds(machine.rotor(name), bearings, count=2 * _CRITICAL_SPEEDS).forward
+        for number, speed in enumerate(found[:_CRITICAL_SPEEDS], start=1):
+            yield f"rotor.{name}.critical_speed_{number}_rpm", _RPM * float(speed)
+
+
+def _of_lines(gearbox: _Gearbox) -> Named:
+    machine, coupled = gearbox.machine, gearbox.loaded.coupled
+    housing = machine.housing_component
+    limit = None if housing is None else housing.complete_below
+    if limit is None:
+        raise CouplingError("lines: expected a housing whose modes are complete up to a known frequency")
+    speeds = gearbox.wanted.speeds or (coupled.speed,)
+    tables = any(one.bearing.speeds is not None for one in machine.bearings)
+    if coupled.system.turns or tables:
+        # Sidebands and tables over speed have a machine of their own at each speed.
+        point = None if gearbox.load is None else gearbox.load.point
+        at = [load_machine(replace(machine, speed=speed), point).coupled for speed in speeds]
+        over_speed = np.array([sensor_rms(one, limit) for one in at]).T
+    else:
+        over_speed = lines_over_speed(coupled, speeds, limit).rms
+    for sensor, levels in zip(coupled.sensor_rows, _level(over_speed), strict=True):
+        place = int(np.argmax(levels))
+        yield f"sensor.{sensor}.level_db", float(levels[place])
+        if len(levels) > 1:
+            yield f"sensor.{sensor}.loudest_speed_rpm", _RPM * abs(float(speeds[place]))
+        yield f"sensor.{sensor}.level_db", levels
+
+
+def _level(rms: FloatArray) -> FloatArray:
+    """Level of an acceleration by its root mean square [dB re 1 µm/s²]."""
+    return np.asarray(20.0 * np.log10(np.maximum(rms, _SILENCE) / ACCELERATION_REFERENCE))
+
+
+def _of_motion(gearbox: _Gearbox) -> Named:
+    plan = gearbox.wanted.plan
+    if plan is None:
+        raise CouplingError("motion: expected a transient, such as revolutions = 40")
+    loaded = gearbox.loaded
+    if plan.run is not None:
+        loaded = load_machine(gearbox.machine, None if gearbox.load is None else gearbox.load.point, plan.run)
+    solved: SolvedTransient = solve_transient(loaded.coupled, plan)
+    for sensor in solved.sensor_spectra:
+        yield f"sensor.{sensor}.motion_level_db", float(_level(np.array(solved.sensor_rms(sensor))))
+
+
+_ANALYSES: Mapping[str, Callable[[_Gearbox], Named]] = {
+    "gears": _of_gears,
+    "load": _of_load,
+    "rotors": _of_rotors,
+    "lines": _of_lines,
+    "motion": _of_motion,
+}
+
+ANALYSES = tuple(_ANALYSES)
+"""Names of the analyses, in the order of their quantities."""

@@ -1,0 +1,196 @@
+"""Running a varied case: samples on file are read, the others are solved here or by workers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.failures import WorkersError
+from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.numerics.progress import Progress
+from gearwhine.output import staging
+from gearwhine.variation.quantities import Evaluation
+from gearwhine.variation.samples import Failure, Outcome, Record, VariedCase, solve_samples
+from gearwhine.workers import await_workers, code_digest, connected, default_workers
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+FloatArray = npt.NDArray[np.float64]
+
+_WORTH_WORKERS = 20.0  # time of all samples below which workers, which take seconds to start, are not called [s]
+_BATCH_TIME = 1.0  # time of the samples that a worker is given at once, which the death of a worker may cost [s]
+_LARGEST_BATCH = 200
+_TOLD_EACH = 2.0  # least time between two lines of progress [s]
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Samples of a varied case, in the order of their points.
+
+    Attributes
+    ----------
+    outcomes : tuple of Evaluation or Failure
+    resumed : int
+        Number of samples that an earlier run had found.
+    """
+
+    outcomes: tuple[Outcome, ...]
+    resumed: int
+
+
+def run_samples(
+    varied: VariedCase,
+    points: FloatArray,
+    folder: Path,
+    progress: Progress,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> Solved:
+    """Solve every sample that the folder does not hold yet; each is on file soon after it is found.
+
+    Parameters
+    ----------
+    varied : VariedCase
+    points : ndarray, shape (n, d)
+        Points of the unit cube.
+    folder : path
+        Results folder.
+    progress : callable
+    workers : int, optional
+        Number of processes; by default as many as cores where that is worth their start.
+    scheduler
+        See :func:`gearwhine.workers.connected`.
+    fresh : bool
+        Whether to solve samples that the folder holds as well.
+
+    Raises
+    ------
+    CaseError, WorkersError
+        Where there are no workers.
+    """
+    record = Record(folder, varied.key)
+    if fresh:
+        record.file.unlink(missing_ok=True)
+    # Samples that failed before are tried again.
+    found = {number: outcome for number, outcome in record.read().items() if isinstance(outcome, Evaluation)}
+    todo = [number for number in range(len(points)) if number not in found]
+    outcomes: dict[int, Outcome] = dict(found)
+    resumed, told = len(points) - len(todo), _Teller(len(points), len(points) - len(todo), progress)
+    if todo:
+        # The first one is timed, with what is compiled and read once behind it.
+        first = todo[0]
+        begin = time.perf_counter()
+        outcomes[first] = varied.solve(points[first])
+        each = time.perf_counter() - begin
+        record.append([(first, outcomes[first])])
+        told.took([(first, outcomes[first])])
+        rest = todo[1:]
+        is_short = workers is None and each * len(rest) < _WORTH_WORKERS
+        alone = scheduler is None and (workers == 1 or is_short)
+        workers = workers or default_workers()
+        size = max(1, min(_LARGEST_BATCH, int(_BATCH_TIME / max(each, 1e-3)), -(-len(rest) // (4 * workers))))
+        batches = [rest[begin : begin + size] for begin in range(0, len(rest), size)]
+        solve = _solved_here if alone else _solved_by_workers
+        with staging(folder) as place:
+            for solved in solve(varied, points, batches, place, workers, scheduler, progress):
+                record.append(solved)
+                outcomes |= dict(solved)
+                told.took(solved)
+    record.remove_others()
+    return Solved(tuple(outcomes[number] for number in range(len(points))), resumed)
+
+
+def _solved_here(
+    varied: VariedCase,
+    points: FloatArray,
+    batches: Sequence[Sequence[int]],
+    place: Path,
+    workers: int,
+    scheduler: str | None,
+    progress: Progress,
+) -> Iterator[list[tuple[int, Outcome]]]:
+    """Solve batches in this process."""
+    for batch in batches:
+        yield [(number, varied.solve(points[number])) for number in batch]
+
+
+def _solved_by_workers(
+    varied: VariedCase,
+    points: FloatArray,
+    batches: Sequence[Sequence[int]],
+    place: Path,
+    workers: int,
+    scheduler: str | None,
+    progress: Progress,
+) -> Iterator[list[tuple[int, Outcome]]]:
+    """Yield each batch as workers have solved it."""
+    workers = min(workers, len(batches))
+    progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
+    with connected(workers, scheduler, place) as client:
+        if scheduler is None:
+            await_workers(client, workers)
+        futures = in_thread(lambda: _submitted(client, varied, points, batches))
+        yield from each_from_thread(_as_they_end(client, futures))
+
+
+def _submitted(
+    client: Client, varied: VariedCase, points: FloatArray, batches: Sequence[Sequence[int]]
+) -> dict[Future[Any], Sequence[int]]:
+    """Submit every batch."""
+    code = code_digest()
+    everywhere = client.scatter(varied, broadcast=True, hash=False)
+    return {
+        client.submit(
+            solve_samples, everywhere, [(number, points[number]) for number in batch], code, key=f"batch-{batch[0]}"
+        ): batch
+        for batch in batches
+    }
+
+
+def _as_they_end(client: Client, futures: dict[Future[Any], Sequence[int]]) -> Iterator[list[tuple[int, Outcome]]]:
+    """Yield the outcomes of each batch as it comes."""
+    from distributed import KilledWorker, as_completed
+
+    for future in as_completed(list(futures), loop=client.loop):
+        batch = futures.pop(future)
+        error = future.exception() if future.status == "error" else None
+        if isinstance(error, KilledWorker):
+            message = "the worker at this sample died again and again, perhaps for want of memory; try fewer --workers"
+            yield [(number, Failure(message)) for number in batch]
+        elif error is not None:
+            raise error
+        elif future.cancelled():
+            raise WorkersError("the workers were lost; run the study again to do the samples that are missing")
+        else:
+            yield future.result()
+
+
+class _Teller:
+    """Tells how many samples are done, and how long the others will take."""
+
+    def __init__(self, total: int, done: int, progress: Progress) -> None:
+        self._total, self._before, self._done, self._progress = total, done, done, progress
+        self._failed = 0
+        self._start = self._last = time.perf_counter()
+
+    def took(self, solved: Sequence[tuple[int, Outcome]]) -> None:
+        """Count samples that are done, and those of them that failed."""
+        self._done += len(solved)
+        self._failed += sum(isinstance(outcome, Failure) for _, outcome in solved)
+        now = time.perf_counter()
+        if now - self._last < _TOLD_EACH and self._done < self._total:
+            return
+        self._last = now
+        left = (now - self._start) / (self._done - self._before) * (self._total - self._done)
+        failures = f", {self._failed} failed" if self._failed else ""
+        remaining = f", {left:.0f} s left" if left >= 1.0 else ""
+        self._progress(f"gearbox {self._done} of {self._total}{failures}{remaining}")

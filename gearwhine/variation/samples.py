@@ -1,0 +1,225 @@
+"""Samples of a varied case, their solution, and the record that keeps each of them as it is found.
+
+The record is a file of JSON lines, one for each sample, which is only ever appended to: whatever ends the study, the
+samples that were found before are in it, and the study goes on from there.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import traceback
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import gearwhine
+from gearwhine.case import Case, CaseError, CaseSource, case_document
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.failures import explain
+from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.reduced_housing import reduced_component
+from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.source_digest import installed
+from gearwhine.output.files import with_contents
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import plan_of, reduce_housing
+from gearwhine.variation.inputs import Input
+from gearwhine.variation.quantities import Evaluation, Wanted, evaluate
+from gearwhine.workers import code_digest, require_same_code
+
+FloatArray = npt.NDArray[np.float64]
+
+_OF_HOUSING = frozenset({"housing", "material"})
+_REMARKS = frozenset({"title", "notes", "provenance"})
+_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
+FOLDER = "samples"
+"""Folder of the record within the results folder."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A sample without a result.
+
+    Attributes
+    ----------
+    message : str
+        Sentence on the failure.
+    traceback : str
+        Traceback of an unexpected error; empty otherwise.
+    """
+
+    message: str
+    traceback: str = ""
+
+
+Outcome = Evaluation | Failure
+
+
+@dataclass(frozen=True, eq=False)
+class VariedCase:
+    """A case, its varied inputs, and what is found of each sample.
+
+    Attributes
+    ----------
+    source : CaseSource
+        Content that the case is made of, without its variation.
+    inputs : tuple of Input
+    wanted : Wanted
+    housing : HousingComponent or None
+        Solved housing where no input changes it; None also without one.
+    """
+
+    source: CaseSource
+    inputs: tuple[Input, ...]
+    wanted: Wanted
+    housing: HousingComponent | None = None
+
+    @cached_property
+    def changes_housing(self) -> bool:
+        """Whether an input may change the housing, which is then solved for each sample."""
+        return any(path.split(".")[0].split("[")[0] in _OF_HOUSING for one in self.inputs for path, _ in one.keys)
+
+    def overrides(self, point: FloatArray) -> list[str]:
+        """Return the ``key.path=value`` of a sample at a point of the unit cube."""
+        return [text for one, at in zip(self.inputs, point, strict=True) for text in one.overrides(float(at))]
+
+    def values(self, points: FloatArray) -> FloatArray:
+        """Values of the inputs at points, shape (n, d)."""
+        return np.array([[one.value(float(at)) for one, at in zip(self.inputs, row, strict=True)] for row in points])
+
+    def case(self, point: FloatArray | None) -> Case:
+        """Return the case of a sample; of None the one without changes.
+
+        Raises
+        ------
+        CaseError
+            Where its values make no machine.
+        """
+        return self.source.changed_case([] if point is None else self.overrides(point))
+
+    def solve(self, point: FloatArray | None) -> Outcome:
+        """Find the quantities of a sample; errors are returned as failures, not raised."""
+        try:
+            return self.evaluation(self.case(point))
+        except CaseError as error:
+            return Failure("; ".join(str(replace(problem, source="")) for problem in error.problems))
+        except Exception as error:
+            _, message = explain(error)
+            if message is not None:
+                return Failure(message)
+            return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
+
+    def evaluation(self, case: Case) -> Evaluation:
+        """Find the quantities of a case of the study."""
+        housing = self.housing
+        if case.housing is not None and (housing is None or self.changes_housing):
+            housing = reduce_housing(case, solve_housing(case, command="vary"))
+        machine = describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+        wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
+        if "motion" in wanted.analyses:
+            wanted = replace(wanted, plan=plan_of(case))
+        return evaluate(machine, wanted)
+
+    @cached_property
+    def key(self) -> str:
+        """Key of all that the samples depend on but their points: case, files, inputs, libraries and our code."""
+        case = self.case(None)
+        document = {name: table for name, table in case_document(case).items() if name not in _REMARKS}
+        return content_key(
+            {
+                "case": with_contents(document, case.input_files.contents),
+                "inputs": [repr(one) for one in self.inputs],
+                "wanted": repr(self.wanted),
+                "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+                "source": code_digest(),
+            }
+        )
+
+
+def solve_samples(varied: VariedCase, points: Sequence[tuple[int, FloatArray]], code: str) -> list[tuple[int, Outcome]]:
+    """Solve some samples on a worker, by their numbers and points.
+
+    Parameters
+    ----------
+    varied : VariedCase
+    points : sequence of (int, ndarray)
+    code : str
+        Digest of the caller's code; other code on the worker could give other numbers.
+    """
+    require_same_code(code)
+    return [(number, varied.solve(point)) for number, point in points]
+
+
+class Record:
+    """Record of samples in a results folder.
+
+    Parameters
+    ----------
+    folder : path
+        Results folder.
+    key : str
+        Key of all that the samples depend on; a record of another key is another file.
+    """
+
+    def __init__(self, folder: Path, key: str) -> None:
+        self.file = folder / FOLDER / f"{key[:16]}.jsonl"
+        self._sound_bytes = 0
+
+    def read(self) -> dict[int, Outcome]:
+        """Return the samples that are on file by number; what an interruption left unfinished is not."""
+        outcomes: dict[int, Outcome] = {}
+        self._sound_bytes = 0
+        if not self.file.is_file():
+            return outcomes
+        with self.file.open("rb") as stream:
+            for line in stream:
+                try:
+                    number, outcome = _of_line(json.loads(line)) if line.endswith(b"\n") else (-1, None)
+                except (ValueError, KeyError, TypeError):
+                    break
+                if outcome is None:
+                    break
+                outcomes[number] = outcome
+                self._sound_bytes += len(line)
+        return outcomes
+
+    def append(self, solved: Iterable[tuple[int, Outcome]]) -> None:
+        """Add samples behind those that :meth:`read` has found, on the disk when this returns."""
+        self.file.parent.mkdir(parents=True, exist_ok=True)
+        lines = b"".join(json.dumps(_line(number, outcome)).encode() + b"\n" for number, outcome in solved)
+        with self.file.open("r+b" if self.file.exists() else "w+b") as stream:
+            stream.truncate(self._sound_bytes)
+            stream.seek(self._sound_bytes)
+            stream.write(lines)
+            stream.flush()
+            os.fsync(stream.fileno())
+        self._sound_bytes += len(lines)
+
+    def remove_others(self) -> None:
+        """Remove records of the case as it was, or of other inputs."""
+        for path in self.file.parent.glob("*.jsonl"):
+            if path != self.file:
+                path.unlink(missing_ok=True)
+
+
+def _line(number: int, outcome: Outcome) -> dict[str, Any]:
+    if isinstance(outcome, Failure):
+        return {"number": number, "failure": outcome.message, "traceback": outcome.traceback}
+    numbers = {name: value if np.isfinite(value) else None for name, value in outcome.numbers.items()}
+    curves = {name: curve.tolist() for name, curve in outcome.curves.items()}
+    return {"number": number, "numbers": numbers} | ({"curves": curves} if curves else {})
+
+
+def _of_line(line: Mapping[str, Any]) -> tuple[int, Outcome]:
+    number = int(line["number"])
+    if "failure" in line:
+        return number, Failure(str(line["failure"]), str(line["traceback"]))
+    numbers = {str(name): np.nan if value is None else float(value) for name, value in line["numbers"].items()}
+    curves = {str(name): np.array(curve, dtype=np.float64) for name, curve in line.get("curves", {}).items()}
+    return number, Evaluation(numbers, curves)

@@ -1,0 +1,272 @@
+"""Statistics of a varied case: distributions of its quantities, what they follow from, and the yield under limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import stats
+
+from gearwhine.case.variation import Limit
+from gearwhine.numerics.sampling import IndexPoints
+from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
+from gearwhine.output.quantity import unit_of
+from gearwhine.variation.inputs import Input
+from gearwhine.variation.quantities import Evaluation
+from gearwhine.variation.samples import Failure, Outcome
+
+FloatArray = npt.NDArray[np.float64]
+
+QUANTILES = (0.05, 0.5, 0.95)
+"""Probabilities of the quantiles."""
+WORST = 3
+"""Number of the worst gearboxes of a quantity that are written as cases."""
+_LEAST_FOR_RANKS = 8  # samples below which no correlation is told
+
+
+@dataclass(frozen=True)
+class Share:
+    """Part of the gearboxes that are good, with its 95 % interval (Clopper and Pearson 1934).
+
+    Attributes
+    ----------
+    share, low, high : float
+    """
+
+    share: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, good: int, total: int) -> Share:
+        """Return the share of some good ones of all."""
+        interval = stats.binomtest(good, total).proportion_ci(CONFIDENCE, method="exact")
+        return cls(good / total, float(interval.low), float(interval.high))
+
+
+@dataclass(frozen=True, eq=False)
+class QuantityStatistics:
+    """Distribution of a quantity over the samples.
+
+    Attributes
+    ----------
+    name : str
+        Name, with the unit at its end.
+    nominal : float
+        Value of the gearbox without changes.
+    values : ndarray, shape (n,)
+        Value of each sample; NaN of one that failed or has none.
+    inputs : ndarray, shape (n, d)
+        Values of the inputs.
+    input_names : tuple of str
+    indices : SobolIndices or None
+    limit : Limit or None
+    """
+
+    name: str
+    nominal: float
+    values: FloatArray
+    inputs: FloatArray
+    input_names: tuple[str, ...]
+    indices: SobolIndices | None = None
+    limit: Limit | None = None
+
+    @property
+    def unit(self) -> str:
+        """Unit of the values."""
+        return unit_of(self.name)
+
+    @cached_property
+    def found(self) -> FloatArray:
+        """Values of the samples that have one."""
+        return np.asarray(self.values[np.isfinite(self.values)])
+
+    @property
+    def mean(self) -> float:
+        """Mean over the samples."""
+        return float(self.found.mean()) if self.found.size else math.nan
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation over the samples."""
+        return float(self.found.std(ddof=1)) if self.found.size > 1 else math.nan
+
+    @property
+    def quantiles(self) -> dict[str, float]:
+        """Quantiles over the samples by their probability."""
+        if not self.found.size:
+            return dict.fromkeys(map(str, QUANTILES), math.nan)
+        return dict(zip(map(str, QUANTILES), np.quantile(self.found, QUANTILES).tolist(), strict=True))
+
+    @cached_property
+    def rank_correlations(self) -> dict[str, float]:
+        """Rank correlation (Spearman) with each input; none where a few samples or no scatter say nothing."""
+        found = np.isfinite(self.values)
+        if found.sum() < _LEAST_FOR_RANKS or np.ptp(self.values[found]) == 0.0:
+            return {}
+        ranks = stats.rankdata(self.values[found])
+        correlations = {}
+        for name, column in zip(self.input_names, self.inputs[found].T, strict=True):
+            of_input = stats.rankdata(column)
+            varies = np.ptp(of_input) > 0.0
+            correlations[name] = float(np.corrcoef(ranks, of_input)[0, 1]) if varies else 0.0
+        return correlations
+
+    @property
+    def share(self) -> Share | None:
+        """Part of the gearboxes within the limit; None without one."""
+        if self.limit is None or not self.found.size:
+            return None
+        return Share.of(sum(self.limit.holds(value) for value in self.found.tolist()), self.found.size)
+
+    @property
+    def worst(self) -> list[int]:
+        """Numbers of the worst samples: the highest, of a least value the lowest."""
+        sign = 1.0 if self.limit is not None and self.limit.at_most is None else -1.0
+        order = np.argsort(sign * np.where(np.isfinite(self.values), self.values, sign * math.inf), kind="stable")
+        return [int(number) for number in order[: min(WORST, self.found.size)]]
+
+    def importance(self) -> dict[str, float]:
+        """Return how much each input matters: its total-order index, without these its squared rank correlation."""
+        if self.indices is not None:
+            return dict(zip(self.input_names, self.indices.total.tolist(), strict=True))
+        return {name: value**2 for name, value in self.rank_correlations.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class VariedResult:
+    """A varied case with all its samples.
+
+    Attributes
+    ----------
+    inputs : tuple of Input
+    points : ndarray, shape (n, d)
+        Point of each sample in the unit cube.
+    values : ndarray, shape (n, d)
+        Values of the inputs.
+    nominal : Evaluation
+        The gearbox without changes.
+    outcomes : tuple of Evaluation or Failure
+    limits : mapping of str to Limit
+        By quantity.
+    speeds : ndarray, shape (s,)
+        Signed speeds of curves [rad/s].
+    design : IndexPoints or None
+        Points of the samples where Sobol' indices are wanted.
+    resumed : int
+        Number of samples that an earlier run had found.
+    """
+
+    inputs: tuple[Input, ...]
+    points: FloatArray
+    values: FloatArray
+    nominal: Evaluation
+    outcomes: tuple[Outcome, ...]
+    limits: Mapping[str, Limit]
+    speeds: FloatArray
+    design: IndexPoints | None
+    resumed: int
+
+    @cached_property
+    def failures(self) -> dict[int, Failure]:
+        """Samples without a result by number."""
+        return {number: one for number, one in enumerate(self.outcomes) if isinstance(one, Failure)}
+
+    @cached_property
+    def representative(self) -> npt.NDArray[np.bool_]:
+        """Mask of the samples that stand for the production: all, of a design for indices those of A and B."""
+        if self.design is None:
+            return np.ones(len(self.outcomes), dtype=np.bool_)
+        return np.arange(len(self.outcomes)) % (len(self.inputs) + 2) < 2
+
+    @cached_property
+    def quantities(self) -> tuple[QuantityStatistics, ...]:
+        """Every quantity over the samples that stand for the production, in the order of the nominal gearbox."""
+        names = dict.fromkeys(self.nominal.numbers)
+        for outcome in self.outcomes:
+            if isinstance(outcome, Evaluation):
+                names |= dict.fromkeys(outcome.numbers)
+        chosen = self.representative
+        statistics = []
+        for name in names:
+            values = self.all_values(name)
+            indices = None if self.design is None else sobol_indices(self.design, values)
+            statistics.append(
+                QuantityStatistics(
+                    name,
+                    self.nominal.numbers.get(name, math.nan),
+                    np.where(chosen, values, np.nan),
+                    self.values,
+                    tuple(one.name for one in self.inputs),
+                    indices,
+                    self.limits.get(name),
+                )
+            )
+        return tuple(statistics)
+
+    def all_values(self, name: str) -> FloatArray:
+        """Values of a quantity of all samples, NaN where there is none, shape (n,)."""
+        return np.array(
+            [one.numbers.get(name, math.nan) if isinstance(one, Evaluation) else math.nan for one in self.outcomes]
+        )
+
+    def curve(self, name: str) -> FloatArray:
+        """Curve of a quantity of all samples, shape (n, s)."""
+        none = np.full(len(self.speeds), math.nan)
+        return np.array([one.curves.get(name, none) if isinstance(one, Evaluation) else none for one in self.outcomes])
+
+    @property
+    def good(self) -> npt.NDArray[np.bool_]:
+        """Mask of the samples within all limits, shape (n,); those without a result are not."""
+        held = np.array([isinstance(one, Evaluation) for one in self.outcomes])
+        for name, limit in self.limits.items():
+            held &= np.array([limit.holds(value) for value in self.all_values(name).tolist()])
+        return held
+
+    @cached_property
+    def yielded(self) -> Share | None:
+        """Part of the gearboxes with a result that are within all limits; None without limits."""
+        solved = self.representative & np.array([isinstance(one, Evaluation) for one in self.outcomes])
+        if not self.limits or not solved.any():
+            return None
+        return Share.of(int((self.good & solved).sum()), int(solved.sum()))
+
+    @property
+    def headlines(self) -> tuple[QuantityStatistics, ...]:
+        """Quantities that are drawn: those with a limit, else levels at sensors, else transmission errors, else all."""
+        varying = [one for one in self.quantities if one.found.size and np.ptp(one.found) > 0.0]
+        for chosen in (
+            [one for one in varying if one.limit is not None],
+            [one for one in varying if one.name.endswith("level_db")],
+            [one for one in varying if one.name.endswith("transmission_error_peak_to_peak_m")],
+        ):
+            if chosen:
+                return tuple(chosen)
+        return tuple(varying)
+
+
+def require_known_limits(limits: Mapping[str, Limit], names: Sequence[str]) -> None:
+    """Refuse limits of quantities that the gearboxes do not have.
+
+    Raises
+    ------
+    CaseError
+    """
+    from gearwhine.case import CaseError, Problem
+    from gearwhine.case.errors import UNSAID, key_of
+    from gearwhine.numerics.names import did_you_mean
+
+    unknown = [name for name in limits if name not in names]
+    if unknown:
+        raise CaseError(
+            Problem(
+                key_of(("variation", "limit", name)),
+                UNSAID,
+                f"a quantity that these gearboxes have{did_you_mean(name, names)}; there are: {', '.join(names)}",
+            )
+            for name in unknown
+        )

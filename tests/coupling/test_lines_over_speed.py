@@ -1,0 +1,47 @@
+"""Lines of sensors over speed by one assembled machine, against the machine made anew at each speed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sounding_gearbox import small_gearbox
+
+from gearwhine.coupling import CouplingError
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+
+LIMIT = 2.0 * np.pi * 6000.0
+
+
+def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
+    machine = small_gearbox().machine
+    point = machine.operating_point()
+    coupled = load_machine(machine, point).coupled
+    parts = (0.3, 0.62, 1.0, 1.4)
+    found = lines_over_speed(coupled, [part * machine.speed for part in parts], LIMIT)
+    assert found.sensors == tuple(coupled.sensor_rows)
+    assert len(found.sensors) == 2
+    for place, part in enumerate(parts):
+        there = load_machine(replace(machine, speed=part * machine.speed), point).coupled
+        lines = MeshHarmonicModel(there).responses(LIMIT)
+        amplitudes = found.amplitudes[:, place]
+        assert np.isfinite(amplitudes[0]).sum() == len(lines)
+        expected = np.array(
+            [[line.frequency**2 * abs(row @ line.motion) for line in lines] for row in there.sensor_rows.values()]
+        )
+        assert np.allclose(amplitudes[:, : len(lines)], expected, rtol=1e-8, atol=1e-10 * expected.max())
+        assert np.allclose(
+            found.orders[: len(lines)] * part * abs(machine.speed), [line.frequency for line in lines], rtol=1e-12
+        )
+        together = np.sqrt(np.sum((expected / np.sqrt(2.0)) ** 2, axis=1))
+        assert np.allclose(found.rms[:, place], together, rtol=1e-8)
+        assert np.allclose(sensor_rms(there, LIMIT), together, rtol=1e-12)
+
+
+def test_speeds_of_the_other_sense_or_of_standstill_are_refused() -> None:
+    machine = small_gearbox().machine
+    coupled = load_machine(machine, machine.operating_point()).coupled
+    for wrong in (0.0, -100.0):
+        with pytest.raises(CouplingError, match="expected one sense"):
+            lines_over_speed(coupled, [wrong], LIMIT)

@@ -1,0 +1,145 @@
+"""Periodic motion of machines whose carriers turn: closed forms, linear lines, multipliers by Magnus's series."""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from test_floquet_exponents import multipliers
+
+from gearwhine.coupling import CoupledSystem, CouplingError, PeriodicError
+from gearwhine.coupling.analyses.steady_state import solve_steady
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
+from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response
+from gearwhine.coupling.periodic.settling import _States
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.settings import TransientOutputs
+from gearwhine.rotors import Unbalance
+from tests.machines.turning_set import turning_machine, turning_set
+
+FloatArray = npt.NDArray[np.float64]
+ANISOTROPIC, UNEQUAL = (900.0, 1300.0), (0.0, 130.0, 240.0)
+TWO_PI = 2.0 * np.pi
+
+# A unit mass on springs of a frame that turns at Ω, under a constant force: z = R(-Ωt) q is pulled round at -Ω.
+STIFFNESS, DAMPING, TURN = np.array([[4.0, 0.5], [0.5, 9.0]]), np.array([[0.02, 0.01], [0.01, 0.05]]), 1.3
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+FORCE = np.array([0.7, -0.2])
+
+
+def carousel(load: FloatArray = FORCE) -> CoupledSystem:
+    zeros = np.zeros((2, 2))
+    body = Component("body", ("rotor",) * 2, zeros, zeros, zeros)
+    springs = LinearConnector(
+        "springs", np.eye(2), STIFFNESS, DAMPING, turning=(TurningPart(TURN, np.eye(2), QUARTER),)
+    )
+    return CoupledSystem((body,), (0.0,), (springs,), load=load)
+
+
+def test_mass_on_springs_that_turn_has_the_motion_of_its_rotating_frame() -> None:
+    """z'' + (C + 2ΩJ) z' + (K - Ω²) z = R(-Ωt) F, whose circular parts e^{±iΩt} are solved each."""
+    settled = settled_response(carousel(), closure=1e-6, step_tolerance=1e-6)
+    assert settled.period == pytest.approx(TWO_PI / TURN, rel=1e-12)
+    times = settled.period * np.arange(64) / 64
+    exact = np.zeros((64, 2))
+    for sense in (1, -1):
+        # R(-Ωt) F = Σ ½ (F ∓ i J F) e^{∓iΩt}, of J F the quarter turn.
+        phasor, w = 0.5 * (FORCE - 1j * sense * QUARTER @ FORCE), -sense * TURN
+        dynamic = STIFFNESS - TURN**2 * np.eye(2) - w**2 * np.eye(2) + 1j * w * (DAMPING + 2.0 * TURN * QUARTER)
+        exact += (np.linalg.solve(dynamic, phasor) * np.exp(1j * w * times)[:, None]).real
+    turned = np.array(
+        [[[np.cos(TURN * t), -np.sin(TURN * t)], [np.sin(TURN * t), np.cos(TURN * t)]] for t in times.tolist()]
+    )
+    found = settled.record(TransientOutputs(np.eye(2), np.eye(2), np.eye(2)), 64)
+    expected = np.einsum("tij,tj->ti", turned, exact)
+    np.testing.assert_allclose(found.displacement, expected, atol=1e-4 * np.abs(expected).max())
+    np.testing.assert_allclose(found.times, times)
+    # Its disturbances are those of the rotating frame: two pairs of exponents.
+    frame = np.block(
+        [[np.zeros((2, 2)), np.eye(2)], [TURN**2 * np.eye(2) - STIFFNESS, -DAMPING - 2.0 * TURN * QUARTER]]
+    )
+    decay = np.exp(np.linalg.eigvals(frame).real.max() * settled.period)
+    assert settled.floquet.largest == pytest.approx(decay, rel=1e-3)
+    assert settled.stable
+    assert settled.residual <= 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angles", [None, UNEQUAL])
+def test_lines_of_the_settled_motion_are_the_linear_ones(angles: tuple[float, ...] | None) -> None:
+    machine = turning_machine(ANISOTROPIC, angles_deg=angles)
+    settled = settled_response(machine.system)
+    period, count = TWO_PI / machine.speeds["carrier"], 8192
+    assert settled.period == pytest.approx(period, rel=1e-9)
+    motion = histories(machine, settled.record(transient_outputs(machine), count)).sensor_acceleration
+    found, checked = MeshHarmonicModel(machine).parts(TWO_PI * 2500.0), 0
+    for sensor, row in machine.sensor_rows.items():
+        spectrum = 2.0 * np.fft.rfft(motion[sensor]) / count
+        expected = {
+            round(line.frequency * period / TWO_PI): -(line.frequency**2) * complex(row @ line.motion) for line in found
+        }
+        highest = max(map(abs, expected.values()))
+        strong = [at for at, amplitude in expected.items() if abs(amplitude) > 1e-2 * highest]
+        for at in strong:
+            assert abs(spectrum[at] - expected[at]) < 0.01 * abs(expected[at])
+        checked += len(strong)
+    assert checked >= 4
+    assert settled.contact_loss.max() == 0.0
+
+
+@pytest.mark.slow
+def test_multipliers_are_those_of_a_turn() -> None:
+    """Each disturbance that the search tells is one of the machine, whose monodromy is that of Magnus's series."""
+    machine = turning_machine(ANISOTROPIC, speed=3000.0)
+    settled = settled_response(machine.system, closure=1e-6)
+    exact = multipliers(machine.system, settled.period, 120)
+    found = settled.floquet.values
+    assert len(found) >= 4
+    assert 0.5 < settled.floquet.largest < 0.8
+    assert max(float(np.abs(exact - value).min()) for value in found) < 0.01
+    assert settled.stable
+
+
+def test_a_motion_of_long_period_is_refused_with_what_to_leave_out() -> None:
+    described = turning_set(ANISOTROPIC)
+    uneven = [
+        replace(shaft, unbalances=[Unbalance(0.05, 1e-5, 0.0)]) if shaft.name == "planet 1" else shaft
+        for shaft in described.shafts
+    ]
+    system = replace(described, shafts=uneven).assembled.system
+    # Sun 25, ring 83, planets 29: the planet turns 1 - 83/29 times in a turn of the carrier.
+    assert common_period(system) == pytest.approx(29.0 * common_period(described.assembled.system), rel=1e-9)
+    with pytest.raises(PeriodicError, match="2407 cycles of the fastest one; expected at most 2000: leave out runout"):
+        settled_response(system)
+
+
+def test_machine_and_analysis_take_the_motion_that_settles() -> None:
+    """Planets in a housing and planets on the ground, whose coordinates all stand in the carrier's frame."""
+    described = turning_set(ANISOTROPIC)
+    grounded = [replace(one, seat=None) for one in described.bearings]
+    for machine, turns in ((described, True), (replace(described, housing=None, bearings=grounded), False)):
+        system = machine.assembled.system
+        assert system.turns is turns
+        with pytest.raises(PeriodicError, match="settled_response"):
+            periodic_response(system)
+        motion = machine.steady()
+        assert isinstance(motion, SettledMotion)
+        assert motion.residual < 1e-4
+    with pytest.raises(CouplingError, match="one speed of a machine whose carriers turn"):
+        solve_steady(described.assembled, over_speed=(200.0, 400.0))
+
+
+def test_motions_that_nothing_resists_have_no_place_and_no_mean_rate() -> None:
+    """A mass on a spring along x that drifts along y by 0.6 m in 2 s."""
+    zeros = np.zeros((2, 2))
+    spring = LinearConnector("spring", np.eye(2)[:, :1], np.array([[4.0]]), np.zeros((1, 1)))
+    system = CoupledSystem((Component("body", ("rotor",) * 2, zeros, zeros, zeros),), (0.0,), (spring,))
+    states = _States(system, period=2.0, rate_unit=10.0)
+    before, after = (
+        states.joined(np.array(q), np.array(v)) for q, v in (([0.0, 0.3], [0, 0.3]), ([0.1, 0.9], [0.2, 0.31]))
+    )
+    q, v = states.parted(states.held(before, after))
+    assert q == pytest.approx([0.1, 0.0], abs=1e-12)
+    assert v == pytest.approx([0.2, 0.01], abs=1e-12)

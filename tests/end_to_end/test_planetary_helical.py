@@ -1,0 +1,147 @@
+"""The bundled planetary and helical unit: its drawing, power flow, statics by hand, lines of both stages."""
+
+import importlib.util
+import json
+import math
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearwhine.cli import run_command
+from gearwhine.meshes.gmsh_meshing import gmsh_session
+
+ROOT = Path(__file__).parents[2]
+NAME = "planetary-helical"
+COARSE = ("--set", "housing.cad.mesh_size=26 mm", "--set", "housing.frequency_limit=900 Hz")
+
+# Teeth of sun, planet and ring; of the helical pair, its module and distance [m], its helix [rad].
+SUN, PLANET, RING, PINION, WHEEL = 24, 33, 90, 22, 69
+MODULE, DISTANCE, HELIX = 3e-3, 0.140, math.radians(12.0)
+CARRIER_TURN = 3000.0 / 60.0 / (1.0 + RING / SUN)
+"""Turns of the carrier in a second, by Willis."""
+TORQUE = 60.0
+"""Torque at the sun [N m]."""
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(ROOT / "scripts")
+    spec = importlib.util.spec_from_file_location("helical_drawing", ROOT / "scripts" / "make_planetary_helical.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, module)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _measures(path: Path) -> list[float]:
+    """Volume [mm³] and bounds [mm] of the only solid."""
+    with gmsh_session("file") as gmsh:
+        ((dimension, tag),) = gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.synchronize()
+        return [gmsh.model.occ.getMass(dimension, tag), *gmsh.model.getBoundingBox(dimension, tag)]
+
+
+def test_the_script_draws_the_bundled_file(script: ModuleType, tmp_path: Path) -> None:
+    script.write(tmp_path / "drawn.step")
+    bundled, size = _measures(script.TARGET), script.Unit()
+    assert bundled == pytest.approx(_measures(tmp_path / "drawn.step"), rel=1e-6, abs=1e-4)
+    ends = [size.neck.z[0], max(end for boss in size.bosses for end in boss.z)]
+    assert bundled[3::3] == pytest.approx(ends, abs=1e-5)
+    assert bundled[2::3] == pytest.approx([0.0, size.box[1][1]], abs=1e-5)
+
+
+def _json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
+    assert run_command([*words, "-q", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert isinstance(document, dict)
+    return document
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results folder that all tests share, so that the housing is solved once."""
+    return tmp_path_factory.mktemp("helical") / "out"
+
+
+@pytest.mark.slow
+def test_check_has_speeds_torques_and_mesh_frequencies_of_both_stages(capsys: pytest.CaptureFixture[str]) -> None:
+    document = _json(capsys, "check", NAME)
+    assert document["warnings"] == []  # each bearing stands in the bore of its own seat
+    speeds = {rotor["name"]: rotor["speed_rpm"] for rotor in document["rotors"]}
+    assert speeds["carrier"] == pytest.approx(60.0 * CARRIER_TURN)
+    assert speeds["output"] == pytest.approx(-60.0 * CARRIER_TURN * PINION / WHEEL)
+    ratio = (1.0 + RING / SUN) * WHEEL / PINION
+    outputs = {one["rotor"]: one["torque_n_m"] for one in document["operation"]["torques"]}
+    assert outputs["output"] == pytest.approx(TORQUE * ratio, rel=1e-9)
+    frequencies = {(pair["driver"], pair["driven"]): pair["mesh_frequency_hz"] for pair in document["gear_pairs"]}
+    assert frequencies["pinion", "wheel"] == pytest.approx(PINION * CARRIER_TURN)
+    assert [frequencies["s", f"p {n}"] for n in (1, 2, 3)] == pytest.approx(3 * [RING * CARRIER_TURN])
+    assert [frequencies[f"p {n}", "r"] for n in (1, 2, 3)] == pytest.approx(3 * [RING * CARRIER_TURN])
+    (stage,) = document["planetary"]
+    torques = {member["role"]: member["torque_n_m"] for member in stage["members"]}
+    by_hand = [TORQUE, TORQUE * RING / SUN, -TORQUE * (1.0 + RING / SUN)]
+    assert [torques[role] for role in ("sun", "ring", "carrier")] == pytest.approx(by_hand)
+
+
+def _mesh_force(on_wheel: bool) -> np.ndarray:
+    """Force of the helical pair on pinion or wheel [N]: the normal of involute flanks, at the torque of the carrier.
+
+    The carrier turns counter-clockwise about z, so that the pinion pushes the wheel, which stands at +x of it, along y;
+    both are pressed apart. A left-handed pinion that turns so is a left-handed screw: it pushes its nut along z.
+    """
+    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(HELIX))
+    radius = MODULE * PINION / (2.0 * math.cos(HELIX))
+    base = radius * math.cos(transverse)
+    working = math.acos(base / (DISTANCE * PINION / (PINION + WHEEL)))
+    across = TORQUE * (1.0 + RING / SUN) / base
+    base_helix = math.atan(math.tan(HELIX) * math.cos(transverse))
+    force = across * np.array([math.sin(working), math.cos(working), math.tan(base_helix)])
+    return force if on_wheel else -force
+
+
+@pytest.mark.slow
+def test_bearings_carry_both_stages(capsys: pytest.CaptureFixture[str], out: Path) -> None:
+    """Reactions of the bearings by the equilibrium of each shaft, from the planets' shares and the helical mesh."""
+    document = _json(capsys, "load", NAME, "-o", str(out), *COARSE)
+    bearings = {bearing["name"]: bearing for bearing in document["bearings"]}
+    (stage,) = document["planetary"]
+    shares = np.array([planet["load_share"] for planet in stage["planets"]])
+    assert shares.sum() == pytest.approx(1.0, abs=1e-9)
+    forces = {(pair["driver"], pair["driven"]): pair["force_n"] for pair in document["gear_pairs"]}
+    base = 2e-3 * SUN / 2.0 * math.cos(math.radians(20.0))
+    assert [forces["s", f"p {n}"] for n in (1, 2, 3)] == pytest.approx(TORQUE / base * shares, rel=1e-6)
+    transverse = np.hypot(*_mesh_force(True)[:2])
+    assert forces["pinion", "wheel"] == pytest.approx(transverse, rel=1e-6)
+
+    width = DISTANCE / (PINION + WHEEL)
+    on_output = [((-width * WHEEL, 0.0, 0.103), _mesh_force(True))]
+    # The planets push their pins, 57 mm out, around with the carrier.
+    on_carrier = [((width * PINION, 0.0, 0.103), _mesh_force(False))]
+    for number, share in enumerate(shares):
+        angle = 2.0 * math.pi * number / 3
+        push = TORQUE * (1.0 + RING / SUN) / 0.057 * share * np.array([-math.sin(angle), math.cos(angle), 0.0])
+        on_carrier.append(((0.057 * math.cos(angle), 0.057 * math.sin(angle), 0.0), push))
+    offsets = []
+    for shaft, loads, locating in (("output", on_output, "output-front"), ("carrier", on_carrier, "carrier-back")):
+        forces_on_shaft, couples = list(loads), np.zeros(3)
+        for name, z in ((f"{shaft}-back", 0.062), (f"{shaft}-front", 0.146)):
+            # The shaft feels the opposite of its forces on the bearings; the deep-groove one holds its tilt too.
+            forces_on_shaft.append(((0.0, 0.0, z), -np.array(bearings[name]["force_n"])))
+            couples[:2] -= bearings[name]["moment_n_m"][:2]
+        mesh = loads[0][1]
+        assert sum(force for _, force in forces_on_shaft) == pytest.approx(np.zeros(3), abs=1e-4 * np.linalg.norm(mesh))
+        assert bearings[locating]["force_n"][2] == pytest.approx(mesh[2], rel=1e-4)
+        moment = sum((np.cross(point, force) for point, force in forces_on_shaft), couples)[:2]
+        # What is left is the mesh force beside the middle of the face, as the misaligned flanks carry unevenly.
+        arm = np.cross([0.0, 0.0, 1.0], mesh)[:2]
+        offsets.append(-moment @ arm / (arm @ arm))
+        left = moment + offsets[-1] * arm
+        assert left == pytest.approx(np.zeros(2), abs=0.01 * 0.084 * np.linalg.norm(mesh)), (shaft, left)
+    assert offsets[0] == pytest.approx(offsets[1], abs=2e-4), offsets
+    assert abs(offsets[0]) < 0.042 / 6.0  # within the core of the face, all of which carries

@@ -1,0 +1,141 @@
+"""An imported gear unit on the matrices of its housing: nodes by free rigid motions, and two commands to a spectrum."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from reduced_frames import FRAME_COORDINATES, LENGTH, PLACES, frame, write_dmig
+from rexs_files import POINTS, helical_stage
+
+import gearwhine as gw
+from gearwhine.cli.command_line import run_command
+from gearwhine.housing import HousingError
+from gearwhine.housing.reduced import LabelledMatrix
+from gearwhine.housing.reduced.assignment import assign_nodes
+
+FloatArray = npt.NDArray[np.float64]
+
+# x, y, z of the case are v, w, u of the gear unit [m]; its nodes come in another order than the bearings.
+CENTERS = {name: np.array([v, w, u]) * 1e-3 for name, (u, v, w) in POINTS.items()}
+NODES = {"NU 207": 3, "6205": 8, "rear": 11, "front": 40}
+
+
+def rigid(center: FloatArray) -> FloatArray:
+    """Six motions of a node by translations and rotations about the origin, (6, 6): the displacement is θ × r."""
+    return np.block([[np.eye(3), np.cross(np.eye(3), center).T], [np.zeros((3, 3)), np.eye(3)]])
+
+
+def free_housing() -> tuple[FloatArray, FloatArray]:
+    """Mass and stiffness of four nodes of 10 kg in SI, springs between what is not a rigid motion of all."""
+    motions = np.vstack([rigid(CENTERS[name]) for name in NODES])
+    size = np.tile([1.0] * 3 + [0.05] * 3, len(NODES))
+    q, _ = np.linalg.qr(size[:, None] * motions)
+    stiffness = size[:, None] * (2e8 * (np.eye(24) - q @ q.T)) * size
+    return np.diag(np.tile([10.0] * 3 + [0.05] * 3, len(NODES))), 0.5 * (stiffness + stiffness.T)
+
+
+def in_millimetres(matrix: FloatArray) -> FloatArray:
+    """A matrix of SI in N/mm, t and mm: energies in mJ, translations in mm."""
+    length = np.tile([1e-3] * 3 + [1.0] * 3, len(matrix) // 6)
+    return 1e3 * length[:, None] * matrix * length
+
+
+def written(folder: Path, ground: float = 0.0) -> Path:
+    mass, stiffness = free_housing()
+    stiffness = stiffness + ground * np.diag(np.tile([1.0] * 3 + [1e-2] * 3, len(NODES)))
+    coordinates = [(node, axis) for node in NODES.values() for axis in range(1, 7)]
+    matrices = {"MAAX": in_millimetres(mass), "KAAX": in_millimetres(stiffness)}
+    (folder / "unit.rexs").write_bytes(helical_stage().xml())
+    return write_dmig(folder / "box.pch", matrices, coordinates)
+
+
+def test_swapped_nodes_and_units_are_found_by_the_free_motions_of_a_frame() -> None:
+    """The frame's bodies stand at 0 and at L along z: swapped, or in other units, its rotations would be strained."""
+    for length, mass, units in ((1.0, 1.0, "SI"), (1e-3, 1e3, "mm-t-s")):
+        read = dict(zip(("mass", "stiffness"), frame(length, mass), strict=True))
+        labelled = {kind: LabelledMatrix(matrix, tuple(FRAME_COORDINATES)) for kind, matrix in read.items()}
+        for places, nodes in (([*PLACES.values()], (101, 205)), ([*PLACES.values()][::-1], (205, 101))):
+            found = assign_nodes(labelled, places)
+            assert (found.nodes, found.units, found.is_proved) == (nodes, units, True)
+        one = assign_nodes({kind: LabelledMatrix(matrix) for kind, matrix in read.items()}, [*PLACES.values()])
+        assert (one.nodes, one.units, one.by_order) == ((1, 2), units, True)
+
+
+def test_what_is_held_proves_nothing_and_its_lever_tells_the_units() -> None:
+    """Springs of k on an arm of a fifth of the length: moments over forces have its square, in mm or in m."""
+    springs = np.diag(np.tile([1e8] * 3 + [1e8 * (0.2 * LENGTH) ** 2] * 3, 2))
+    for matrix, units in ((springs, "SI"), (in_millimetres(springs), "mm-t-s")):
+        found = assign_nodes({"stiffness": LabelledMatrix(matrix, tuple(FRAME_COORDINATES))}, [*PLACES.values()])
+        assert (found.nodes, found.units, found.is_proved) == ((101, 205), units, False)
+    few = {"stiffness": LabelledMatrix(springs, tuple(FRAME_COORDINATES))}
+    with pytest.raises(HousingError, match="expected 3 nodes with six motions, one for each bearing; the file has 2"):
+        assign_nodes(few, [*PLACES.values(), (1.0, 0.0, 0.0)])
+
+
+def test_seats_stand_under_the_bearings_whatever_the_order_of_the_nodes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["import", "unit.rexs", "--housing", "box.pch", "-o", "made/unit.toml"]) == 0
+    assert "in mm-t-s: its rigid motions are free by them" in " ".join(capsys.readouterr().out.split())
+    study = gw.load("made/unit.toml")
+    table = study.case.reduced_housing
+    assert table is not None
+    nodes = {seat.name.removesuffix(" seat"): seat.node for seat in table.seat}
+    assert nodes == NODES
+    for seat in table.seat:
+        np.testing.assert_allclose(seat.center, CENTERS[seat.name.removesuffix(" seat")], atol=1e-12)
+    certificate = study.check().document["reduced_housing"]["certificate"]
+    assert certificate["free_rigid_motions"] == 6
+    assert certificate["mass_kg"] == pytest.approx(40.0)
+    assert {bearing.seat for bearing in study.case.bearing} == {f"{name} seat" for name in POINTS}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--mass", "box.pch"], "--mass: expected --housing beside it"),
+        (["--housing", "none.pch"], "--housing: expected matrices of a housing; none.pch: expected a readable file"),
+        (["--housing", "unit.rexs"], "expected a file that ends in one of .mtx"),
+        (["--housing", "small.npz"], "the order of the stiffness is 2"),
+    ],
+)
+def test_refused_by_the_option(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    words: str,
+) -> None:
+    written(tmp_path)
+    np.savez(tmp_path / "small.npz", k=np.eye(2))
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["import", "unit.rexs", *arguments]) == 2
+    assert words in " ".join(capsys.readouterr().err.split())
+    assert not (tmp_path / "unit.toml").exists()
+
+
+@pytest.mark.slow
+def test_two_commands_from_the_files_to_the_spectrum_at_a_sensor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The lines of a sensor stand at multiples of the mesh frequency, that of 20 teeth on the input."""
+    written(tmp_path, ground=1e8)
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["import", "unit.rexs", "--housing", "box.pch"]) == 0
+    capsys.readouterr()
+    assert run_command(["run", "unit.toml", "-o", "out", "--json"]) == 0
+    operation = gw.load("unit.toml").case.operation
+    assert operation is not None
+    mesh = 20.0 * operation.speed / (2.0 * np.pi)
+    document: dict[str, Any] = json.loads(capsys.readouterr().out)
+    assert [one["name"] for one in document["sensors"]] == [f"at {name}" for name in POINTS]
+    for sensor in document["sensors"]:
+        highest = sensor["peaks"][0]["frequency_hz"]
+        assert round(highest / mesh) >= 1
+        assert highest / mesh == pytest.approx(round(highest / mesh), abs=1e-2)
+        assert sensor["peaks"][0]["amplitude_m_per_s2"] > 1e-3

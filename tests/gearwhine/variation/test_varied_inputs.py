@@ -1,0 +1,154 @@
+"""Varied keys: what a distribution in a case changes, and what is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import gearwhine as gw
+from gearwhine.case import CaseError
+from gearwhine.case.load import bundled_case
+from gearwhine.variation.inputs import Input, varied_inputs
+
+HELIX = "errors.helix.slope"
+
+
+def _inputs(tmp_path: Path, text: str, case: str = "helical-pair") -> tuple[Input, ...]:
+    bundled = bundled_case(case)
+    assert bundled is not None
+    path = tmp_path / "case.toml"
+    path.write_text(bundled.read_text() + "\n[variation]\n" + text)
+    study = gw.load(path)
+    variation = study.case.variation
+    assert variation is not None
+    return varied_inputs(study._source, variation)
+
+
+def test_tied_keys_have_one_value_times_their_factor(tmp_path: Path) -> None:
+    text = 'vary = { "gear.*.helix_angle" = { uniform = ["12 deg", "16 deg"], factor = { wheel = -1 } } }'
+    (one,) = _inputs(tmp_path, text)
+    assert list(one.overrides(0.25)) == ["gear[0].helix_angle=13.0 deg", "gear[1].helix_angle=-13.0 deg"]
+
+
+def test_a_star_stands_for_every_entry_that_takes_the_key(tmp_path: Path) -> None:
+    """The pinion has a helix table, the wheel none; both are varied, each by itself, at its own tolerance."""
+    pinion, wheel = _inputs(tmp_path, f'vary = {{ "gear.*.{HELIX}" = {{ class = 5, independent = true }} }}')
+    assert (pinion.name, wheel.name) == (f"gear.pinion.{HELIX}", f"gear.wheel.{HELIX}")
+    assert [key for key, _ in (*pinion.keys, *wheel.keys)] == [f"gear[0].{HELIX}", f"gear[1].{HELIX}"]
+    for one, teeth in ((pinion, 23), (wheel, 41)):
+        diameter = teeth * 3.0 / np.cos(np.radians(15.0))
+        tolerance = 0.05 * np.sqrt(diameter) + 0.35 * np.sqrt(25.0) + 4.0
+        cut = stats.truncnorm(-3.0, 3.0, 0.0, tolerance / 3.0)
+        assert [one.value(at) for at in (0.1, 0.9)] == pytest.approx(cut.ppf([0.1, 0.9]), rel=1e-9)
+        assert one.unit == "um"
+
+
+def test_a_star_leaves_out_entries_that_do_not_take_the_key(tmp_path: Path) -> None:
+    """Two of the four bearings have a matrix, which has no xx."""
+    (one,) = _inputs(tmp_path, 'vary = { "bearing.*.stiffness.xx" = { uniform = ["1e8 N/m", "2e8 N/m"] } }')
+    assert [key for key, _ in one.keys] == ["bearing[1].stiffness.xx", "bearing[3].stiffness.xx"]
+
+
+def test_units_of_one_distribution_may_differ(tmp_path: Path) -> None:
+    (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { triangular = ["39 mm", "0.04 m", "41000 um"] } }')
+    assert one.unit == "mm"
+    assert one.value(0.5) == pytest.approx(40.0)
+
+
+def test_a_fit_lies_about_the_length_of_the_case(tmp_path: Path) -> None:
+    """40 mm H7 is 0 to 25 µm; six standard deviations fill it."""
+    (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { fit = "H7" } }')
+    assert one.value(0.5) == pytest.approx(40.0125, rel=1e-12)
+    cut = stats.truncnorm(-3.0, 3.0)
+    assert one.value(cut.cdf(1.0)) == pytest.approx(40.0125 + 0.025 / 6.0, abs=1e-9)
+    assert 40.0 <= one.value(1e-9) < one.value(1.0 - 1e-9) <= 40.025
+
+
+def test_runout_is_rayleigh_all_but_27_of_10000_within_its_tolerance(tmp_path: Path) -> None:
+    (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.errors.runout" = { class = 7 } }')
+    diameter = 23 * 3.0 / np.cos(np.radians(15.0))
+    tolerance = 2.0 * 0.9 * (0.002 * diameter + 0.55 * np.sqrt(diameter) + 0.7 * 3.0 + 12.0)
+    whole = stats.rayleigh(0.0, tolerance / stats.rayleigh().ppf(0.9973))
+    assert one.value(0.5) == pytest.approx(whole.ppf(0.5 * 0.9973), rel=1e-9)
+
+
+def test_pitch_deviations_are_those_of_all_teeth_and_stand_in_the_case(tmp_path: Path) -> None:
+    (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.errors.pitch" = { class = 6 } }')
+    (first,), (second,) = list(one.overrides(0.3)), list(one.overrides(0.7))
+    key, _, listed = first.partition("=")
+    deviations = np.array([float(text) for text in listed.strip("[]").split(",")])
+    assert key == "gear[0].errors.pitch"
+    assert deviations.size == 23
+    assert one.value(0.3) == np.ptp(deviations)
+    assert first != second
+
+
+def test_words_and_whole_numbers_are_written_as_they_stand(tmp_path: Path) -> None:
+    text = 'vary = { "rotor.input.mass" = { values = ["lumped", "distributed"], weights = [1, 3] }, '
+    mass, teeth = _inputs(tmp_path, text + '"gear.pinion.teeth" = { values = [22, 23] } }')
+    assert [list(mass.overrides(at)) for at in (0.2, 0.3)] == [
+        ["rotor[0].mass=lumped"],
+        ["rotor[0].mass=distributed"],
+    ]
+    assert list(teeth.overrides(0.1)) == ["gear[0].teeth=22"]
+
+
+def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> None:
+    (tmp_path / "measured.csv").write_text("bore [mm],part\n40.01,1\n40.03,2\n\n40.02,3\n")
+    (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv", column = "bore" } }')
+    assert (one.unit, one.value(0.5), one.value(0.75)) == ("mm", 40.02, pytest.approx(40.025))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('vary = { "gear.pinion.bore" = { normal = ["40 mm", "0 mm"] } }', "above 0"),
+        ('vary = { "gear.pinion.bore" = { normal = ["40 mm", "1 N"] } }', "that measure the same as '40 mm'"),
+        ('vary = { "gear.pinion.bore" = { uniform = ["41 mm", "40 mm"] } }', "above the low end 41"),
+        ('vary = { "gear.pinion.bore" = { } }', "exactly one of 'normal'"),
+        ('vary = { "gear.pinion.bore" = { uniform = [1, 2], normal = [1, 2] } }', "exactly one of 'normal'"),
+        ('vary = { "gear.pinion.bore" = { uniform = [1, 2], weights = [1, 2] } }', "none without 'values'"),
+        ('vary = { "gear.pinion.bore" = { uniform = ["a lot", "40 mm"] } }', "a number and a unit"),
+        ('vary = { "gear.pinion.bore" = { fit = "z9" } }', "a letter of e, f, g"),
+        ('vary = { "gear.pinion.bore" = { class = 6 } }', "a key of the errors of a gear"),
+        ('vary = { "gear.pinion.errors.phase" = { class = 6 } }', "one of the errors pitch"),
+        ('vary = { "gear.pinion.errors.runout" = { class = 12 } }', "a whole number from 1 to 11"),
+        ('vary = { "gears.pinion.bore" = { uniform = [1, 2] } }', "leads to something in the case"),
+        ('vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04], factor = { pinon = 2 } } }', "did you mean 'pinion'"),
+        ('vary = { "gear.*.bore" = { fit = "H7" } }', "independent = true"),
+        ('vary = { "gear.pinion.bore" = { file = "none.csv" } }', "file"),
+        (
+            'vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04] }, "gear.*.bore" = { uniform = [0.03, 0.04] } }',
+            "each key once",
+        ),
+        ('vary = { "a b[" = { uniform = [1, 2] } }', "a key path"),
+        ('samples = 0\nvary = { "gear.pinion.bore" = { uniform = [0.03, 0.04] } }', "a whole number from 1"),
+        ("limit = { x = { } }", "'at_most', 'at_least' or both"),
+        ("limit = { x = { at_least = 2, at_most = 1 } }", "of at least 2"),
+        (
+            'correlation = [{ keys = ["gear.pinion.bore", "gear.wheel.bore"], coefficient = 0.5 }]',
+            "as it stands there",
+        ),
+    ],
+)
+def test_what_cannot_be_varied_is_refused_by_name(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(CaseError) as refusal:
+        _inputs(tmp_path, text)
+    assert "variation" in str(refusal.value)
+    assert said in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("bore\n40\n", "two values"),
+        ("bore [blorp]\n40\n41\n", "a known unit"),
+        ("bore\n40\nwide\n", "line 3"),
+        ("a,b\n1,2\n3,4\n", "one of the 2 columns"),
+    ],
+)
+def test_tables_that_hold_no_distribution_are_refused(tmp_path: Path, content: str, said: str) -> None:
+    (tmp_path / "measured.csv").write_text(content)
+    with pytest.raises(CaseError, match=said):
+        _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv" } }')

@@ -1,0 +1,240 @@
+"""Varied gearboxes: each equals the single calculation, known distributions come out, and nothing found is lost."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import gearwhine as gw
+from gearwhine.case import CaseError
+from gearwhine.case.load import bundled_case
+from gearwhine.cli import run_command
+from gearwhine.numerics.sampling import sobol_points
+from gearwhine.variation.samples import FOLDER
+
+SHAFT = """
+title = "A shaft with two belts"
+[material.steel]
+youngs_modulus = "207 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+[[rotor]]
+name = "shaft"
+material = "steel"
+segments = [{ length = "500 mm", diameter = "30 mm" }]
+[[bearing]]
+name = "left"
+rotor = "shaft"
+at = "0 mm"
+stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
+[[bearing]]
+name = "right"
+rotor = "shaft"
+at = "500 mm"
+stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
+[operation]
+speed = "1000 rpm"
+force = [
+    { rotor = "shaft", at = "100 mm", x = "1000 N" },
+    { rotor = "shaft", at = "400 mm", x = "500 N" },
+]
+[variation]
+samples = 256
+[variation.vary]
+"operation.force[0].x" = { uniform = ["800 N", "1200 N"] }
+"operation.force[1].x" = { uniform = ["100 N", "900 N"] }
+[variation.limit]
+"bearing.left.force_n" = { at_most = 940 }
+"""
+LEFT = "bearing.left.force_n"
+TE = "gear_pair.pinion-wheel.transmission_error_peak_to_peak_m"
+
+
+def _written(tmp_path: Path, case: str, text: str) -> Path:
+    bundled = bundled_case(case)
+    assert bundled is not None
+    path = tmp_path / "case.toml"
+    path.write_text(bundled.read_text() + text)
+    return path
+
+
+def _shaft(tmp_path: Path, text: str = SHAFT) -> Path:
+    path = tmp_path / "shaft.toml"
+    path.write_text(text)
+    return path
+
+
+def test_each_gearbox_equals_the_single_calculation(tmp_path: Path) -> None:
+    text = """
+[sweep]
+speed = ["2500 rpm", "5500 rpm"]
+[variation]
+samples = 2
+[variation.vary]
+"gear.*.errors.helix.slope" = { class = 8, independent = true }
+"gear.pinion.errors.runout" = { class = 8 }
+"bearing.input-back.stiffness.xx" = { uniform = ["0.8e8 N/m", "1.4e8 N/m"] }
+"operation.torque" = { normal = ["70 N*m", "5 N*m"], within = ["60 N*m", "80 N*m"] }
+"""
+    path = _written(tmp_path, "small-gearbox", text)
+    study = gw.load(path, {"housing.box.mesh_size": "60 mm"})
+    found = study.vary(folder=tmp_path / "out", workers=1)
+    table = found.dataset["value"].to_series().unstack()
+    inputs = found.dataset["input_value"].to_series().unstack()
+    assert list(inputs.columns) == [row["key"] for row in found.document["inputs"]]
+    units = dict(zip(found.dataset["input"].values, found.dataset["input_unit"].values, strict=True))
+    for number in [1]:
+        changes = [f"{key}={value!r} {units[key]}" for key, value in inputs.loc[number].items()]
+        single = study.changed(["housing.box.mesh_size=60 mm", *changes])
+        load = single.operating_point().document
+        pair = load["gear_pairs"][0]
+        row = table.loc[number]
+        assert row["gear_pair.pinion-wheel.k_h_beta"] == pytest.approx(pair["k_h_beta"], rel=1e-9)
+        assert row["gear_pair.pinion-wheel.misalignment_rad"] == pytest.approx(pair["misalignment_rad"], rel=1e-9)
+        for bearing in load["bearings"]:
+            force = np.linalg.norm(bearing["force_n"])
+            assert row[f"bearing.{bearing['name']}.force_n"] == pytest.approx(force, rel=1e-9)
+        gears = single.gears().document["pairs"][0]
+        assert row[TE] == pytest.approx(gears["transmission_error_m"]["peak_to_peak"], rel=1e-9)
+        # The lines of a sensor at each speed are those of the linear machine of `system` there.
+        for place, speed in enumerate((2500, 5500)):
+            lines = single.changed([f"operation.speed={speed} rpm"]).system().document["mesh_lines"]
+            assert lines
+            for sensor in ("top", "right wall"):
+                sizes = np.array([line["sensor_acceleration_m_per_s2"]["together"][sensor] for line in lines])
+                level = 20.0 * np.log10(np.sqrt(0.5 * np.sum(sizes**2)) / 1e-6)
+                curve = found.dataset["value_over_speed"].sel(curve=f"sensor.{sensor}.level_db")
+                assert float(curve[number, place]) == pytest.approx(level, abs=1e-6)
+
+
+def test_the_share_within_a_limit_is_that_of_the_known_distribution(tmp_path: Path) -> None:
+    """The left bearing carries 0.8 F1 + 0.2 F2, a sum of two uniform parts."""
+    found = gw.load(_shaft(tmp_path)).vary(folder=tmp_path / "out", workers=1)
+    first, second = found.dataset["input_value"].values.T
+    values = found.dataset["value"].sel(quantity=LEFT).values
+    assert np.allclose(values, 0.8 * first + 0.2 * second, rtol=1e-9)
+    assert first.min() > 800.0
+    assert second.max() < 900.0
+    # 640 to 960 N with a trapezoidal density: the share above 940 by its corner.
+    widths = np.array([0.8 * 400.0, 0.2 * 800.0])
+    corner = 0.8 * 1200.0 + 0.2 * 900.0 - 940.0
+    assert corner > widths[1]
+    above = (corner - 0.5 * widths[1]) / widths[0]
+    share = found.document["yield"]
+    assert share["low"] < 1.0 - above < share["high"]
+    assert abs(share["share"] - (1.0 - above)) < 0.01
+    (row,) = [row for row in found.document["quantities"] if row["name"] == LEFT]
+    assert row["nominal"] == pytest.approx(900.0, rel=1e-9)
+    assert row["mean"] == pytest.approx(900.0, rel=2e-3)
+    assert row["std"] == pytest.approx(np.hypot(*widths) / np.sqrt(12.0), rel=0.02)
+    assert row["quantiles"]["0.5"] == pytest.approx(900.0, rel=5e-3)
+    assert row["within"] == share
+    assert row["rank_correlation"]["operation.force[0].x"] == pytest.approx(
+        stats.spearmanr(first, values).statistic, abs=1e-12
+    )
+    # The worst are the highest, and their cases give the value again.
+    order = np.argsort(-values)[:3]
+    assert row["worst"] == order.tolist()
+    worst = next(iter(sorted((tmp_path).glob("nothing"))), None)
+    assert worst is None
+
+
+def test_sobol_indices_of_a_linear_machine_are_those_of_the_closed_form(tmp_path: Path) -> None:
+    found = gw.load(_shaft(tmp_path)).vary(128, indices=True, folder=tmp_path / "out", workers=1)
+    assert found.document["samples"] == 128 * 4
+    (row,) = [row for row in found.document["quantities"] if row["name"] == LEFT]
+    parts = np.array([0.8 * 400.0, 0.2 * 800.0]) ** 2
+    for key, expected in zip(("operation.force[0].x", "operation.force[1].x"), parts / parts.sum(), strict=True):
+        for which in ("sobol_first", "sobol_total"):
+            value, low, high = row[which][key]
+            assert low <= expected <= high
+            assert value == pytest.approx(expected, abs=0.05)
+    # The yield is of the gearboxes that stand for the production, not of those made for the indices.
+    assert int(found.dataset["representative"].sum()) == 256
+
+
+def test_correlated_forces_scatter_as_their_sum_does(tmp_path: Path) -> None:
+    keys = 'keys = ["operation.force[0].x", "operation.force[1].x"]'
+    text = SHAFT.replace("uniform", "normal").replace('"800 N", "1200 N"', '"1000 N", "50 N"')
+    text = text.replace('"100 N", "900 N"', '"500 N", "100 N"')
+    text += f"[[variation.correlation]]\n{keys}\ncoefficient = -0.6\n"
+    found = gw.load(_shaft(tmp_path, text)).vary(256, folder=tmp_path / "out", workers=1)
+    (row,) = [row for row in found.document["quantities"] if row["name"] == LEFT]
+    variance = (0.8 * 50.0) ** 2 + (0.2 * 100.0) ** 2 - 2.0 * 0.6 * (0.8 * 50.0) * (0.2 * 100.0)
+    assert row["std"] == pytest.approx(np.sqrt(variance), rel=0.03)
+    with pytest.raises(CaseError, match="independent inputs alone"):
+        gw.load(_shaft(tmp_path, text)).vary(8, indices=True, folder=tmp_path / "out", workers=1)
+
+
+def test_impossible_gearboxes_fail_by_themselves_and_say_why(tmp_path: Path) -> None:
+    """Pinions of 27 and 29 teeth do not fit between the shafts of 28 and 28."""
+    text = '[variation]\nsamples = 16\nanalyses = ["gears"]\n[variation.vary]\n'
+    text += '"gear.pinion.teeth" = { values = [28, 40] }\n"operation.torque" = { uniform = ["60 N*m", "80 N*m"] }\n'
+    found = gw.load(_written(tmp_path, "spur-pair", text)).vary(folder=tmp_path / "out", workers=1)
+    failed = [row["number"] for row in found.document["failed"]]
+    teeth = sobol_points(16, 2, 1)[:, 0]
+    assert failed == np.flatnonzero(teeth >= 0.5).tolist()
+    assert all("gear" in row["message"] for row in found.document["failed"])
+    values = found.dataset["value"].sel(quantity=TE).values
+    assert np.isnan(values[failed]).all()
+    assert np.isfinite(np.delete(values, failed)).all()
+    assert any("cannot be solved" in text for text in found.warnings)
+
+
+def test_a_study_goes_on_where_it_ended_and_a_torn_record_costs_its_last_line(tmp_path: Path) -> None:
+    path, out = _shaft(tmp_path), tmp_path / "out"
+    first = gw.load(path).vary(20, folder=out, workers=1)
+    (record,) = (out / FOLDER).glob("*.jsonl")
+    lines = record.read_bytes().splitlines(keepends=True)
+    assert len(lines) == 20
+    record.write_bytes(b"".join(lines[:12]) + lines[12][:30])
+    again = gw.load(path).vary(30, folder=out, workers=1)
+    assert again.document["resumed"] == 12
+    assert np.array_equal(again.dataset["value"].values[:20], first.dataset["value"].values)
+    assert len(record.read_bytes().splitlines()) == 30
+    # Another distribution is another record, and the old one goes.
+    other = gw.load(path, ["variation.vary.'operation.force[0].x'.uniform=['700 N', '1200 N']"])
+    assert other.vary(5, folder=out, workers=1).document["resumed"] == 0
+    assert [one != record for one in (out / FOLDER).glob("*.jsonl")] == [True]
+
+
+def test_limits_of_unknown_quantities_and_analyses_without_their_tables_are_refused(tmp_path: Path) -> None:
+    wrong = SHAFT.replace(LEFT, "bearing.lift.force_n")
+    with pytest.raises(CaseError, match=r"did you mean 'bearing\.left\.force_n'"):
+        gw.load(_shaft(tmp_path, wrong)).vary(4, folder=tmp_path / "out", workers=1)
+    with pytest.raises(CaseError, match="at least one pair of gears"):
+        gw.load(_shaft(tmp_path, SHAFT.replace("samples = 256", 'analyses = ["gears"]'))).vary(folder=tmp_path / "o")
+    with pytest.raises(CaseError, match=r"needs \[variation\]"):
+        gw.load("spur-pair").vary(folder=tmp_path / "o")
+
+
+def test_a_median_that_the_key_does_not_take_is_refused_before_anything_is_solved(tmp_path: Path) -> None:
+    wrong = SHAFT.replace(
+        '"operation.force[1].x" = { uniform = ["100 N", "900 N"] }',
+        '"rotor.shaft.start" = { uniform = ["1 N", "2 N"] }',
+    )
+    with pytest.raises(CaseError, match=r"variation\.vary, rotor\.shaft\.start: .*expected a length"):
+        gw.load(_shaft(tmp_path, wrong)).vary(4, folder=tmp_path / "out", workers=1)
+
+
+def test_the_command_writes_the_study_and_its_worst_gearboxes_as_cases(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert run_command(["vary", str(_shaft(tmp_path)), "-n", "64", "-o", str(out), "-q"]) == 0
+    shown = capsys.readouterr().out
+    assert "Yield:" in shown
+    document = json.loads((out / "summary.json").read_text())
+    assert set(document["files"]) >= {"vary.nc", "vary-distributions.png", "vary-importance.png", "vary-scatter.png"}
+    (row,) = [row for row in document["quantities"] if row["name"] == LEFT]
+    worst = gw.load(out / f"worst-{LEFT}-1.toml")
+    load = worst.operating_point().document["bearings"][0]
+    assert np.linalg.norm(load["force_n"]) == pytest.approx(max(row["quantiles"].values()), rel=0.05)
+    assert tomllib.loads((out / "worst-bearing.left.force_n-1.toml").read_text())["title"].startswith("A shaft")
+    assert run_command(["vary", str(_shaft(tmp_path)), "-n", "64", "-o", str(out), "--json", "-q"]) == 0
+    assert json.loads(capsys.readouterr().out)["resumed"] == 64
+    assert run_command(["vary", "spur-pair", "-o", str(out)]) == 2
+    assert "variation" in capsys.readouterr().err
