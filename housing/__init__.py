@@ -7,7 +7,7 @@
 - :func:`assemble` and :func:`attach_fixtures` make stiffness and mass matrices;
   :mod:`gearwhine.housing.fem.factorization` factors them.
 - :func:`solve_modes` finds every mode below a limit (:class:`ModeSet`) with its :class:`Certificate`;
-  :func:`add_residual_modes` makes the static compliance at the seats exact.
+  their residual modes make the static compliance at the seats exact.
 - :func:`receptance`, :func:`effective_mass`, :func:`modal_damping` and :func:`health_report` evaluate a mode set;
   :func:`read_modes` and :func:`write_modes` keep it on file.
 - :func:`compare_by_shapes`, :func:`compare_by_dominance` and :func:`compare_by_frequency` pair model modes with
@@ -52,7 +52,6 @@ from gearwhine.housing.modes.effective_mass import modal_damping as modal_dampin
 from gearwhine.housing.modes.health import HealthReport as HealthReport
 from gearwhine.housing.modes.health import health_report as health_report
 from gearwhine.housing.modes.natural_modes import ModeSet as ModeSet
-from gearwhine.housing.modes.natural_modes import add_residual_modes as add_residual_modes
 from gearwhine.housing.modes.natural_modes import solve_modes as solve_modes
 from gearwhine.housing.modes.receptance import receptance as receptance
 from gearwhine.housing.storage.mode_file import read_modes as read_modes

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
-from gearwhine.housing.fem.factorization import Backend, Factorization, Factorizer
+from gearwhine.housing.fem.factorization import Backend, Factorizer
 from gearwhine.housing.fem.matrices import FreeSystem, Matrices
 from gearwhine.housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
@@ -203,60 +203,6 @@ def _oriented(vectors: FloatArray) -> FloatArray:
     size = np.abs(vectors)
     largest = np.argmax(size >= (1.0 - _LARGEST_ENTRY_TOLERANCE) * size.max(axis=0), axis=0)
     return np.asarray(vectors * np.sign(vectors[largest, np.arange(vectors.shape[1])]))
-
-
-def add_residual_modes(
-    matrices: Matrices,
-    modes: ModeSet,
-    ports: Sequence[sparse.csr_array] | sparse.csr_array,
-    *,
-    factor: Factorization | None = None,
-    shift: float | None = None,
-    backend: Backend | None = None,
-    threads: int = 2,
-) -> ModeSet:
-    """Add residual modes to a mode set, so that the static compliance at the ports is exact.
-
-    The shapes stay the same to the error of their certificate, which Eq. (3) of
-    :mod:`gearwhine.housing.modes.residual_modes` reduces.
-
-    Parameters
-    ----------
-    matrices : Matrices
-        The matrices of the modes, supports included.
-    modes : ModeSet
-        Complete up to its limit; its own residual modes are replaced.
-    ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Ports such as those of :func:`gearwhine.housing.model.seats.seat_matrix`; the static compliance has their order.
-    factor, shift : Factorization and float, optional
-        A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
-        neither.
-    backend, threads
-        See :class:`gearwhine.housing.fem.factorization.Factorizer`; used where no factor is given.
-
-    Raises
-    ------
-    HousingError, ReductionError
-        See :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
-    """
-    system = FreeSystem(matrices, threads=threads)
-    floor = system.floor(modes.certificate.limit)
-    if factor is None or shift is None:
-        shift = -floor
-        factor = Factorizer(backend=backend, threads=threads).factor(system.shifted(shift))
-    residual_modes, vectors = residual_attachment_modes(
-        system.stiffness,
-        system.mass,
-        factor.solve,
-        modes.frequencies**2,
-        modes.shapes.reshape(len(modes.shapes), -1).T[system.free],
-        stacked(ports)[:, system.free],
-        shift=shift,
-        floor=floor,
-        free=system.free,
-        n_nodes=system.n_nodes,
-    )
-    return replace(modes, shapes=system.expand(vectors), residual_modes=residual_modes)
 
 
 class ModeSetExtension:

@@ -5,7 +5,7 @@ Pictures are single or on a sheet; animations are GIF by Pillow, or MP4 by ffmpe
 
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Literal
@@ -14,12 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import EncoderUnavailableError
-from gearwhine.housing.modes.natural_modes import ModeSet
-from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 from gearwhine.housing.pictures.scene import STRIP, Scene, colour_strip
-from gearwhine.housing.pictures.views import AUTO, check_view
+from gearwhine.housing.pictures.views import AUTO
 from gearwhine.housing.storage.atomic_file import atomic_file
-from gearwhine.meshes import Mesh
 
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
@@ -29,54 +27,6 @@ _FRAMES = 24  # frames of one period; even, so that half of them mirror the othe
 _FRAME = 80  # duration of each frame [ms]
 _PAPER = 240  # a pixel with all three colours above it is background or its soft edge
 _PERIODS = 4  # periods of an MP4, which players show once; a GIF goes round
-
-
-def render_modes(
-    mesh: Mesh,
-    modes: ModeSet,
-    numbers: Sequence[int],
-    folder: Path,
-    *,
-    notes: Mapping[int, str] | None = None,
-    view: str = AUTO,
-    size: tuple[int, int] = (1000, 780),
-    progress: Callable[[str], None] = lambda message: None,
-) -> list[Path]:
-    """Draw one picture for each mode: ``mode-03-1007Hz.png`` and so on.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    modes : ModeSet
-    numbers : sequence of int
-        Numbers of the modes, from 1.
-    folder : path
-        Folder of the pictures; made where it is missing.
-    notes : mapping of int to str, optional
-        A second line under a mode's title.
-    view : str
-        One of :data:`gearwhine.housing.pictures.views.VIEWS`.
-    size : tuple of int
-        Width and height of a picture [pixels].
-    progress : callable
-        Called with a line of text before each mode.
-
-    Returns
-    -------
-    list of path
-        The files, in the order of ``numbers``.
-
-    Raises
-    ------
-    HousingError
-        Where there is no mode of that number, or no view of that name.
-    RendererUnavailableError
-        Where no library draws without a screen.
-    """
-    check_view(view)
-    housing = drawn_housing(mesh)
-    shapes = drawn_modes(housing, modes, numbers, notes)
-    return render_shapes(housing, shapes, folder, view=view, size=size, progress=progress)
 
 
 def render_shapes(
@@ -89,7 +39,7 @@ def render_shapes(
     size: tuple[int, int] = (1000, 780),
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[Path]:
-    """Draw one picture of each shape, where it is widest, named after it; see :func:`render_modes`.
+    """Draw one picture of each shape, where it is widest, named after it, into a folder; return the files.
 
     The colours are titled by the quantity of the first. With a view ``beside``, such as the opposite one, each picture
     is two of that size side by side, with one scale of colours.

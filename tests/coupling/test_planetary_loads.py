@@ -53,7 +53,11 @@ def _shares(machine: Machine) -> np.ndarray:
 
 def test_equal_planets_share_equally() -> None:
     for count in (3, 4):
-        assert _shares(_machine(count, error=0.0)) == pytest.approx(np.full(count, 1.0 / count), abs=1e-9)
+        machine = _machine(count, error=0.0)
+        load = planetary_load(machine, machine.placed_sets[0], machine.operating_point())
+        assert [planet.load_share for planet in load.planets] == pytest.approx(np.full(count, 1.0 / count), abs=1e-9)
+        # Each takes its part of the sun's torque of 200 N m.
+        assert [planet.torque for planet in load.planets] == pytest.approx(np.full(count, 200.0 / count), rel=1e-9)
 
 
 def test_a_planet_that_stands_behind_carries_less_and_a_floating_sun_evens_three_out() -> None:

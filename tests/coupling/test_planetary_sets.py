@@ -15,7 +15,7 @@ from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.description.gear_train import Output
 from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.description.planet_copies import planet_copies
-from gearwhine.coupling.description.planetary import PlanetarySet, placed_set
+from gearwhine.coupling.description.planetary import PlanetarySet, part_of_period, placed_set
 
 
 @pytest.fixture(scope="module")
@@ -158,6 +158,31 @@ def test_the_assembly_condition_is_that_of_the_phases(sun: int, planet: int, pla
         Machine(**parts)
     with pytest.raises(CouplingError, match="cannot be assembled"):
         _ = Machine(**{**parts, "planetary_sets": []}).mesh_phases
+
+
+def test_planets_that_reach_over_the_axis_of_their_ring_leave_room_for_one() -> None:
+    """40 teeth in a ring of 60: the axes of two are 40 mm apart, the tips of each reach 42 mm from its own."""
+    carrier = shaft("c")
+    made = planets(40, 0.5 * MODULE * 20, carrier, [("p", "r")], count=2)
+    parts = _Parts([shaft("r"), carrier], [("r", -60)], made)
+    (touching, *_) = placed_set(PlanetarySet("stage", made.gear_names, "c", ring="r"), parts).findings()
+    assert "axes are 40 mm apart, and their tip circles need 84 mm" in touching.expected
+    assert "room for 1 of them" in touching.expected
+
+
+@pytest.mark.parametrize(
+    ("phase", "part"), [(3.0 - 1e-12, 0.0), (-1e-12, 0.0), (1e-12, 0.0), (-0.25, 0.75), (2.4, 0.4), (-7.0, 0.0)]
+)
+def test_a_phase_is_a_part_of_a_period_without_rounding_about_whole_ones(phase: float, part: float) -> None:
+    assert part_of_period(phase) == pytest.approx(part, abs=0.0 if part == 0.0 else 1e-12)
+
+
+@pytest.mark.parametrize("attribute", ["name", "planets", "carrier", "sun", "ring"])
+def test_what_is_no_name_is_refused(attribute: str) -> None:
+    given: dict[str, Any] = {"name": "stage", "planets": ["p"], "carrier": "c", "sun": "s", "ring": "r"}
+    PlanetarySet(**given)
+    with pytest.raises(CouplingError, match=rf"{attribute} is .*; expected (a|names)"):
+        PlanetarySet(**given | {attribute: [3] if attribute == "planets" else 3})
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {

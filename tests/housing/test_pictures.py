@@ -3,9 +3,9 @@
 import subprocess
 import sys
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from gearwhine.housing import HousingError, ModeSet, solve_modes
 from gearwhine.housing.errors import RendererUnavailableError
 from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
-from gearwhine.housing.pictures.images import render_modes, render_shapes, render_sheet
+from gearwhine.housing.pictures.images import render_shapes, render_sheet
 from gearwhine.housing.pictures.scene import STRIP, find_renderer
 from gearwhine.housing.pictures.views import VIEWS
 from gearwhine.meshes import Mesh
@@ -40,6 +40,11 @@ def _pixels(path: Path) -> np.ndarray:
     with Image.open(path) as image:
         assert image.format == "PNG"
         return np.asarray(image.convert("RGB"))
+
+
+def render_modes(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder: Path, **how: Any) -> list[Path]:
+    housing = drawn_housing(mesh)
+    return render_shapes(housing, drawn_modes(housing, modes, numbers, how.pop("notes", None)), folder, **how)
 
 
 @pytest.mark.usefixtures("renderer")

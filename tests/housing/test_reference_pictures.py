@@ -5,8 +5,9 @@ are compared as means over squares of six pixels: another rasteriser's edges and
 After a change of style, copy the new pictures from the folder that a failed test names, once they have been looked at.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,8 @@ from PIL import Image
 
 from gearwhine.housing import Material, ModeSet, assemble, solve_modes
 from gearwhine.housing.errors import RendererUnavailableError
-from gearwhine.housing.pictures.images import render_modes
+from gearwhine.housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+from gearwhine.housing.pictures.images import render_shapes
 from gearwhine.housing.pictures.scene import find_renderer
 from gearwhine.meshes import Mesh
 
@@ -40,6 +42,11 @@ def _difference(one: Path, other: Path) -> float:
 def solved(block: Callable[..., Mesh], steel: Material) -> tuple[Mesh, ModeSet]:
     mesh = block((0.30, 0.12, 0.20), (3, 1, 2))
     return mesh, solve_modes(assemble(mesh, steel), count=max(NUMBERS))
+
+
+def render_modes(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder: Path, **how: Any) -> list[Path]:
+    housing = drawn_housing(mesh)
+    return render_shapes(housing, drawn_modes(housing, modes, numbers, how.pop("notes", None)), folder, **how)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """Residual attachments against dense solves of the whole stiffness, grounded and free."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,6 @@ from gearwhine.housing import (
     ModeSet,
     Seat,
     Support,
-    add_residual_modes,
     attach_fixtures,
     solve_modes,
 )
@@ -22,6 +21,7 @@ from gearwhine.housing.errors import ReductionError
 from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.model.seats import seat_matrix
 from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.modes.residual_modes import residual_attachment_modes
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.arrays import FloatArray, IntArray
@@ -47,6 +47,13 @@ def port(beam: tuple[Mesh, Matrices]) -> sparse.csr_array:
 @pytest.fixture(scope="module")
 def grounded(beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array) -> ModeSet:
     return solve_modes(beam[1].held(clamped), frequency_limit=LIMIT, ports=port)
+
+
+def with_residual_modes(
+    matrices: Matrices, modes: ModeSet, ports: sparse.csr_array | Sequence[sparse.csr_array]
+) -> ModeSet:
+    """The natural modes of a set, and residual modes of ports alone."""
+    return ModeSetExtension(matrices, modes).with_ports(replace(modes, residual_modes=None), ports, orders=1)
 
 
 def static(matrices: Matrices, fixed: IntArray, port: sparse.csr_array) -> FloatArray:
@@ -160,7 +167,7 @@ def test_soft_mounts_do_not_hide_the_local_compliance(
 def test_a_port_given_twice_brings_nothing_new(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
 ) -> None:
-    twice = add_residual_modes(beam[1].held(clamped), grounded, [port, port[:2]])
+    twice = with_residual_modes(beam[1].held(clamped), grounded, [port, port[:2]])
     assert twice.residual_modes is not None
     assert grounded.residual_modes is not None
     np.testing.assert_allclose(twice.residual_modes.frequencies, grounded.residual_modes.frequencies, rtol=1e-6)
@@ -171,7 +178,7 @@ def test_a_port_on_the_fixed_patch_does_not_move(
     beam: tuple[Mesh, Matrices], clamped: IntArray, grounded: ModeSet
 ) -> None:
     held = seat_matrix(beam[0], Seat("bottom", (0.025, 0.03, 0.0)))
-    modes = add_residual_modes(beam[1].held(clamped), grounded, held)
+    modes = with_residual_modes(beam[1].held(clamped), grounded, held)
     assert modes.residual_modes is not None
     assert modes.residual_modes.shapes.shape == (0, len(beam[0].points), 3)
     assert not modes.residual_modes.proof.compliance.any()
@@ -313,11 +320,11 @@ def test_modes_that_are_not_the_housings_fail_the_proof(
 ) -> None:
     wrong = replace(grounded, frequencies=grounded.frequencies * (1.0 + 1e-7))
     with pytest.raises(ReductionError, match="miss the static compliance at the ports by"):
-        add_residual_modes(beam[1].held(clamped), wrong, port)
+        with_residual_modes(beam[1].held(clamped), wrong, port)
     bent = grounded.shapes.copy()
     bent[0] += 1e-3 * bent[1]
     with pytest.raises(ReductionError, match=r"overlap by|not its own"):
-        add_residual_modes(beam[1].held(clamped), replace(grounded, shapes=bent), port)
+        with_residual_modes(beam[1].held(clamped), replace(grounded, shapes=bent), port)
 
 
 def test_arrays_that_do_not_fit_are_refused(

@@ -244,9 +244,10 @@ def warnings_of(case: Case) -> tuple[str, ...]:
     """Return a sentence on each choice in a valid case that is allowed but implausible."""
     warnings = []
     housing = case.housing
-    if housing is not None and case.transient is not None and not housing.sensor:
+    either = housing or case.reduced_housing
+    if either is not None and case.transient is not None and not either.sensor:
         warnings.append("[housing] has no [[housing.sensor]]: the transient will show no acceleration of the housing")
-    if housing is not None and case.rotor and all(bearing.grounded for bearing in case.bearing):
+    if either is not None and case.rotor and all(bearing.grounded for bearing in case.bearing):
         warnings.append("no bearing stands in a seat of [housing]: rotors and housing do not feel each other")
     if housing is not None and not housing.support and not housing.mount:
         warnings.append("[housing] has no [[housing.support]] and no [[housing.mount]]: it floats freely")
@@ -271,28 +272,20 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         is_held = rotor.name in on_bolts or (rotor.saved is not None and bool(rotor.saved.bearings))
         if not is_held and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             warnings.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
-    if housing is not None or case.reduced_housing is not None:
+    if either is not None:
         warnings += _seat_warnings(case.bearing)
     if case.reduced_housing is not None:
-        warnings += _reduced_warnings(case)
+        warnings += [
+            f"[{table}] has no effect: [housing.reduced] has no shapes, so that there is no {purpose}"
+            for table, purpose in (("acoustics", "sound"), ("measured", "comparison"), ("update", "fit"))
+            if getattr(case, table) is not None
+        ]
     document = case_document(case)
     warnings += _names_by_case(document)
     if any(isinstance(bearing.stiffness, RollingStiffness) for bearing in case.bearing):
         warnings += [text for location in case.parts.axial_locations for text in location.warnings]
     warnings += case_warnings(case.unusual, library_findings(case), document)
     return tuple(warnings)
-
-
-def _reduced_warnings(case: Case) -> Iterator[str]:
-    """Yield a sentence on each table that a housing of reduced matrices leaves without effect, or that is missing."""
-    housing = case.reduced_housing
-    for table, purpose in (("acoustics", "sound"), ("measured", "comparison"), ("update", "fit")):
-        if getattr(case, table) is not None:
-            yield f"[{table}] has no effect: [housing.reduced] has no shapes, so that there is no {purpose}"
-    if housing is not None and case.transient is not None and not housing.sensor:
-        yield "[housing] has no [[housing.sensor]]: the transient will show no acceleration of the housing"
-    if case.rotor and all(bearing.grounded for bearing in case.bearing):
-        yield "no bearing stands in a seat of [housing]: rotors and housing do not feel each other"
 
 
 def _seat_warnings(bearings: Sequence[Bearing]) -> list[str]:

@@ -73,12 +73,12 @@ def rexs_of(case: Case, load: Mapping[str, Any] | None = None, housing: HousingC
     require(case, "rotor", "gear", "gear_pair", command="export --rexs")
     sheet = Sheet()
     title = {"model_name": plain(readable(case.title))} if readable(case.title) else {}
-    unit = sheet.add("gear_unit", case.title, title | gravity_of(case))
+    unit = sheet.add("gear_unit", case.title, title | gravity_of(case.operation))
     casing = sheet.part(unit, "gear_casing", "casing")
     shafts = Shafts(sheet, unit, casing, add_materials(sheet, case.material))
     if case.housing is not None and case.housing.material is not None:
         sheet.relate("reference", origin=casing, referenced=shafts.materials[case.housing.material])
-    add_shafts(case, shafts)
+    add_shafts(case.rotor, case.material, shafts)
     gears = add_gears(case, shafts)
     add_stages(case, shafts, gears)
     bearings = add_bearings(case, shafts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.gears import Gear, Relief, distance_of_axes
@@ -188,17 +189,17 @@ def add_stages(case: Case, shafts: Shafts, gears: dict[str, int]) -> None:
             if set(gears_in_mesh) & set(one.planets):
                 sheet.relate("assembly", assembly=stage, part=number)
                 del found[gears_in_mesh]
-        _add_torque_support(case, one, shafts)
+        _add_torque_support(case.gear, one, shafts)
     for number in found.values():
         sheet.relate("assembly", assembly=shafts.unit, part=number)
 
 
-def _add_torque_support(case: Case, one: Planetary, shafts: Shafts) -> None:
+def _add_torque_support(gears: Sequence[Gear], one: Planetary, shafts: Shafts) -> None:
     """Add the coupling to the casing that holds the fixed member of a set from turning, and in no other way."""
-    rotor, fixed = one.held_rotor(case.gear), one.fixed
+    rotor, fixed = one.held_rotor(gears), one.fixed
     if rotor is None or fixed is None:
         return
-    of_gear = next((gear.at for gear in case.gear if gear.name == fixed.member), None)
+    of_gear = next((gear.at for gear in gears if gear.name == fixed.member), None)
     shaft, at = shafts.place(rotor, (of_gear or 0.0) if fixed.at is None else fixed.at)
     attributes = {
         "u_coordinate_on_shaft_inner_side": quantity(at, "m"),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gearwhine.case import Case
+from gearwhine.case import Case, Operation
 from gearwhine.exchange.rexs.model import Attribute
 from gearwhine.exchange.rexs.operation import FORCES, GRAVITY
 from gearwhine.from_case.rexs.shafts import Shafts
@@ -17,9 +17,9 @@ _SAME_SPEED = 1e-9  # part by which speeds may differ and are one
 _HELD = ("speed", "rotor", "torque", "at", "output", "force", "gravity")
 
 
-def gravity_of(case: Case) -> dict[str, Attribute]:
+def gravity_of(operation: Operation | None) -> dict[str, Attribute]:
     """Return the attributes of a gear unit on its weight."""
-    gravity = None if case.operation is None else case.operation.gravity
+    gravity = None if operation is None else operation.gravity
     if gravity is None or not any(gravity):
         return {}
     amount = math.hypot(*gravity)

@@ -7,10 +7,10 @@ segments, is several shafts, which couplings join.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case import CaseError, Problem
 from gearwhine.case.housing import Material
 from gearwhine.case.rotors import CouplingSegment, Disc, Rotor, Segment
 from gearwhine.exchange.rexs.materials import PROPERTIES
@@ -75,7 +75,7 @@ def add_materials(sheet: Sheet, materials: Mapping[str, Material]) -> dict[str, 
     return found
 
 
-def add_shafts(case: Case, shafts: Shafts) -> None:
+def add_shafts(rotors: Sequence[Rotor], materials: Mapping[str, Material], shafts: Shafts) -> None:
     """Add the shafts of every rotor.
 
     Raises
@@ -84,12 +84,12 @@ def add_shafts(case: Case, shafts: Shafts) -> None:
         Where a file holds a rotor, or a coupling has no shaft on either side.
     """
     problems = [
-        problem for place, rotor in enumerate(case.rotor) if (problem := _cannot_be_shafts(place, rotor)) is not None
+        problem for place, rotor in enumerate(rotors) if (problem := _cannot_be_shafts(place, rotor)) is not None
     ]
     if problems:
         raise CaseError(problems)
-    for rotor in case.rotor:
-        _add_rotor(case, rotor, shafts)
+    for rotor in rotors:
+        _add_rotor(rotor, materials, shafts)
 
 
 def _cannot_be_shafts(place: int, rotor: Rotor) -> Problem | None:
@@ -102,7 +102,7 @@ def _cannot_be_shafts(place: int, rotor: Rotor) -> Problem | None:
     return None
 
 
-def _add_rotor(case: Case, rotor: Rotor, shafts: Shafts) -> None:
+def _add_rotor(rotor: Rotor, materials: Mapping[str, Material], shafts: Shafts) -> None:
     sheet, about, station = shafts.sheet, f'rotor "{rotor.name}"', 0.0
     pieces: list[Piece] = []
     waiting: CouplingSegment | None = None
@@ -124,7 +124,7 @@ def _add_rotor(case: Case, rotor: Rotor, shafts: Shafts) -> None:
         station += segment.length
     shafts.pieces[rotor.name] = pieces
     for disc in rotor.discs:
-        built = disc.build(rotor, case.material)
+        built = disc.build(rotor, materials)
         shaft, at = shafts.place(rotor.name, disc.at)
         attributes = {
             "u_coordinate_on_shaft": quantity(at, "m"),

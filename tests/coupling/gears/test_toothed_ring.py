@@ -65,6 +65,19 @@ def test_an_inner_circle_turns_as_the_torque_asks(outside: float) -> None:
     assert twist_flexibility((Annulus(outside, 1.0, 1.0),)) == pytest.approx(1.0 - outside**-2, rel=1e-12)
 
 
+@pytest.mark.parametrize("b", [1.1, 1.3, 3.0])
+def test_a_free_ring_breathes_as_lame_says(b: float) -> None:
+    """Under a pressure p within the radius 1, and under a tension p around the radius b, each by p times its radius.
+
+    2 mu u_r = p / (b^2 - 1) ((kappa - 1) r / 2 + b^2 / r), and p b^2 / (b^2 - 1) ((kappa - 1) r / 2 + 1 / r).
+    """
+    found = toothed_ring._free_ring(section(16, 0.01, b), 3)[0, ::2, ::2].real
+    even = (STRESS - 1.0) / 2.0
+    inside = [even + b**2, even * b + b]
+    outside = [(even + 1.0) * b, even * b**2 + 1.0]
+    np.testing.assert_allclose(found, np.array([inside, outside]).T / (b**2 - 1.0), rtol=1e-12)
+
+
 @pytest.mark.parametrize("outside", [1.2, 3.0])
 def test_few_narrow_teeth_are_arcs_alone(monkeypatch: pytest.MonkeyPatch, outside: float) -> None:
     """With teeth as rigid as stamps and far apart the ring is that of a single arc, and of two."""

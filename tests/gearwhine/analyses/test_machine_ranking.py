@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from planetary_machines import AXIS as SET_AXIS
 from planetary_machines import set_parts
@@ -11,6 +12,8 @@ import gearwhine as gw
 from gearwhine.case.box import FACES
 from gearwhine.case.model import housing_table
 from gearwhine.coupling import CouplingError
+from gearwhine.coupling.load_analysis.box_walls import wall_changes
+from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
 from gearwhine.coupling.load_analysis.line_model import turning_carriers
 from gearwhine.coupling.load_analysis.ranking import rank_parts
 from gearwhine.from_case.parametric_housing import geometry_of
@@ -45,7 +48,8 @@ def test_walls_around_planets_are_ranked_without_lines_and_the_ranking_says_why(
         above = [replace(one, axis=(one.axis[0], one.axis[1] + AXIS[1] - SET_AXIS[1])) for one in parts["shafts"]]
         seats = {"s 0.05": "bore", "p 0.01 1": "c"}
         seated = [replace(one, seat=seats.get(one.bearing.name)) for one in parts["bearings"]]
-        return gw.Machine(**parts | {"shafts": above, "bearings": seated, "housing": housing})
+        off = [replace(one, bearing=replace(one.bearing, at=0.053)) if one.seat == "bore" else one for one in seated]
+        return gw.Machine(**parts | {"shafts": above, "bearings": off, "housing": housing})
 
     turning = machine("r")
     found = rank_parts(turning, turning.operating_point())
@@ -54,6 +58,28 @@ def test_walls_around_planets_are_ranked_without_lines_and_the_ranking_says_why(
     assert {one.kind for one in found.influences} == {"housing", "bearing stiffness", "bearing position"}
     assert turning_carriers(turning) == ("c",)
     assert turning_carriers(machine("c")) == ()
+    # A housing that turns as a rigid body carries a bearing along that is 3 mm beside the middle of its seat.
+    spin = np.array([1.0, -2.0, 0.5])
+    ports = bearing_ports(housing.housing, turning)
+    carried = [*np.cross(spin, (*AXIS, 0.053)), spin[0], spin[1]]
+    np.testing.assert_allclose(ports["s 0.05"] @ np.cross(spin, housing.mesh.points).ravel(), carried, rtol=1e-6)
+
+    # The outer faces of a wall that grows stand still, and its inner face moves inwards as much as it grows.
+    points = housing.mesh.points
+    middle, half = 0.5 * (points.min(axis=0) + points.max(axis=0)), np.array([0.07, 1.0, 0.025])
+    inside = (np.abs(points - middle) < half).all(axis=1)
+    changes = wall_changes(housing.housing, box, turning)
+    walls = {change.parameter: change.rate.velocity for change in changes}
+    for wall, inner, outer, way in (("bottom wall", 0.02, 0.0, 1.0), ("top wall", 0.13, 0.15, -1.0)):
+        for height, speed in ((inner, way), (outer, 0.0)):
+            face = inside & (np.abs(points[:, 1] - height) < 1e-9)
+            assert face.any()
+            moved = walls[wall][face]
+            np.testing.assert_allclose(moved, np.tile([0.0, speed, 0.0], (len(moved), 1)), atol=1e-6)
+    # A housing that only shifts carries all along alike, whatever its walls.
+    for change in changes:
+        for port in (*change.bearings.values(), *change.sensors.values()):
+            assert np.abs(port @ np.ones(points.size)).max() < 1e-6
 
 
 @pytest.mark.slow
