@@ -3,31 +3,34 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearwhine.analyses.origin import Origin
-from gearwhine.analyses.result import Result
+from gearwhine.analyses.result import Result, no_files
 from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
 from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.model import lacking
-from gearwhine.case.variation import Variation
-from gearwhine.numerics.distributions import correlated
+from gearwhine.case.variation import Limit, Variation
+from gearwhine.coupling import CouplingError, Machine
+from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.numerics.distributions import Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import IndexPoints, index_points, sobol_points
 from gearwhine.output import file_stems
 from gearwhine.results.variation import varied_dataset, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
-from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
-from gearwhine.variation.quantities import Wanted
+from gearwhine.variation.inputs import Input, correlation_matrix, values_at, varied_inputs
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
 from gearwhine.variation.run import run_samples
-from gearwhine.variation.samples import VariedCase
+from gearwhine.variation.samples import VariedCase, outcome_of
 from gearwhine.variation.statistics import VariedResult, require_known_limits
 
 if TYPE_CHECKING:
@@ -118,7 +121,7 @@ def solve_variation(
     result = VariedResult(
         inputs=inputs,
         points=points,
-        values=varied.values(points),
+        values=values_at(inputs, points),
         nominal=nominal,
         outcomes=solved.outcomes,
         limits=variation.limit,
@@ -126,7 +129,102 @@ def solve_variation(
         design=design,
         resumed=solved.resumed,
     )
-    return _result(Origin(case.title, case=case, housing=housing), varied, result, start)
+    origin = Origin(case.title, case=case, housing=housing)
+
+    def worst_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
+        """Write the worst gearboxes as cases."""
+        for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
+            for rank, number in enumerate(one.worst, start=1):
+                worst = varied.case(result.points[number])
+                title = f"{origin.title}: gearbox {number}, {one.name} = {one.values[number]:.6g}".strip(": ")
+                text = dump_case(worst.model_copy(update={"title": title}))
+                (place / f"worst-{stem}-{rank}.toml").write_text(text, encoding="utf-8")
+        return {}
+
+    return _result(origin, result, start, worst_cases)
+
+
+def vary(
+    make: Callable[[Mapping[str, float]], Machine],
+    laws: Mapping[str, Distribution],
+    samples: int = 256,
+    *,
+    analyses: Sequence[str] = ("gears", "load"),
+    speeds: Sequence[float] = (),
+    plan: TransientPlan | None = None,
+    limits: Mapping[str, Limit] | None = None,
+    indices: bool = False,
+    seed: int = 1,
+    title: str = "",
+    progress: Progress = silent,
+) -> Result[VariedResult]:
+    """Solve many machines that a function makes of drawn values, one after the other in this process.
+
+    Parameters
+    ----------
+    make : callable
+        Makes a machine of the values by name. What it cannot make raises `ValueError`, and the sample fails by itself.
+    laws : mapping of str to Distribution
+        Distribution of each value: :class:`gearwhine.Normal`, :class:`gearwhine.Uniform` and others of
+        :mod:`gearwhine.numerics.distributions`.
+    samples : int
+        Number of machines; with ``indices`` times the number of values and two more.
+    analyses : sequence of str
+        What is found of each: "gears", "load", "rotors", "lines", "motion".
+    speeds : sequence of float
+        Signed speeds of "lines" [rad/s]; by default that of each machine.
+    plan : TransientPlan, optional
+        Stretch of the motion.
+    limits : mapping of str to Limit, optional
+        Ranges of good machines by quantity, ``{"bearing.left.life_h": gw.Limit(at_least=5000.0)}``.
+    indices : bool
+        Find Sobol' indices.
+    seed : int
+    title : str
+    progress : callable
+
+    Raises
+    ------
+    CouplingError
+        Where an analysis is none of these, or nothing is varied.
+    CaseError
+        Where a limit is of a quantity that the machines do not have.
+    Exception
+        What `make` or an analysis raises of the machine of all medians.
+
+    Examples
+    --------
+    >>> import gearwhine as gw
+    >>> def shaft(values):
+    ...     rotor = gw.Rotor("shaft", [gw.Segment(0.5, values["diameter"], 0.0, gw.STEEL)])
+    ...     held = [gw.Bearing.isotropic(f"at {at}", at, 1e8) for at in (0.02, 0.48)]
+    ...     return gw.Machine([gw.Shaft(rotor)], [gw.MountedBearing(one, "shaft", None) for one in held], speed=100.0)
+    >>> varied = gw.vary(shaft, {"diameter": gw.Normal(0.03, 1e-4)}, 16, analyses=["rotors"])
+    >>> [one.name for one in varied.solved.quantities][:1]
+    ['rotor.shaft.critical_speed_1_rpm']
+    """
+    start = time.perf_counter()
+    if unknown := [name for name in analyses if name not in ANALYSES]:
+        raise CouplingError(f"vary: analyses of {unknown[0]!r}; expected some of {', '.join(ANALYSES)}")
+    if not laws or samples < 1:
+        raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
+    inputs = tuple(Input(name, law, "", (), ()) for name, law in laws.items())
+    wanted, ranges = Wanted(tuple(analyses), tuple(speeds), plan), limits or {}
+    points, design = _points(inputs, Variation(), samples, seed, indices=indices)
+    values = values_at(inputs, points)
+
+    def found(row: npt.NDArray[np.float64]) -> Evaluation:
+        return evaluate(make(dict(zip(laws, row.tolist(), strict=True))), wanted)
+
+    progress("the machine of all medians")
+    nominal = found(values_at(inputs, np.full((1, len(inputs)), 0.5))[0])
+    require_known_limits(ranges, list(nominal.numbers))
+    outcomes = []
+    for number, row in enumerate(values):
+        progress(f"machine {number + 1} of {len(values)}")
+        outcomes.append(outcome_of(partial(found, row)))
+    result = VariedResult(inputs, points, values, nominal, tuple(outcomes), ranges, np.array(speeds), design, 0)
+    return _result(Origin(title), result, start)
 
 
 def _points(
@@ -187,7 +285,9 @@ def _require_distributions(varied: VariedCase, variation: Variation) -> None:
         raise CaseError(problems)
 
 
-def _result(origin: Origin, varied: VariedCase, result: VariedResult, start: float) -> Result[VariedResult]:
+def _result(
+    origin: Origin, result: VariedResult, start: float, files: Callable[..., Mapping[str, Any]] = no_files
+) -> Result[VariedResult]:
     document = {"title": origin.title} | varied_document(result)
     document["seconds"] = {"total": time.perf_counter() - start}
     dataset = varied_dataset(result, origin.title)
@@ -197,16 +297,6 @@ def _result(origin: Origin, varied: VariedCase, result: VariedResult, start: flo
 
         return draw_variation(origin.title, result)
 
-    def worst_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
-        """Write the worst gearboxes as cases."""
-        for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
-            for rank, number in enumerate(one.worst, start=1):
-                worst = varied.case(result.points[number])
-                title = f"{origin.title}: gearbox {number}, {one.name} = {one.values[number]:.6g}".strip(": ")
-                text = dump_case(worst.model_copy(update={"title": title}))
-                (place / f"worst-{stem}-{rank}.toml").write_text(text, encoding="utf-8")
-        return {}
-
     return Result(
         "vary",
         origin.case,
@@ -214,7 +304,7 @@ def _result(origin: Origin, varied: VariedCase, result: VariedResult, start: flo
         document,
         _arrays=lambda: dataset,
         _figures=figures,
-        _files=worst_cases,
+        _files=files,
         _data_file="vary.nc",
         _housing=origin.housing,
         _started=start,

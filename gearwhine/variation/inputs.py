@@ -99,6 +99,11 @@ class Input:
             yield f"{key}={self.text(value if self.words else factor * value)}"
 
 
+def values_at(inputs: Sequence[Input], points: FloatArray) -> FloatArray:
+    """Values of inputs at points of the unit cube, shape (n, d)."""
+    return np.array([[one.value(float(at)) for one, at in zip(inputs, row, strict=True)] for row in points])
+
+
 def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]:
     """Return the inputs of a variation, in its order.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 import traceback
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -61,6 +61,19 @@ class Failure:
 Outcome = Evaluation | Failure
 
 
+def outcome_of(find: Callable[[], Evaluation]) -> Outcome:
+    """Return what a function finds of a sample, or its error as a failure."""
+    try:
+        return find()
+    except CaseError as error:
+        return Failure("; ".join(str(replace(problem, source="")) for problem in error.problems))
+    except Exception as error:
+        _, message = explain(error)
+        if message is not None:
+            return Failure(message)
+        return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
+
+
 @dataclass(frozen=True, eq=False)
 class VariedCase:
     """A case, its varied inputs, and what is found of each sample.
@@ -89,10 +102,6 @@ class VariedCase:
         """Return the ``key.path=value`` of a sample at a point of the unit cube."""
         return [text for one, at in zip(self.inputs, point, strict=True) for text in one.overrides(float(at))]
 
-    def values(self, points: FloatArray) -> FloatArray:
-        """Values of the inputs at points, shape (n, d)."""
-        return np.array([[one.value(float(at)) for one, at in zip(self.inputs, row, strict=True)] for row in points])
-
     def case(self, point: FloatArray | None) -> Case:
         """Return the case of a sample; of None the one without changes.
 
@@ -105,15 +114,7 @@ class VariedCase:
 
     def solve(self, point: FloatArray | None) -> Outcome:
         """Find the quantities of a sample; errors are returned as failures, not raised."""
-        try:
-            return self.evaluation(self.case(point))
-        except CaseError as error:
-            return Failure("; ".join(str(replace(problem, source="")) for problem in error.problems))
-        except Exception as error:
-            _, message = explain(error)
-            if message is not None:
-                return Failure(message)
-            return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
+        return outcome_of(lambda: self.evaluation(self.case(point)))
 
     def evaluation(self, case: Case) -> Evaluation:
         """Find the quantities of a case of the study."""

@@ -220,6 +220,39 @@ def test_a_median_that_the_key_does_not_take_is_refused_before_anything_is_solve
         gw.load(_shaft(tmp_path, wrong)).vary(4, folder=tmp_path / "out", workers=1)
 
 
+def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
+    """The critical speed of a stiff disc on a massless shaft in short bearings goes as the square of its diameter."""
+    steel = gw.ShaftMaterial(207e9, 80e9, 1e-3)
+
+    def made(values: dict[str, float]) -> gw.Machine:
+        if values["diameter"] > 0.0203:
+            raise ValueError("a shaft that does not fit its hub")
+        disc = gw.Disc(0.25, values["mass"], 1e-6, 5e-7)
+        rotor = gw.Rotor("shaft", [gw.Segment(0.5, values["diameter"], 0.0, steel)], [disc])
+        bearings = [gw.MountedBearing(gw.Bearing.isotropic(f"{at}", at, 1e12), "shaft", None) for at in (0.0, 0.5)]
+        return gw.Machine([gw.Shaft(rotor)], bearings, speed=10.0)
+
+    laws = {"diameter": gw.Normal(0.02, 1e-4), "mass": gw.Uniform(1.9, 2.1)}
+    name = "rotor.shaft.critical_speed_1_rpm"
+    limits = {name: gw.Limit(at_least=1.0)}
+    found = gw.vary(made, laws, 64, analyses=["rotors"], limits=limits, title="discs")
+    diameter, mass = found.dataset["input_value"].values.T
+    values = found.dataset["value"].sel(quantity=name).values
+    assert [row["number"] for row in found.document["failed"]] == np.flatnonzero(diameter > 0.0203).tolist()
+    stiffness = 48.0 * 207e9 * np.pi * diameter**4 / 64.0 / 0.5**3
+    expected = np.sqrt(stiffness / mass) * 30.0 / np.pi
+    solved = np.isfinite(values)
+    # The shear of the shaft lowers it, alike for all.
+    ratio = values[solved] / expected[solved]
+    assert np.ptp(ratio) < 1e-4
+    assert 0.99 < ratio.mean() < 1.0
+    assert found.document["yield"]["share"] == 1.0
+    with pytest.raises(gw.CouplingError, match="expected some of gears, load"):
+        gw.vary(made, laws, 4, analyses=["noise"])
+    with pytest.raises(gw.CouplingError, match="one value or more"):
+        gw.vary(made, {}, 4)
+
+
 def test_the_command_writes_the_study_and_its_worst_gearboxes_as_cases(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
