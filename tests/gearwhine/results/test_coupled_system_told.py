@@ -1,0 +1,44 @@
+"""What the coupled system says of modes that nothing damps, and of a sum rule that its modes miss."""
+
+from typing import Any
+
+from gearwhine.output.sections import Table
+from gearwhine.results.system import sections
+
+CERTIFICATE = {"found": 8, "expected": 8, "zeros": 2, "max_residual": 1e-12}
+
+
+def _mode(hertz: float, ratio: float) -> dict[str, Any]:
+    energy = dict.fromkeys(("housing", "torsion", "axial", "residual", "mesh", "body", "pedestal"), 0.0) | {
+        "rotor": 1.0
+    }
+    mode = {"number": 1, "frequency_hz": hertz, "damped_frequency_hz": hertz, "damping_ratio": ratio}
+    return mode | {"kind": "rotor", "where": "sun", "energy": energy, "strained_most": None}
+
+
+def _told(sum_rule: float, *, complete: bool) -> tuple[str, list[Any]]:
+    peaks = [{"frequency_hz": hertz, "amplitude": 1e6 * height} for hertz, height in ((500.0, 90.0), (800.0, 3.0))]
+    response = {"excitation": "transmission error of s -> p", "per": "m"}
+    document = {
+        "coordinates": 4,
+        "speed_rpm": 3000.0,
+        "modes": [_mode(500.0, 1e-5), _mode(800.0, 0.02)],
+        "certificate": CERTIFICATE | {"sum_rule": sum_rule, "complete": complete},
+        "transmissibility": [response | {"mesh_force_n": {"s -> p": peaks}, "sensor_acceleration_m_per_s2": {}}],
+    }
+    content = [one for section in sections(document) for one in section.content]
+    return " ".join(str(one) for one in content if isinstance(one, str)), content
+
+
+def test_a_peak_that_nothing_damps_comes_last_without_a_height() -> None:
+    text, content = _told(1e-14, complete=True)
+    cells = [cell for table in content if isinstance(table, Table) for row in table.filled()[1] for cell in row]
+    assert "800 (3)  500 (undamped)" in cells
+    assert "damping ratio is below 0.001" in text
+
+
+def test_a_missed_sum_rule_is_no_proof() -> None:
+    assert "sum rule kept to 1e-14." in _told(1e-14, complete=True)[0]
+    text = _told(0.2, complete=False)[0]
+    assert "sum rule missed by 2e-01" in text
+    assert "responses are solved directly" in text
