@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from gearwhine.case import CaseError as CaseError
     from gearwhine.case.units import rpm as rpm
     from gearwhine.case.units import to_rpm as to_rpm
-    from gearwhine.case.variation import Limit as Limit
     from gearwhine.case_study import CaseStudy as CaseStudy
     from gearwhine.case_study import build as build
     from gearwhine.case_study import load as load
@@ -45,7 +44,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling import Shaft as Shaft
     from gearwhine.coupling import ShaftForce as ShaftForce
     from gearwhine.coupling import ShaftGear as ShaftGear
-    from gearwhine.coupling import SupportBolt as SupportBolt
     from gearwhine.coupling import TorqueSupport as TorqueSupport
     from gearwhine.coupling import planet_copies as planet_copies
     from gearwhine.coupling.analyses.recording import TransientPlan as TransientPlan
@@ -65,12 +63,6 @@ if TYPE_CHECKING:
     from gearwhine.housing.modal_test import ModalTest as ModalTest
     from gearwhine.housing_study import HousingStudy as HousingStudy
     from gearwhine.meshes import GeometryError as GeometryError
-    from gearwhine.numerics.distributions import Discrete as Discrete
-    from gearwhine.numerics.distributions import Measured as Measured
-    from gearwhine.numerics.distributions import Normal as Normal
-    from gearwhine.numerics.distributions import Rayleigh as Rayleigh
-    from gearwhine.numerics.distributions import Triangular as Triangular
-    from gearwhine.numerics.distributions import Uniform as Uniform
     from gearwhine.rotors import Bearing as Bearing
     from gearwhine.rotors import Disc as Disc
     from gearwhine.rotors import Rotor as Rotor
@@ -96,7 +88,6 @@ _HOMES = {
         "Shaft",
         "ShaftForce",
         "ShaftGear",
-        "SupportBolt",
         "TorqueSupport",
         "planet_copies",
     ),
@@ -124,8 +115,6 @@ _HOMES = {
     "gearwhine.housing.modal_test": ("ModalTest",),
     "gearwhine.housing_study": ("HousingStudy",),
     "gearwhine.analyses.variation_result": ("vary",),
-    "gearwhine.case.variation": ("Limit",),
-    "gearwhine.numerics.distributions": ("Discrete", "Measured", "Normal", "Rayleigh", "Triangular", "Uniform"),
     "gearwhine.meshes": ("GeometryError",),
     "gearwhine.rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }

@@ -165,6 +165,7 @@ _NAMED: dict[Any, str] = {
     StrictBool: "true or false",
     bool: "true or false",
     str: "text",
+    int: "whole number",
     float: "number",
 }
 

@@ -152,7 +152,7 @@ def vary(
     analyses: Sequence[str] = ("gears", "load"),
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
-    limits: Mapping[str, Limit] | None = None,
+    limits: Mapping[str, tuple[float | None, float | None]] | None = None,
     indices: bool = False,
     seed: int = 1,
     title: str = "",
@@ -165,8 +165,7 @@ def vary(
     make : callable
         Makes a machine of the values by name. What it cannot make raises `ValueError`, and the sample fails by itself.
     laws : mapping of str to Distribution
-        Distribution of each value: :class:`gearwhine.Normal`, :class:`gearwhine.Uniform` and others of
-        :mod:`gearwhine.numerics.distributions`.
+        Distribution of each value, of :mod:`gearwhine.numerics.distributions`.
     samples : int
         Number of machines; with ``indices`` times the number of values and two more.
     analyses : sequence of str
@@ -175,8 +174,9 @@ def vary(
         Signed speeds of "lines" [rad/s]; by default that of each machine.
     plan : TransientPlan, optional
         Stretch of the motion.
-    limits : mapping of str to Limit, optional
-        Ranges of good machines by quantity, ``{"bearing.left.life_h": gw.Limit(at_least=5000.0)}``.
+    limits : mapping of str to tuple, optional
+        Least and largest value of good machines by quantity, None where there is none:
+        ``{"bearing.left.life_h": (5000.0, None)}``.
     indices : bool
         Find Sobol' indices.
     seed : int
@@ -195,11 +195,12 @@ def vary(
     Examples
     --------
     >>> import gearwhine as gw
+    >>> from gearwhine.numerics.distributions import Normal
     >>> def shaft(values):
     ...     rotor = gw.Rotor("shaft", [gw.Segment(0.5, values["diameter"], 0.0, gw.STEEL)])
     ...     held = [gw.Bearing.isotropic(f"at {at}", at, 1e8) for at in (0.02, 0.48)]
     ...     return gw.Machine([gw.Shaft(rotor)], [gw.MountedBearing(one, "shaft", None) for one in held], speed=100.0)
-    >>> varied = gw.vary(shaft, {"diameter": gw.Normal(0.03, 1e-4)}, 16, analyses=["rotors"])
+    >>> varied = gw.vary(shaft, {"diameter": Normal(0.03, 1e-4)}, 16, analyses=["rotors"])
     >>> [one.name for one in varied.solved.quantities][:1]
     ['rotor.shaft.critical_speed_1_rpm']
     """
@@ -209,7 +210,11 @@ def vary(
     if not laws or samples < 1:
         raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
     inputs = tuple(Input(name, law, "", (), ()) for name, law in laws.items())
-    wanted, ranges = Wanted(tuple(analyses), tuple(speeds), plan), limits or {}
+    wanted = Wanted(tuple(analyses), tuple(speeds), plan)
+    try:
+        ranges = {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
+    except (TypeError, ValueError) as error:
+        raise CouplingError(f"vary: limits of {limits}; expected a least and a largest value, or None, each") from error
     points, design = _points(inputs, Variation(), samples, seed, indices=indices)
     values = values_at(inputs, points)
 

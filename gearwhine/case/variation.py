@@ -7,40 +7,19 @@ kept as they stand, since only the key says what they measure.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, StrictBool, field_validator, model_validator
-from pydantic_core import core_schema
+from pydantic import Field, StrictBool, field_validator, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import MOST_ENTRIES, CaseFile, Name, Quantity, Table, Whole, wrong
+from gearwhine.case.measured import Amount, KeyPath
 from gearwhine.case.operation import Speeds, listed
-from gearwhine.case.overrides import parse_key_path
 
 if TYPE_CHECKING:
     from gearwhine.numerics.distributions import Distribution
 
 
-class _Amount:
-    """Validates a number, or a text with a number and a unit; to stand in `Annotated`."""
-
-    expected = "a number, or a text with a number and a unit, such as '4 um'"
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Return pydantic's schema for validation of this field."""
-        return core_schema.no_info_plain_validator_function(self.validate)
-
-    def validate(self, value: object) -> float | str:
-        """Return the value as it stands, or raise pydantic's error with what was expected."""
-        if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value):
-            return float(value)
-        if isinstance(value, str) and units.split_quantity(value) is not None:
-            return value
-        raise wrong(self.expected)
-
-
-Amount = Annotated[float | str, _Amount()]
-KeyPath = Annotated[str, Field(max_length=500)]
 Factor = Annotated[float, Quantity(units.RATIO)]
 Weight = Annotated[float, Quantity(units.RATIO, at_least=0.0)]
 
@@ -63,7 +42,7 @@ class Varied(Table):
     """Low and high end, all between equally likely."""
     triangular: tuple[Amount, Amount, Amount] | None = None
     """Low end, most likely value and high end."""
-    values: Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)] | None = None
+    values: Annotated[tuple[str | bool | int | float, ...], Field(min_length=1, max_length=1000)] | None = None
     """Some values: quantities, numbers or words."""
     weights: Annotated[tuple[Weight, ...], Field(max_length=1000)] = ()
     """Weight of each of the `values`. Default: all are alike."""
@@ -172,10 +151,7 @@ class Variation(Table):
         return names
 
     @model_validator(mode="after")
-    def _keys_are_paths(self) -> Variation:
-        for key in self.vary:
-            if parse_key_path(key) is None:
-                raise wrong("a key path such as gear.pinion.errors.helix.slope", "vary", key)
+    def _correlated_keys_are_varied(self) -> Variation:
         pairs = set[frozenset[str]]()
         for number, one in enumerate(self.correlation):
             for place, key in enumerate(one.keys):

@@ -348,8 +348,9 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
 
 
 def _field(value: float) -> str:
-    """Return a number in at most 20 characters, as CalculiX reads it: 13 digits where all have no room."""
-    return text if len(text := repr(value)) <= _LONGEST_FIELD else f"{value:.13g}"
+    """Return a number in at most 20 characters, as CalculiX reads it: with as many digits as have room."""
+    texts = (repr(value), *(f"{value:.{digits}g}" for digits in range(16, 12, -1)))
+    return next(text for text in texts if len(text) <= _LONGEST_FIELD)
 
 
 def _quoted(name: str) -> str:

@@ -109,7 +109,7 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
         ('vary = { "gear.pinion.bore" = { } }', "exactly one of 'normal'"),
         ('vary = { "gear.pinion.bore" = { uniform = [1, 2], normal = [1, 2] } }', "exactly one of 'normal'"),
         ('vary = { "gear.pinion.bore" = { uniform = [1, 2], weights = [1, 2] } }', "none without 'values'"),
-        ('vary = { "gear.pinion.bore" = { uniform = ["a lot", "40 mm"] } }', "a number and a unit"),
+        ('vary = { "gear.pinion.bore" = { uniform = ["a lot", "40 mm"] } }', "a quantity such as"),
         ('vary = { "gear.pinion.bore" = { fit = "z9" } }', "a letter of e, f, g"),
         ('vary = { "gear.pinion.bore" = { class = 6 } }', "a key of the errors of a gear"),
         ('vary = { "gear.pinion.errors.phase" = { class = 6 } }', "one of the errors pitch"),

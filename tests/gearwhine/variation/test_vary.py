@@ -12,6 +12,7 @@ import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
+from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
 from gearwhine.variation.samples import FOLDER
 
@@ -232,9 +233,9 @@ def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
         bearings = [gw.MountedBearing(gw.Bearing.isotropic(f"{at}", at, 1e12), "shaft", None) for at in (0.0, 0.5)]
         return gw.Machine([gw.Shaft(rotor)], bearings, speed=10.0)
 
-    laws = {"diameter": gw.Normal(0.02, 1e-4), "mass": gw.Uniform(1.9, 2.1)}
+    laws = {"diameter": Normal(0.02, 1e-4), "mass": Uniform(1.9, 2.1)}
     name = "rotor.shaft.critical_speed_1_rpm"
-    limits = {name: gw.Limit(at_least=1.0)}
+    limits = {name: (1.0, None)}
     found = gw.vary(made, laws, 64, analyses=["rotors"], limits=limits, title="discs")
     diameter, mass = found.dataset["input_value"].values.T
     values = found.dataset["value"].sel(quantity=name).values
@@ -251,6 +252,8 @@ def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
         gw.vary(made, laws, 4, analyses=["noise"])
     with pytest.raises(gw.CouplingError, match="one value or more"):
         gw.vary(made, {}, 4)
+    with pytest.raises(gw.CouplingError, match="a least and a largest value"):
+        gw.vary(made, laws, 4, limits={name: (2.0, 1.0)})
 
 
 def test_the_command_writes_the_study_and_its_worst_gearboxes_as_cases(
