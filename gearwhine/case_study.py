@@ -270,6 +270,10 @@ class CaseStudy(Study):
         from gearwhine.results.check import CHECK
         from gearwhine.solve.case_summary import check_case
 
+        if self.case.variation is not None:
+            from gearwhine.variation.inputs import correlation_matrix, varied_inputs
+
+            correlation_matrix(varied_inputs(self._source, self.case.variation), self.case.variation)
         checked = check_case(self.case, self.progress, self._source.imported)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 

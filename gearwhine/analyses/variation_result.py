@@ -20,7 +20,7 @@ from gearwhine.case.model import lacking
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
-from gearwhine.numerics.distributions import Distribution, correlated
+from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import IndexPoints, index_points, sobol_points
 from gearwhine.output import file_stems
@@ -205,12 +205,16 @@ def vary(
     ['rotor.shaft.critical_speed_1_rpm']
     """
     start = time.perf_counter()
-    if unknown := [name for name in analyses if name not in ANALYSES]:
+    asked = (analyses,) if isinstance(analyses, str) else tuple(analyses)
+    if unknown := [name for name in asked if name not in ANALYSES]:
         raise CouplingError(f"vary: analyses of {unknown[0]!r}; expected some of {', '.join(ANALYSES)}")
     if not laws or samples < 1:
         raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
+    for name, law in laws.items():
+        if not hasattr(law, "quantile"):
+            raise CouplingError(f"vary: {name!r} is {law!r}; expected a distribution, such as Normal(1.0, 0.1)")
     inputs = tuple(Input(name, law, "", (), ()) for name, law in laws.items())
-    wanted = Wanted(tuple(analyses), tuple(speeds), plan)
+    wanted = Wanted(asked, tuple(speeds), plan)
     try:
         ranges = {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
     except (TypeError, ValueError) as error:
@@ -219,7 +223,13 @@ def vary(
     values = values_at(inputs, points)
 
     def found(row: npt.NDArray[np.float64]) -> Evaluation:
-        return evaluate(make(dict(zip(laws, row.tolist(), strict=True))), wanted)
+        try:
+            machine = make(dict(zip(laws, row.tolist(), strict=True)))
+        except ValueError as error:
+            raise CouplingError(str(error)) from error
+        if not isinstance(machine, Machine):
+            raise CouplingError(f"vary: {make!r} returned {machine!r}; expected a gearwhine.Machine")
+        return evaluate(machine, wanted)
 
     progress("the machine of all medians")
     nominal = found(values_at(inputs, np.full((1, len(inputs)), 0.5))[0])
@@ -280,6 +290,8 @@ def _require_distributions(varied: VariedCase, variation: Variation) -> None:
     """
     problems = dict[Problem, None]()
     for one in varied.inputs:
+        if isinstance(one.law, Discrete):
+            continue
         try:
             varied.source.changed(texts := list(one.overrides(0.5)))
         except CaseError as error:

@@ -322,7 +322,7 @@ _PURPOSES = {
     "sweep": "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }",
     "measured": "frequencies such as ['658 Hz', '1049 Hz'], or a file of them",
     "acoustics": "at least an empty table, for boundary elements in free air",
-    "variation": "distributions, such as [variation.vary] 'rotor.a.start' = { uniform = ['0 um', '20 um'] }",
+    "variation": "distributions of keys under [variation.vary]",
     "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
 }
 

@@ -26,6 +26,7 @@ Weight = Annotated[float, Quantity(units.RATIO, at_least=0.0)]
 KINDS = ("normal", "uniform", "triangular", "values", "file", "class", "fit")
 """Keys of which a distribution has exactly one."""
 _ATTRIBUTES = {"class": "tolerance_class"}
+_NAMED = {"deviation": "standard deviation", "mode": "most likely value", "low": "low end", "high": "high end"}
 _BELONGS_TO = {"within": "normal", "weights": "values", "column": "file"}
 
 
@@ -112,7 +113,7 @@ class Limit(Table):
         return low <= value <= high
 
 
-AnalysisName = Literal["gears", "load", "rotors", "lines", "motion", "sound"]
+AnalysisName = Literal["gears", "load", "rotors", "lines", "motion"]
 MOST_SAMPLES = 10_000_000
 MOST_KEYS = 500
 
@@ -126,11 +127,10 @@ class Variation(Table):
     """Seed of the samples. The same seed gives the same samples, the first ones whatever their number."""
     analyses: tuple[AnalysisName, ...] | None = None
     """What is found of each gearbox: "gears" (transmission error, mesh stiffness), "load" (operating point), "rotors"
-    (critical speeds), "lines" (levels at sensors by the linear machine under load), "motion" (levels at sensors by the
-    transient) and "sound" (sound power of the mesh harmonics). Default: gears, load and lines, as far as the case has
-    them."""
+    (critical speeds), "lines" (levels at sensors by the linear machine under load) and "motion" (levels at sensors by
+    the transient). Default: gears, load and lines, as far as the case has them."""
     speed: Speeds | None = None
-    """Speeds of "lines" and "sound". Default: those of `[sweep]`, else that of operation."""
+    """Speeds of "lines", a range or a list. Default: those of `[sweep]`, else that of operation."""
     vary: dict[KeyPath, Varied] = Field(default={}, max_length=MOST_KEYS)
     """Distribution by key path; `*` stands for every entry."""
     correlation: tuple[Correlation, ...] = Field(default=(), max_length=MOST_ENTRIES)
@@ -184,7 +184,11 @@ def built_distribution(varied: Varied) -> tuple[Distribution, str] | None:
     try:
         return kinds[varied.kind](*numbers[:count], *numbers[count:]), unit
     except DistributionError as error:
-        raise ValueError("; ".join(finding.expected for finding in error.findings)) from None
+        words = []
+        for one in error.findings:
+            name = _NAMED.get(one.attribute, one.attribute)
+            words.append(f"{one.expected} {unit}".strip() + f" as {name}, which is {one.value} {unit}".rstrip())
+        raise ValueError("; ".join(words)) from None
 
 
 def in_one_unit(amounts: tuple[float | str, ...]) -> tuple[list[float], str]:

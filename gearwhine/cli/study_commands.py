@@ -224,3 +224,5 @@ def _require_whole(document: Mapping[str, Any]) -> None:
     if "points" in document and (failed := document["failed"]):
         total = len(document["points"])
         raise PartlyFailedError(f"{failed} of {total} points failed; they are tried again on the next run")
+    if "quantities" in document and len(document["failed"]) == document["samples"]:
+        raise PartlyFailedError(f"no gearbox can be solved: {document['failed'][0]['message']}")

@@ -17,7 +17,6 @@ from gearwhine.figures.style import (
     LEFT,
     PALE,
     RED,
-    SERIES,
     TICK,
     panel,
     panel_pair,
@@ -26,16 +25,19 @@ from gearwhine.figures.style import (
     shortened,
 )
 from gearwhine.figures.style import HEAD as STYLE_HEAD
-from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from gearwhine.numerics.arrays import FloatArray
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
 
 _MOST_QUANTITIES = 6
 _MOST_INPUTS = 8
+_MOST_SCATTERS = 3
+_FAR = 0.6  # part of the range of values beyond which a limit is not drawn
 _HEIGHT, _GAP = 38.0, 16.0  # of a panel, and between two [mm]
 HEAD = STYLE_HEAD + 5.0  # for the titles of the upper panels [mm]
 _BAR = 5.0  # height of a bar [mm]
@@ -53,9 +55,15 @@ def draw_variation(title: str, varied: VariedResult) -> Iterator[tuple[str, Figu
     drawn = [one for one in headlines if one.importance()]
     if drawn:
         yield "vary-importance", _importance(title, drawn)
-        yield "vary-scatter", _scatter(title, varied, drawn[0])
+    for number, one in enumerate(drawn[:_MOST_SCATTERS], start=1):
+        yield f"vary-scatter-{number}", _scatter(title, varied, one)
     if len(varied.speeds) > 1 and varied.nominal.curves:
         yield "vary-speeds", _over_speed(title, varied)
+
+
+def _begins(title: str, letters: int) -> str:
+    """Return the begin of a note with the title, where there is one."""
+    return f"{shortened(title, letters)}; " if title else ""
 
 
 def _distributions(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
@@ -64,7 +72,7 @@ def _distributions(title: str, quantities: Sequence[QuantityStatistics]) -> Figu
     figure = sheet(
         HEAD + FOOT + below + rows * _HEIGHT + (rows - 1) * _GAP,
         "Distributions of varied gearboxes",
-        f"{shortened(title, 50)}; blue: without changes, red: limit, grey: 5 %, median, 95 %.",
+        f"{_begins(title, 50)}blue: without changes, red: limit, grey: 5 %, median, 95 %.",
     )
     for number, one in enumerate(quantities):
         row, column = divmod(number, columns)
@@ -89,10 +97,8 @@ def _histogram(axes: Axes, one: QuantityStatistics) -> None:
     for value in one.quantiles.values():
         axes.axvline(factor * value, color=GREY, lw=0.8)
     axes.axvline(factor * one.nominal, color=BLUE, lw=1.2)
-    if one.limit is not None:
-        for end in (one.limit.at_least, one.limit.at_most):
-            if end is not None:
-                axes.axvline(factor * end, color=RED, lw=1.2)
+    for end in _limits_near(one, values, factor):
+        axes.axvline(end, color=RED, lw=1.2)
     axes.set_xlabel(name)
     axes.set_ylabel("gearboxes")
     axes.xaxis.set_major_locator(MaxNLocator(5))
@@ -102,14 +108,24 @@ def _histogram(axes: Axes, one: QuantityStatistics) -> None:
     panel_title(axes, f"{part_of(one.name)}{within}")
 
 
+def _limits_near(one: QuantityStatistics, values: FloatArray, factor: float) -> list[float]:
+    """Return the ends of a limit that are near enough to the values to be drawn beside them."""
+    if one.limit is None:
+        return []
+    low, high = float(values.min()), float(values.max())
+    reach = _FAR * (high - low)
+    ends = [factor * end for end in (one.limit.at_least, one.limit.at_most) if end is not None]
+    return [end for end in ends if low - reach <= end <= high + reach]
+
+
 def _importance(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
     by_index = quantities[0].indices is not None
-    note = "total-order Sobol' index with its 95 % interval" if by_index else "rank correlation with the input"
+    note = "total-order Sobol' index, its 95 % interval" if by_index else "part of the variance by the input alone"
     counts = [min(len(one.importance()), _MOST_INPUTS) for one in quantities]
     heights = [count * _BAR for count in counts]
     gap = 13.0
     figure = sheet(
-        HEAD + FOOT + sum(heights) + gap * (len(heights) - 1), "What matters", f"{shortened(title, 60)}; {note}."
+        HEAD + FOOT + sum(heights) + gap * (len(heights) - 1), "What matters", f"{_begins(title, 60)}{note}."
     )
     bottom = FOOT
     for one, height in reversed(list(zip(quantities, heights, strict=True))):
@@ -124,10 +140,9 @@ def _bars(axes: Axes, one: QuantityStatistics) -> None:
     names = sorted(importance, key=lambda name: -importance[name])[:_MOST_INPUTS]
     places = np.arange(len(names))[::-1]
     if one.indices is None:
-        values = np.array([one.rank_correlations[name] for name in names])
-        axes.barh(places, values, height=0.62, color=[BLUE if value > 0.0 else SERIES[1] for value in values])
-        axes.set_xlim(-1.0, 1.0)
-        axes.axvline(0.0, color=INK, lw=0.8)
+        values = np.array([importance[name] for name in names])
+        axes.barh(places, values, height=0.62, color=BLUE)
+        axes.set_xlim(0.0, 1.0)
     else:
         rows = [one.input_names.index(name) for name in names]
         values, interval = one.indices.total[rows], one.indices.total_interval[rows]
@@ -150,26 +165,22 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
     figure = sheet(
         HEAD + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
         f"{part_of(one.name)}: {label.partition(' [')[0]}",
-        f"{shortened(title, 60)}; each dot is a gearbox, red where it is beyond a limit.",
+        f"{_begins(title, 60)}each dot is a gearbox, red where it is beyond the limit.",
     )
-    good = varied.good if varied.limits else np.ones(len(varied.outcomes), dtype=bool)
     chosen = np.isfinite(one.values)
+    good = np.array([one.limit is None or one.limit.holds(value) for value in one.values.tolist()])
     for number, name in enumerate(names):
         row, column = divmod(number, columns)
         axes = _place(figure, FOOT + (rows - 1 - row) * (_HEIGHT + _GAP), column, columns)
         place = one.input_names.index(name)
         of_input = varied.inputs[place]
+        unit, scale = shown_unit(of_input.unit)
         for mask, colour in ((chosen & good, BLUE), (chosen & ~good, RED)):
-            axes.plot(
-                one.inputs[mask, place],
-                factor * one.values[mask],
-                ".",
-                color=colour,
-                ms=2.2,
-                alpha=0.6,
-                rasterized=True,
-            )
-        axes.set_xlabel(shortened(f"{name} [{of_input.unit}]" if of_input.unit else name, 44))
+            of_quantity = factor * one.values[mask]
+            axes.plot(scale * one.inputs[mask, place], of_quantity, ".", color=colour, ms=2.2, alpha=0.6)
+        for end in _limits_near(one, factor * one.values[chosen], factor):
+            axes.axhline(end, color=RED, lw=0.8)
+        axes.set_xlabel(shortened(f"{name} [{unit}]" if unit else name, 44))
         if of_input.words:
             shown = range(len(of_input.words))
             axes.set_xticks(list(shown), [shortened(word, 12) for word in of_input.words])
@@ -186,7 +197,7 @@ def _over_speed(title: str, varied: VariedResult) -> Figure:
     figure = sheet(
         HEAD + FOOT + len(curves) * height + (len(curves) - 1) * gap,
         "Levels over speed",
-        f"{shortened(title, 40)}; line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest.",
+        f"{_begins(title, 40)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest.",
     )
     rpm = np.abs(varied.speeds) * 30.0 / np.pi
     order = np.argsort(rpm)
@@ -198,7 +209,7 @@ def _over_speed(title: str, varied: VariedResult) -> Figure:
             low, high = np.quantile(values, (0.05, 0.95), axis=0)
             axes.fill_between(rpm[order], low, high, color=PALE, edgecolor=GREY, lw=0.5)
             axes.plot(rpm[order], values.max(axis=0), "--", color=GREY, lw=0.8)
-        axes.plot(rpm[order], varied.nominal.curves[name][order], color=BLUE, lw=1.2)
+        axes.plot(rpm[order], varied.nominal.curves[name][order], ".-", color=BLUE, lw=1.2, ms=4.0)
         limit = varied.limits.get(name)
         for end in () if limit is None else (limit.at_least, limit.at_most):
             if end is not None:

@@ -49,6 +49,7 @@ QUANTITY = (
         "limit", lambda one: None if one.limit is None else one.limit.model_dump(exclude_none=True), optional=True
     ),
     Part("within", "share", SHARE, optional=True),
+    Quantity("explained", "explained"),
     Quantity("rank_correlation", "rank_correlations"),
     Quantity("sobol_first", _indices("first"), optional=True),
     Quantity("sobol_total", _indices("total"), optional=True),
@@ -58,6 +59,7 @@ QUANTITY = (
 
 VARIED = (
     Quantity("samples", lambda varied: len(varied.outcomes)),
+    Quantity("representative", lambda varied: int(varied.representative.sum())),
     Quantity("resumed"),
     Rows(
         "inputs",
@@ -65,6 +67,7 @@ VARIED = (
         (
             Quantity("key", "0.name"),
             Quantity("unit", "0.unit"),
+            Quantity("distribution", lambda row: type(row[0].law).__name__.lower()),
             Quantity("mean", lambda row: float(row[1].mean())),
             Quantity("std", lambda row: float(row[1].std())),
         ),
@@ -176,6 +179,13 @@ def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callab
     return text
 
 
+_INPUT_COLUMNS = (
+    Column("key", "key"),
+    Column("unit", "unit"),
+    Column("distribution", "distribution"),
+    Column("mean", "mean", ".5g"),
+    Column("std", "std", ".3g"),
+)
 _COLUMNS = (
     Column("of", lambda row: part_of(row["name"])),
     Column("quantity", lambda row: shown_quantity(row["name"])[0]),
@@ -215,6 +225,7 @@ def report(document: Document) -> Section:
 
 def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
+    yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys")
     yield from table_of(_COLUMNS, rows, "Distributions")
     yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
     for failure in document["failed"][:_MOST_FAILURES]:
@@ -227,37 +238,48 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield f"Yield: {value:.1f} % of the gearboxes are within all limits (95 % interval {low:.1f} to {high:.1f} %)."
     resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
     failed = f"; {len(document['failed'])} failed" if document["failed"] else ""
-    yield f"{document['samples']} gearboxes{resumed}{failed}"
+    standing = ""
+    if document["representative"] < document["samples"]:
+        standing = f", {document['representative']} of which stand for the production in the table of distributions"
+    yield f"{document['samples']} gearboxes{standing}{resumed}{failed}"
 
 
 def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
-    """Yield a table of the most important inputs of the quantities that scatter."""
-    shown = list[Document]()
+    """Yield a table of the most important inputs of the quantities that scatter, and which nothing explains."""
+    shown, unexplained = list[Document](), list[str]()
     by_index = any("sobol_total" in row for row in rows)
     for row in rows:
         total, ranks = row.get("sobol_total"), row["rank_correlation"]
-        values = {key: value[0] for key, value in total.items()} if total else ranks
-        first = sorted(values, key=lambda key: -abs(values[key]))[:_MOST_INPUTS]
+        values = {key: value[0] for key, value in total.items()} if total else row["explained"]
+        first = sorted(values, key=lambda key: -values[key])[:_MOST_INPUTS]
+        if not first:
+            unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
         for place, key in enumerate(first):
             shown.append(
                 {
                     "of": "" if place else part_of(row["name"]),
                     "quantity": "" if place else shown_quantity(row["name"])[0].partition(" [")[0],
                     "input": key,
-                    "value": f"{values[key]:.2f}" if total else f"{values[key]:+.2f}",
+                    "value": f"{values[key]:.2f}",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
+                    "alone": f"{row['sobol_first'][key][0]:.2f}" if total else "",
+                    "rank": f"{ranks[key]:+.2f}" if key in ranks else "",
                 }
             )
     caption = (
-        "What matters: total-order Sobol' index, the part of the variance that would go with the input"
+        "What matters: Sobol' indices, the part of the variance that goes with the input in all and alone"
         if by_index
-        else "What matters: rank correlation with the input"
+        else "What matters: part of the variance that goes with the input alone, where the samples prove it"
     )
     columns = (
         Column("of", "of"),
         Column("quantity", "quantity"),
         Column("input", "input"),
-        Column("index" if by_index else "correlation", "value"),
+        Column("in all" if by_index else "part", "value"),
         Column("95 % interval", "interval"),
+        Column("alone", "alone"),
+        Column("rank correlation", "rank"),
     )
     yield from table_of(columns, shown, caption)
+    if unexplained:
+        yield f"No input alone explains {'; '.join(unexplained)}: more samples, or --indices, may tell."

@@ -306,8 +306,26 @@ def _places(document: Mapping[str, Any], key: str) -> list[Location]:
         found = list(matching_places(inside, steps[after:])) or _new_places(inside, steps[after:], least=not entry)
         places += [(*entry, *place) for place in found]
     if not places:
-        raise _CannotVaryError("a key path that leads to something in the case")
+        raise _CannotVaryError(f"a key path that leads to something in the case{_hint(document, steps)}")
     return places
+
+
+def _hint(document: Mapping[str, Any], steps: Sequence[str]) -> str:
+    """Return the name that was meant at the first step that leads nowhere, if one is near."""
+    for length in range(1, len(steps) + 1):
+        if not any(True for _ in matching_places(document, steps[:length])):
+            around = [look_up(document, place) for place in matching_places(document, steps[: length - 1])]
+            names = [name for one in around for name in _names_in(one)]
+            return did_you_mean(steps[length - 1], names)
+    return ""
+
+
+def _names_in(value: object) -> list[str]:
+    """Return the keys of a table, or the names of a list's entries."""
+    if isinstance(value, Mapping):
+        return [str(key) for key in value]
+    entries = value if isinstance(value, list) else []
+    return [str(entry["name"]) for entry in entries if isinstance(entry, Mapping) and "name" in entry]
 
 
 def _new_places(inside: object, steps: Sequence[str], least: int) -> list[Location]:

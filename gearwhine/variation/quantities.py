@@ -123,11 +123,13 @@ Named = Iterator[tuple[str, float | FloatArray]]
 def _of_gears(gearbox: _Gearbox) -> Named:
     for pair in gearbox.pairs:
         name = f"gear_pair.{pair.geometry.driver.name}-{pair.geometry.driven.name}"
-        mesh = pair.static if pair.hunting is None else pair.hunting
-        yield f"{name}.transmission_error_peak_to_peak_m", mesh.peak_to_peak_transmission_error
-        periods = 1 if pair.hunting is None else pair.carrying_flanks.hunting_period
+        yield f"{name}.transmission_error_peak_to_peak_m", pair.static.peak_to_peak_transmission_error
+        mesh, periods = pair.static, 1
+        if pair.hunting is not None:
+            mesh, periods = pair.hunting, pair.carrying_flanks.hunting_period
+            yield f"{name}.transmission_error_over_hunting_period_m", mesh.peak_to_peak_transmission_error
         for number, size in enumerate(np.abs(transmission_error_phasors(mesh, HARMONICS, periods)), start=1):
-            yield f"{name}.transmission_error_{number}_m", float(size)
+            yield f"{name}.transmission_error_harmonic_{number}_m", float(size)
         yield f"{name}.mesh_stiffness_n_per_m", mesh.mean_mesh_stiffness
 
 

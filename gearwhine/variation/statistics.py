@@ -25,6 +25,7 @@ QUANTILES = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles."""
 WORST = 3
 """Number of the worst gearboxes of a quantity that are written as cases."""
+_CHANCE = 0.01  # probability of an explained part by chance above which it is not told
 _LEAST_FOR_RANKS = 8  # samples below which no correlation is told
 
 
@@ -130,11 +131,43 @@ class QuantityStatistics:
         order = np.argsort(sign * np.where(np.isfinite(self.values), self.values, sign * math.inf), kind="stable")
         return [int(number) for number in order[: min(WORST, self.found.size)]]
 
+    @cached_property
+    def explained(self) -> dict[str, float]:
+        """Part of the variance that goes with each input alone, where the samples prove that it is not 0.
+
+        The correlation ratio over classes of the input with equal numbers of samples, without its bias (Kelley 1935):
+        an estimate of the first-order index that also sees what rises on both sides, as the face load factor does with
+        the slope of a helix. An F-test at 1 % leaves out what may be chance.
+        """
+        found = np.isfinite(self.values)
+        count = int(found.sum())
+        classes = min(max(count // 8, 3), 10)
+        if count < 8 * 3 or np.ptp(self.values[found]) == 0.0:
+            return {}
+        values, explained = self.values[found], {}
+        total = float(np.sum((values - values.mean()) ** 2))
+        for name, column in zip(self.input_names, self.inputs[found].T, strict=True):
+            if np.ptp(column) == 0.0:
+                continue
+            distinct = np.unique(column)
+            if distinct.size <= classes:
+                of_class = np.searchsorted(distinct, column)
+            else:
+                of_class = (stats.rankdata(column, method="ordinal") - 1) * classes // count
+            groups = [values[of_class == number] for number in np.unique(of_class)]
+            within = float(sum(np.sum((group - group.mean()) ** 2) for group in groups))
+            between, inner = len(groups) - 1, count - len(groups)
+            if inner < 1 or within == 0.0 or between == 0:
+                continue
+            if stats.f.sf((total - within) / between / (within / inner), between, inner) < _CHANCE:
+                explained[name] = 1.0 - within / inner / (total / (count - 1))
+        return explained
+
     def importance(self) -> dict[str, float]:
-        """Return how much each input matters: its total-order index, without these its squared rank correlation."""
+        """Return how much each input matters: its total-order index, without these the part that it explains."""
         if self.indices is not None:
             return dict(zip(self.input_names, self.indices.total.tolist(), strict=True))
-        return {name: value**2 for name, value in self.rank_correlations.items()}
+        return self.explained
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,6 +30,7 @@ LESS_EFFORT = {
     "nasa-gear-noise-rig": _SHORT,
     "small-gearbox": _SHORT,
     "two-stage-reducer": ("housing.cad.mesh_size=18 mm", "housing.frequency_limit=600 Hz", *_SHORT),
+    "helical-pair": ("variation.samples=8",),
     "planetary-stage": (
         "housing.cad.mesh_size=24 mm",
         "housing.frequency_limit=600 Hz",

@@ -159,6 +159,6 @@ def test_lines_of_both_stages_have_their_names() -> None:
     names = [one.name for one in line_names(assembled, [turn * CARRIER_TURN for turn in turns], 0.01)]
     assert names[0] == "1× pinion -> wheel"
     assert names[1] == "2× pinion -> wheel"
-    assert names[2].startswith("1× planets' meshes of carrier")
+    assert names[2].startswith("1× planets' meshes")
     for name, side in zip(names[3:], ("+ 1×", "- 1×"), strict=True):
-        assert f"1× planets' meshes of carrier {side} carrier" in name
+        assert f"1× planets' meshes {side} carrier" in name

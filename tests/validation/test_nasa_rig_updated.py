@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.solve import housing_modes
+from gearwhine.from_case import given_housing
 from gearwhine.solve.comparison import compare_measured
 from gearwhine.solve.housing_modes import solve_housing
 
@@ -25,7 +25,7 @@ def test_dominant_modes_after_updating(
     published: Callable[..., None], remark: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Static attachments of bearings would take two fifths of the time, and change no mode.
-    monkeypatch.setattr(housing_modes, "bearing_places", lambda *tables: {})
+    monkeypatch.setattr(given_housing, "bearing_places", lambda *tables: {})
     case = load_case("nasa-gear-noise-rig-updated").case
     solved = solve_housing(case)
     comparison = compare_measured(case.measured, solved).comparison

@@ -212,11 +212,13 @@ def draw_transmissibility(
 
 
 def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray], end: float) -> None:
-    axes.set_yscale("log")
     inside = frequencies <= end
     top = 0.0
     handles = []
     peaks = {name: float(_MICROMETRE * values[inside].max(initial=0.0)) for name, values in curves.items()}
+    # What an error does not reach has no decades.
+    if any(peaks.values()):
+        axes.set_yscale("log")
     # Of many curves the highest have a colour and a name each.
     named = (
         curves

@@ -264,7 +264,7 @@ def test_the_command_writes_the_study_and_its_worst_gearboxes_as_cases(
     shown = capsys.readouterr().out
     assert "Yield:" in shown
     document = json.loads((out / "summary.json").read_text())
-    assert set(document["files"]) >= {"vary.nc", "vary-distributions.png", "vary-importance.png", "vary-scatter.png"}
+    assert set(document["files"]) >= {"vary.nc", "vary-distributions.png", "vary-importance.png", "vary-scatter-1.png"}
     (row,) = [row for row in document["quantities"] if row["name"] == LEFT]
     worst = gw.load(out / f"worst-{LEFT}-1.toml")
     load = worst.operating_point().document["bearings"][0]

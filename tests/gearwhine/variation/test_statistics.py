@@ -1,0 +1,57 @@
+"""Parts of the variance that samples explain, of functions whose parts are known in closed form."""
+
+import numpy as np
+import pytest
+
+from gearwhine.case.variation import Limit
+from gearwhine.numerics.sampling import sobol_points
+from gearwhine.variation.statistics import QuantityStatistics, Share
+
+
+def _statistics(values: np.ndarray, inputs: np.ndarray, limit: Limit | None = None) -> QuantityStatistics:
+    names = tuple(f"input {number}" for number in range(inputs.shape[1]))
+    return QuantityStatistics("a.b_m", float(values[0]), values, inputs, names, None, limit)
+
+
+def test_what_rises_on_both_sides_is_seen_where_a_rank_correlation_is_blind() -> None:
+    """|x + y| of two uniform parts from -1 to 1: each alone has (1/45) / (2/9) of the variance."""
+    x = 2.0 * sobol_points(2048, 3, 1) - 1.0
+    found = _statistics(np.abs(x[:, 0] + x[:, 1]), x)
+    assert set(found.explained) == {"input 0", "input 1"}
+    assert list(found.explained.values()) == pytest.approx([0.1, 0.1], abs=0.02)
+    assert all(abs(value) < 0.05 for value in found.rank_correlations.values())
+
+
+def test_a_sum_is_split_by_the_variances_of_its_parts() -> None:
+    x = sobol_points(1024, 3, 2)
+    found = _statistics(x @ np.array([3.0, 4.0, 0.0]), x)
+    assert found.explained["input 0"] == pytest.approx(9.0 / 25.0, abs=0.02)
+    assert found.explained["input 1"] == pytest.approx(16.0 / 25.0, abs=0.02)
+    assert found.importance() == found.explained
+
+
+def test_chance_is_hardly_ever_told() -> None:
+    rng = np.random.default_rng(4)
+    told = sum(len(_statistics(rng.normal(size=64), rng.normal(size=(64, 5))).explained) for _ in range(200))
+    # One in a hundred of a thousand.
+    assert told < 25
+
+
+def test_few_samples_or_no_scatter_tell_nothing() -> None:
+    x = sobol_points(16, 2, 1)
+    assert _statistics(x[:, 0], x).explained == {}
+    assert _statistics(np.ones(64), sobol_points(64, 2, 1)).explained == {}
+    words = np.array([0.0, 1.0] * 32)
+    assert _statistics(words + 0.1 * sobol_points(64, 1, 1)[:, 0], words[:, None]).explained["input 0"] > 0.9
+
+
+def test_a_share_has_the_exact_interval_of_a_binomial() -> None:
+    """9 of 10: 55.5 to 99.7 % (Clopper and Pearson)."""
+    share = Share.of(9, 10)
+    assert (share.share, share.low, share.high) == pytest.approx((0.9, 0.555, 0.9975), abs=5e-4)
+    values = np.array([1.0, 2.0, 3.0, np.nan])
+    limited = _statistics(values, np.zeros((4, 1)), Limit(at_least=2.0)).share
+    assert limited is not None
+    assert limited.share == pytest.approx(2.0 / 3.0)
+    assert _statistics(values, np.zeros((4, 1)), Limit(at_least=2.0)).worst == [0, 1, 2]
+    assert _statistics(values, np.zeros((4, 1)), Limit(at_most=2.0)).worst == [2, 1, 0]
