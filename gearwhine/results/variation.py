@@ -174,7 +174,7 @@ def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callab
 
     def text(row: Document) -> str:
         value = of(row)
-        return "" if value is None else format(shown_quantity(row["name"])[1] * value, form)
+        return "" if value is None or value != value else format(shown_quantity(row["name"])[1] * value, form)
 
     return text
 
