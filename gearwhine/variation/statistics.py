@@ -25,7 +25,7 @@ QUANTILES = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles."""
 WORST = 3
 """Number of the worst gearboxes of a quantity that are written as cases."""
-_CHANCE = 0.01  # probability of an explained part by chance above which it is not told
+_CHANCE = 0.001  # probability of an explained part by chance above which it is not told
 _LEAST_FOR_RANKS = 8  # samples below which no correlation is told
 
 
@@ -137,12 +137,13 @@ class QuantityStatistics:
 
         The correlation ratio over classes of the input with equal numbers of samples, without its bias (Kelley 1935):
         an estimate of the first-order index that also sees what rises on both sides, as the face load factor does with
-        the slope of a helix. An F-test at 1 % leaves out what may be chance.
+        the slope of a helix. An F-test at 0.1 % leaves out what may be chance.
         """
         found = np.isfinite(self.values)
         count = int(found.sum())
-        classes = min(max(count // 8, 3), 10)
-        if count < 8 * 3 or np.ptp(self.values[found]) == 0.0:
+        # Few classes: pairs of coordinates of a short Sobol' sequence have patterns, which many classes would follow.
+        classes = min(max(count // 32, 4), 10)
+        if count < 8 * 4 or np.ptp(self.values[found]) == 0.0:
             return {}
         values, explained = self.values[found], {}
         total = float(np.sum((values - values.mean()) ** 2))
