@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -95,39 +95,28 @@ def run_samples(
         told.took([(first, outcomes[first])])
         rest = todo[1:]
         is_short = workers is None and each * len(rest) < _WORTH_WORKERS
-        alone = scheduler is None and (workers == 1 or is_short)
+        alone = not rest or (scheduler is None and (workers == 1 or is_short))
         workers = workers or default_workers()
         size = max(1, min(_LARGEST_BATCH, int(_BATCH_TIME / max(each, 1e-3)), -(-len(rest) // (4 * workers))))
         batches = [rest[begin : begin + size] for begin in range(0, len(rest), size)]
-        solve = _solved_here if alone else _solved_by_workers
-        with staging(folder) as place:
-            for solved in solve(varied, points, batches, place, workers, scheduler, progress):
-                record.append(solved)
-                outcomes |= dict(solved)
-                told.took(solved)
+        solved_batches: Iterable[list[tuple[int, Outcome]]]
+        if alone:
+            solved_batches = ([(number, varied.solve(points[number])) for number in batch] for batch in batches)
+        else:
+            solved_batches = _solved_by_workers(varied, points, batches, folder, workers, scheduler, progress)
+        for solved in solved_batches:
+            record.append(solved)
+            outcomes |= dict(solved)
+            told.took(solved)
     record.remove_others()
     return Solved(tuple(outcomes[number] for number in range(len(points))), resumed)
-
-
-def _solved_here(
-    varied: VariedCase,
-    points: FloatArray,
-    batches: Sequence[Sequence[int]],
-    place: Path,
-    workers: int,
-    scheduler: str | None,
-    progress: Progress,
-) -> Iterator[list[tuple[int, Outcome]]]:
-    """Solve batches in this process."""
-    for batch in batches:
-        yield [(number, varied.solve(points[number])) for number in batch]
 
 
 def _solved_by_workers(
     varied: VariedCase,
     points: FloatArray,
     batches: Sequence[Sequence[int]],
-    place: Path,
+    folder: Path,
     workers: int,
     scheduler: str | None,
     progress: Progress,
@@ -135,7 +124,7 @@ def _solved_by_workers(
     """Yield each batch as workers have solved it."""
     workers = min(workers, len(batches))
     progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
-    with connected(workers, scheduler, place) as client:
+    with staging(folder) as place, connected(workers, scheduler, place) as client:
         if scheduler is None:
             await_workers(client, workers)
         futures = in_thread(lambda: _submitted(client, varied, points, batches))
