@@ -1,0 +1,130 @@
+"""Condition indicators of signals whose indicators are known in closed form."""
+
+import numpy as np
+import pytest
+
+from gearwhine.coupling import CouplingError
+from gearwhine.coupling.signals.condition_indicators import (
+    SynchronousAverage,
+    envelope_spectrum,
+    na4,
+    spectral_kurtosis,
+    synchronous_average,
+)
+
+N, TEETH = 4096, 23
+ANGLES = 2.0 * np.pi * np.arange(N) / N
+MESH = 3.0 * np.cos(TEETH * ANGLES) + 0.5 * np.cos(2 * TEETH * ANGLES + 0.3)
+
+
+def test_the_average_keeps_what_repeats_with_the_turn() -> None:
+    rng = np.random.default_rng(1)
+    turns = np.tile(MESH, 50) + np.sin(np.sqrt(2.0) * np.arange(50 * N + 7)[: 50 * N]) + rng.normal(size=50 * N)
+    found = synchronous_average(np.append(turns, [9.0, 9.0]), N)
+    # Of unit noise and a tone of another period, a fiftieth of the power each at most.
+    assert np.std(found - MESH) == pytest.approx(1.0 / np.sqrt(50.0), rel=0.1)
+    with pytest.raises(CouplingError, match="a whole turn"):
+        synchronous_average(MESH[:10], N)
+
+
+def test_gaussian_noise_has_the_moments_3_15_and_105() -> None:
+    noise = np.random.default_rng(2).normal(size=2**20)
+    found = SynchronousAverage(noise, TEETH)
+    assert found.fm4 == pytest.approx(3.0, rel=0.02)
+    assert found.m6a == pytest.approx(15.0, rel=0.05)
+    assert found.m8a == pytest.approx(105.0, rel=0.15)
+
+
+def test_one_pulse_a_turn_has_the_moments_of_its_length() -> None:
+    """A pulse of one of N samples: mean 1/N, so that the moment of power 2k is near N^(k - 1)."""
+    pulse = np.zeros(N)
+    pulse[17] = 1.0
+    found = SynchronousAverage(MESH + pulse, TEETH, harmonics=1)
+    # The lines that the difference signal is without take part of the pulse: 1, 2, 22, 23 and 24 of 2048, and the mean.
+    kept = 1.0 - 2.0 * 5.0 / N
+    assert found.difference[17] == pytest.approx(kept - 1.0 / N + _second_harmonic(17), abs=1e-3)
+    alone = SynchronousAverage(pulse + 3.0 * np.cos(TEETH * ANGLES), TEETH, harmonics=1)
+    assert alone.fm4 == pytest.approx(N, rel=0.01)
+    assert alone.m6a == pytest.approx(N**2, rel=0.02)
+    assert alone.m8a == pytest.approx(float(N) ** 3, rel=0.03)
+
+
+def _second_harmonic(place: int) -> float:
+    return float(0.5 * np.cos(2 * TEETH * ANGLES[place] + 0.3))
+
+
+def test_a_pure_mesh_tone_has_no_residual_and_no_indicators_of_one() -> None:
+    found = SynchronousAverage(MESH + 7.0, TEETH)
+    assert (found.fm4, found.m6a, found.m8a) == (None, None, None)
+    assert na4([found]) is None
+    assert found.fm0 == pytest.approx(np.ptp(MESH) / 3.5, rel=1e-12)
+    assert found.energy_ratio == pytest.approx(0.0, abs=1e-12)
+    assert found.sideband_index == pytest.approx(0.0, abs=1e-12)
+    assert SynchronousAverage(np.cos(5 * ANGLES), TEETH).fm0 is None
+
+
+def test_modulation_is_regular_and_shows_in_the_sidebands() -> None:
+    """(1 + m cos φ) of a tone has two sidebands of half m times its amplitude."""
+    modulated = (
+        (1.0 + 0.2 * np.cos(ANGLES)) * 3.0 * np.cos(TEETH * ANGLES) + 0.4 * np.cos(ANGLES) + 0.05 * np.cos(9 * ANGLES)
+    )
+    found = SynchronousAverage(modulated, TEETH, harmonics=1)
+    assert found.sideband_index == pytest.approx(0.3, rel=1e-12)
+    assert found.sideband_level_factor == pytest.approx(0.6 / np.std(modulated), rel=1e-12)
+    assert found.difference == pytest.approx(0.05 * np.cos(9 * ANGLES), abs=1e-12)
+    regular = np.sqrt(0.5 * (3.0**2 + 2.0 * 0.3**2))
+    assert found.energy_ratio == pytest.approx(0.05 / np.sqrt(2.0) / regular, rel=1e-12)
+    assert found.fm4 == pytest.approx(1.5, rel=1e-12)  # of a sine
+    assert np.std(found.residual) == pytest.approx(np.sqrt(0.5 * (2.0 * 0.3**2 + 0.05**2)), rel=1e-12)
+
+
+def test_na4_rises_with_a_residual_that_grows() -> None:
+    """Residuals a cos of amplitudes a_j: 3/8 a⁴ over (½ mean a_j²)²."""
+    sizes = [1.0, 1.0, 1.0, 2.0]
+    averages = [SynchronousAverage(MESH + size * np.cos(9 * ANGLES), TEETH) for size in sizes]
+    assert na4(averages[:3]) == pytest.approx(1.5, rel=1e-9)
+    assert na4(averages) == pytest.approx(0.375 * 16.0 / (0.5 * 7.0 / 4.0) ** 2, rel=1e-9)
+    with pytest.raises(CouplingError, match="one synchronous average"):
+        na4([])
+
+
+def test_spectral_kurtosis_is_0_of_noise_minus_1_of_a_tone_and_high_where_bursts_ring() -> None:
+    rate, count = 10e3, 400_000
+    times = np.arange(count) / rate
+    noise = np.random.default_rng(3).normal(size=count)
+    frequencies, of_noise = spectral_kurtosis(noise, 1.0 / rate, 64)
+    inner = slice(3, -3)
+    assert np.abs(of_noise[inner]).max() < 0.15
+    assert frequencies[1] == pytest.approx(rate / 64)
+    _, of_tone = spectral_kurtosis(np.cos(2.0 * np.pi * 2500.0 * times), 1.0 / rate, 64)
+    assert of_tone[16] == pytest.approx(-1.0, abs=1e-6)
+    bursts = np.exp(-300.0 * (times % 0.1)) * np.cos(2.0 * np.pi * 2500.0 * times)
+    _, ringing = spectral_kurtosis(bursts + 0.1 * noise, 1.0 / rate, 64)
+    assert ringing[16] > 3.0
+    assert np.abs(ringing[29:31]).max() < 0.3
+    with pytest.raises(CouplingError, match="windows of"):
+        spectral_kurtosis(noise[:100], 1.0 / rate, 64)
+
+
+def test_an_envelope_has_the_lines_of_its_modulation() -> None:
+    """(1 + m cos)² a² is a² (1 + m²/2), 2 m a² and ½ m² a² at 0, 1 and 2 times the modulation."""
+    rate, count, m, a = 10e3, 20_000, 0.6, 2.0
+    times = np.arange(count) / rate
+    carrier = a * (1.0 + m * np.cos(2.0 * np.pi * 37.0 * times)) * np.cos(2.0 * np.pi * 2500.0 * times)
+    frequencies, lines = envelope_spectrum(carrier + np.cos(2.0 * np.pi * 300.0 * times), 1.0 / rate, (2000.0, 3000.0))
+    at = {f: float(lines[np.argmin(np.abs(frequencies - f))]) for f in (0.0, 37.0, 74.0, 111.0)}
+    assert at[0.0] == pytest.approx(a**2 * (1.0 + 0.5 * m**2), rel=1e-9)
+    assert at[37.0] == pytest.approx(2.0 * m * a**2, rel=1e-9)
+    assert at[74.0] == pytest.approx(0.5 * m**2 * a**2, rel=1e-9)
+    assert at[111.0] < 1e-9
+    with pytest.raises(CouplingError, match="half the sampling rate"):
+        envelope_spectrum(carrier, 1.0 / rate, (2000.0, 6000.0))
+
+
+@pytest.mark.parametrize(
+    ("samples", "teeth", "said"),
+    [(MESH[:48], TEETH, "more than 48 samples"), (np.full(N, np.nan), TEETH, "finite"), (MESH, 2, "at least 3")],
+)
+def test_averages_that_cannot_be_are_refused(samples: np.ndarray, teeth: int, said: str) -> None:
+    with pytest.raises(CouplingError, match=said):
+        SynchronousAverage(samples, teeth)
