@@ -11,13 +11,11 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Number, Numbers, RefusedPartError, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 _LEAST_INSIDE = 1e-9
 """Least probability of the range that a distribution is cut to: beyond, the tail is not what was meant."""

@@ -9,10 +9,9 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import qmc
 
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _BITS = 30
 MOST_POINTS = 2**_BITS

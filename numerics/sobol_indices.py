@@ -13,11 +13,9 @@ percentiles of the estimates over rows drawn again with replacement (bootstrap).
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.sampling import IndexPoints
-
-FloatArray = npt.NDArray[np.float64]
 
 _REDRAWN = 500  # number of times that rows are drawn again
 _AT_ONCE = 2_000_000  # values that are drawn at once

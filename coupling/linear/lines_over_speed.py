@@ -20,8 +20,8 @@ from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 

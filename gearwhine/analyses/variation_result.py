@@ -20,6 +20,7 @@ from gearwhine.case.model import lacking
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import IndexPoints, index_points, sobol_points
@@ -99,9 +100,10 @@ def solve_variation(
     plain = replace(plain, changes=tuple(text for text in source.changes if not text.startswith("variation.")))
     varied = VariedCase(plain, inputs, wanted)
     housing = None
-    if case.housing is not None and not varied.changes_housing:
+    if case.housing is not None and case.rotor:
         housing = solve_housing(case, progress, command="vary", folder=folder, fresh=fresh)
-        varied = replace(varied, housing=reduce_housing(case, housing))
+        key = housing_key(given_housing(case, "vary"))
+        varied = replace(varied, housing=reduce_housing(case, housing), housing_key=key)
     _require_distributions(varied, variation)
     progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
@@ -274,8 +276,10 @@ def _wanted(case: Case, variation: Variation) -> Wanted:
         analyses = tuple(
             name for name, held in allowed.items() if held and all(getattr(case, table) for table in _NEEDS[name])
         )
+        if not analyses and case.rotor:
+            analyses = ("rotors",)
         if not analyses:
-            expected = "a gear pair, a loaded machine or sensors on a housing: nothing of this case can be varied"
+            expected = "a gear pair or a shaft: nothing else is found of a varied case"
             raise CaseError([Problem("variation.analyses", UNSAID, expected)])
     speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
     return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else ())

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.case import CaseError, CaseSource, Problem, case_document
 from gearwhine.case.errors import NOTHING, UNSAID, Location, key_of, look_up
@@ -20,16 +19,14 @@ from gearwhine.case.units import si_amount, split_quantity
 from gearwhine.case.variation import Variation, Varied, built_distribution, in_one_unit
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.accuracy import FlankTolerances, flank_tolerances, random_pitch_deviations
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, DistributionError, Measured, Normal, Rayleigh
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.tolerance_zones import ToleranceZoneError, limit_deviations
 
-FloatArray = npt.NDArray[np.float64]
-
 _THIRD = 3.0  # standard deviations from the middle of a tolerance to its end
-_RAYLEIGH_END = np.sqrt(
-    -2.0 * np.log(0.0027)
-)  # of the same part of all beyond it, in scales of Rayleigh's distribution
+_RAYLEIGH_END = np.sqrt(-2.0 * np.log(0.0027))
+"""End of Rayleigh's distribution beyond which as small a part lies, in its scales."""
 _MICROMETRES, _MILLIMETRES = 1e6, 1e3
 _SEEDS = 2**31
 _LARGEST_TABLE = 20_000_000  # bytes

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
 from gearwhine.coupling.analyses.recording import TransientPlan
@@ -21,9 +20,8 @@ from gearwhine.coupling.load_analysis.load_warnings import find_load
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.analyses.critical_speeds import critical_speeds
-
-FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 3
 """Number of harmonics of a transmission error."""
@@ -120,8 +118,17 @@ class _Gearbox:
 Named = Iterator[tuple[str, float | FloatArray]]
 
 
+def evaluate_pairs(pairs: Sequence[LoadedGearPair]) -> Evaluation:
+    """Find the quantities of gear pairs without shafts."""
+    return Evaluation({name: float(value) for name, value in _of_pairs(pairs)})
+
+
 def _of_gears(gearbox: _Gearbox) -> Named:
-    for pair in gearbox.pairs:
+    yield from _of_pairs(gearbox.pairs)
+
+
+def _of_pairs(pairs: Sequence[LoadedGearPair]) -> Iterator[tuple[str, float]]:
+    for pair in pairs:
         name = f"gear_pair.{pair.geometry.driver.name}-{pair.geometry.driven.name}"
         yield f"{name}.transmission_error_peak_to_peak_m", pair.static.peak_to_peak_transmission_error
         mesh, periods = pair.static, 1

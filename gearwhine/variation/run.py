@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
 from gearwhine.variation.quantities import Evaluation
@@ -22,7 +20,6 @@ from gearwhine.workers import await_workers, code_digest, connected, default_wor
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-FloatArray = npt.NDArray[np.float64]
 
 _WORTH_WORKERS = 20.0  # time of all samples below which workers, which take seconds to start, are not called [s]
 _BATCH_TIME = 1.0  # time of the samples that a worker is given at once, which the death of a worker may cost [s]
@@ -81,7 +78,7 @@ def run_samples(
     if fresh:
         record.file.unlink(missing_ok=True)
     # Samples that failed before are tried again.
-    found = {number: outcome for number, outcome in record.read().items() if isinstance(outcome, Evaluation)}
+    found = {number: outcome for number, outcome in record.read(points).items() if isinstance(outcome, Evaluation)}
     todo = [number for number in range(len(points)) if number not in found]
     outcomes: dict[int, Outcome] = dict(found)
     resumed, told = len(points) - len(todo), _Teller(len(points), len(points) - len(todo), progress)
@@ -91,7 +88,7 @@ def run_samples(
         begin = time.perf_counter()
         outcomes[first] = varied.solve(points[first])
         each = time.perf_counter() - begin
-        record.append([(first, outcomes[first])])
+        record.append([(first, outcomes[first])], points)
         told.took([(first, outcomes[first])])
         rest = todo[1:]
         is_short = workers is None and each * len(rest) < _WORTH_WORKERS
@@ -105,7 +102,7 @@ def run_samples(
         else:
             solved_batches = _solved_by_workers(varied, points, batches, folder, workers, scheduler, progress)
         for solved in solved_batches:
-            record.append(solved)
+            record.append(solved, points)
             outcomes |= dict(solved)
             told.took(solved)
     record.remove_others()

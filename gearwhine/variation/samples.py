@@ -16,26 +16,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 import gearwhine
 from gearwhine.case import Case, CaseError, CaseSource, case_document
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.failures import explain
+from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.reduced_housing import reduced_component
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import plan_of, reduce_housing
+from gearwhine.solve.machine import plan_of, reduce_housing, solve_pairs
 from gearwhine.variation.inputs import Input
-from gearwhine.variation.quantities import Evaluation, Wanted, evaluate
+from gearwhine.variation.quantities import Evaluation, Wanted, evaluate, evaluate_pairs
 from gearwhine.workers import code_digest, require_same_code
 
-FloatArray = npt.NDArray[np.float64]
-
-_OF_HOUSING = frozenset({"housing", "material"})
 _REMARKS = frozenset({"title", "notes", "provenance"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 FOLDER = "samples"
@@ -85,18 +83,16 @@ class VariedCase:
     inputs : tuple of Input
     wanted : Wanted
     housing : HousingComponent or None
-        Solved housing where no input changes it; None also without one.
+        Solved housing of the case without changes; None without one.
+    housing_key : str
+        Key of all that a machine takes of this housing; samples of another key have a housing of their own.
     """
 
     source: CaseSource
     inputs: tuple[Input, ...]
     wanted: Wanted
     housing: HousingComponent | None = None
-
-    @cached_property
-    def changes_housing(self) -> bool:
-        """Whether an input may change the housing, which is then solved for each sample."""
-        return any(path.split(".")[0].split("[")[0] in _OF_HOUSING for one in self.inputs for path, _ in one.keys)
+    housing_key: str = ""
 
     def overrides(self, point: FloatArray) -> list[str]:
         """Return the ``key.path=value`` of a sample at a point of the unit cube."""
@@ -118,8 +114,11 @@ class VariedCase:
 
     def evaluation(self, case: Case) -> Evaluation:
         """Find the quantities of a case of the study."""
+        if not case.rotor or case.operation is None:
+            return evaluate_pairs(solve_pairs(case, None)[0])
         housing = self.housing
-        if case.housing is not None and (housing is None or self.changes_housing):
+        # Places of bearings and materials belong to the housing, too.
+        if case.housing is not None and housing_key(given_housing(case, "vary")) != self.housing_key:
             housing = reduce_housing(case, solve_housing(case, command="vary"))
         machine = describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
@@ -172,28 +171,35 @@ class Record:
         self.file = folder / FOLDER / f"{key[:16]}.jsonl"
         self._sound_bytes = 0
 
-    def read(self) -> dict[int, Outcome]:
-        """Return the samples that are on file by number; what an interruption left unfinished is not."""
+    def read(self, points: FloatArray) -> dict[int, Outcome]:
+        """Return the samples at points (n, d) that are on file, by number; what an interruption left unfinished is not.
+
+        A sample of another point, as of another seed, is none of these.
+        """
         outcomes: dict[int, Outcome] = {}
         self._sound_bytes = 0
         if not self.file.is_file():
             return outcomes
         with self.file.open("rb") as stream:
             for line in stream:
+                if not line.endswith(b"\n"):
+                    break
                 try:
-                    number, outcome = _of_line(json.loads(line)) if line.endswith(b"\n") else (-1, None)
+                    entry = json.loads(line)
+                    number, outcome = _of_line(entry)
+                    if number < len(points) and entry["point"] == points[number].tolist():
+                        outcomes[number] = outcome
                 except (ValueError, KeyError, TypeError):
                     break
-                if outcome is None:
-                    break
-                outcomes[number] = outcome
                 self._sound_bytes += len(line)
         return outcomes
 
-    def append(self, solved: Iterable[tuple[int, Outcome]]) -> None:
-        """Add samples behind those that :meth:`read` has found, on the disk when this returns."""
+    def append(self, solved: Iterable[tuple[int, Outcome]], points: FloatArray) -> None:
+        """Add samples at points (n, d) behind those that :meth:`read` has found, on the disk when this returns."""
         self.file.parent.mkdir(parents=True, exist_ok=True)
-        lines = b"".join(json.dumps(_line(number, outcome)).encode() + b"\n" for number, outcome in solved)
+        lines = b"".join(
+            json.dumps(_line(number, points[number], outcome)).encode() + b"\n" for number, outcome in solved
+        )
         with self.file.open("r+b" if self.file.exists() else "w+b") as stream:
             stream.truncate(self._sound_bytes)
             stream.seek(self._sound_bytes)
@@ -209,12 +215,13 @@ class Record:
                 path.unlink(missing_ok=True)
 
 
-def _line(number: int, outcome: Outcome) -> dict[str, Any]:
+def _line(number: int, point: FloatArray, outcome: Outcome) -> dict[str, Any]:
+    begin: dict[str, Any] = {"number": number, "point": point.tolist()}
     if isinstance(outcome, Failure):
-        return {"number": number, "failure": outcome.message, "traceback": outcome.traceback}
+        return begin | {"failure": outcome.message, "traceback": outcome.traceback}
     numbers = {name: value if np.isfinite(value) else None for name, value in outcome.numbers.items()}
     curves = {name: curve.tolist() for name, curve in outcome.curves.items()}
-    return {"number": number, "numbers": numbers} | ({"curves": curves} if curves else {})
+    return begin | {"numbers": numbers} | ({"curves": curves} if curves else {})
 
 
 def _of_line(line: Mapping[str, Any]) -> tuple[int, Outcome]:

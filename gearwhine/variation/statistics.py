@@ -12,14 +12,13 @@ import numpy.typing as npt
 from scipy import stats
 
 from gearwhine.case.variation import Limit
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.sampling import IndexPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
 from gearwhine.output.quantity import unit_of
 from gearwhine.variation.inputs import Input
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Failure, Outcome
-
-FloatArray = npt.NDArray[np.float64]
 
 QUANTILES = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles."""

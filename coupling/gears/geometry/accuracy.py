@@ -19,13 +19,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.gear import Gear
 from gearwhine.numerics.findings import Finding, Number, refuse
-
-FloatArray = npt.NDArray[np.float64]
 
 CLASSES = Number(at_least=1, at_most=11, whole=True)
 """Rule of a flank tolerance class."""

@@ -68,6 +68,45 @@ def _shaft(tmp_path: Path, text: str = SHAFT) -> Path:
     return path
 
 
+def test_gears_without_shafts_and_shafts_without_gears_are_varied(tmp_path: Path) -> None:
+    text = '[variation]\nsamples = 3\nvary = { "gear.*.profile_shift" = { uniform = [0.0, 0.02] } }\n'
+    found = gw.load(_written(tmp_path, "gear-62-62", text)).vary(folder=tmp_path / "gears", workers=1)
+    assert not found.document["failed"]
+    names = [row["name"].rpartition(".")[2] for row in found.document["quantities"]]
+    assert names[0] == "transmission_error_peak_to_peak_m"
+    bare = SHAFT[: SHAFT.index("[operation]")] + "[variation.vary]\n"
+    bare += '"rotor.shaft.segments[0].diameter" = { uniform = ["29 mm", "31 mm"] }\n'
+    shafts = gw.load(_shaft(tmp_path, bare + "[operation]\nspeed = '100 rpm'\n"))
+    found = shafts.vary(3, folder=tmp_path / "shafts", workers=1)
+    assert [row["name"] for row in found.document["quantities"]][:1] == ["rotor.shaft.critical_speed_1_rpm"]
+
+
+@pytest.mark.parametrize(
+    ("key", "low", "high"), [("bearing.input-back.at", "21 mm", "24 mm"), ("housing.box.wall", "7 mm", "9 mm")]
+)
+def test_a_key_of_the_housing_gives_each_gearbox_a_housing_of_its_own(
+    tmp_path: Path, key: str, low: str, high: str
+) -> None:
+    """Walls, and places of bearings, which enter its static responses: a sample equals the case with the value."""
+    text = '[variation]\nsamples = 1\nanalyses = ["load"]\n'
+    text += f'vary = {{ "{key}" = {{ uniform = ["{low}", "{high}"] }} }}\n'
+    study = gw.load(_written(tmp_path, "small-gearbox", text), {"housing.box.mesh_size": "60 mm"})
+    found = study.vary(folder=tmp_path / "out", workers=1)
+    value = float(found.dataset["input_value"].values[0, 0])
+    single = gw.load(tmp_path / "case.toml", [f"{key}={value!r} mm", "housing.box.mesh_size=60 mm"])
+    for bearing in single.operating_point().document["bearings"]:
+        force = found.dataset["value"].sel(quantity=f"bearing.{bearing['name']}.force_n")
+        assert float(force[0]) == pytest.approx(np.linalg.norm(bearing["force_n"]), rel=1e-12)
+    pair = single.operating_point().document["gear_pairs"][0]
+    misalignment = found.dataset["value"].sel(quantity="gear_pair.pinion-wheel.misalignment_rad")
+    assert float(misalignment[0]) == pytest.approx(pair["misalignment_rad"], rel=1e-9)
+
+
+def _by_hand(forces: np.ndarray) -> np.ndarray:
+    """Forces on the bearings of the shaft, left and right, (n, 2)."""
+    return forces @ np.array([[0.8, 0.2], [0.2, 0.8]])
+
+
 def test_each_gearbox_equals_the_single_calculation(tmp_path: Path) -> None:
     text = """
 [sweep]
@@ -196,6 +235,13 @@ def test_a_study_goes_on_where_it_ended_and_a_torn_record_costs_its_last_line(tm
     assert again.document["resumed"] == 12
     assert np.array_equal(again.dataset["value"].values[:20], first.dataset["value"].values)
     assert len(record.read_bytes().splitlines()) == 30
+    # Other points are other samples: of another seed, or of the design for indices.
+    seeded = gw.load(path).vary(30, seed=9, folder=out, workers=1)
+    assert seeded.document["resumed"] == 0
+    assert np.allclose(seeded.dataset["value"].values, _by_hand(seeded.dataset["input_value"].values), rtol=1e-9)
+    # The first point of two sequences of one seed may be the same.
+    assert gw.load(path).vary(8, indices=True, folder=out, workers=1).document["resumed"] <= 1
+    assert gw.load(path).vary(30, folder=out, workers=1).document["resumed"] == 30
     # Another distribution is another record, and the old one goes.
     other = gw.load(path, ["variation.vary.'operation.force[0].x'.uniform=['700 N', '1200 N']"])
     assert other.vary(5, folder=out, workers=1).document["resumed"] == 0
