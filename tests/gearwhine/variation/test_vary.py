@@ -102,6 +102,20 @@ def test_a_key_of_the_housing_gives_each_gearbox_a_housing_of_its_own(
     assert float(misalignment[0]) == pytest.approx(pair["misalignment_rad"], rel=1e-9)
 
 
+def test_the_level_of_the_motion_is_that_of_simulate(tmp_path: Path) -> None:
+    text = '[variation]\nsamples = 1\nanalyses = ["motion"]\n'
+    text += 'vary = { "operation.torque" = { uniform = ["50 N*m", "80 N*m"] } }\n'
+    short = {"housing.box.mesh_size": "60 mm", "transient.revolutions": 2, "transient.discard": 1}
+    study = gw.load(_written(tmp_path, "small-gearbox", text), short)
+    found = study.vary(folder=tmp_path / "out", workers=1)
+    torque = float(found.dataset["input_value"].values[0, 0])
+    sensors = study.changed([f"operation.torque={torque!r} N*m"]).simulate().document["sensors"]
+    assert len(sensors) == 2
+    for sensor in sensors:
+        level = found.dataset["value"].sel(quantity=f"sensor.{sensor['name']}.motion_level_db")
+        assert float(level[0]) == pytest.approx(20.0 * np.log10(sensor["rms_m_per_s2"] / 1e-6), abs=1e-6)
+
+
 def _by_hand(forces: np.ndarray) -> np.ndarray:
     """Forces on the bearings of the shaft, left and right, (n, 2)."""
     return forces @ np.array([[0.8, 0.2], [0.2, 0.8]])
