@@ -119,17 +119,25 @@ def file_contents(table: Any) -> dict[str, Any]:
     return {str(path): _file_content(path) for path in sorted(paths_in(table))}
 
 
+_WITHOUT_PATHS = frozenset((float, str, int, bool, type(None)))
+
+
 def paths_in(value: Any) -> set[Path]:
     """Return every path in a table, however deep."""
-    if isinstance(value, Path):
-        return {value}
-    if isinstance(value, BaseModel):
-        inner: Iterable[Any] = (entry for _, entry in value)
-    elif isinstance(value, Mapping):
-        inner = value.values()
-    else:
-        inner = value if isinstance(value, list | tuple) else ()
-    return {path for entry in inner if not isinstance(entry, float | str) for path in paths_in(entry)}
+    found, left = set[Path](), [value]
+    while left:
+        one = left.pop()
+        if isinstance(one, Path):
+            found.add(one)
+            continue
+        if isinstance(one, BaseModel):
+            inner: Iterable[Any] = one.__dict__.values()
+        elif isinstance(one, list | tuple):
+            inner = one
+        else:
+            inner = one.values() if isinstance(one, Mapping) else ()
+        left += [entry for entry in inner if type(entry) not in _WITHOUT_PATHS]
+    return found
 
 
 def _file_content(path: Path) -> dict[str, Any]:

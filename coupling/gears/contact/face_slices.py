@@ -41,7 +41,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solveh_banded
-from scipy.linalg.lapack import dptsv
 
 from gearwhine.coupling.gears.errors import ContactAccuracyError
 from gearwhine.coupling.gears.geometry.faults import Spall
@@ -65,6 +64,7 @@ _NO_SPAN = 1e-6
 """Span of a line of contact along the path below which it counts as one point [base pitches]."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
+_UNBOUNDED = "the slices of the face yield without bound; check the stiffness of the teeth"
 
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
@@ -369,34 +369,28 @@ def face_equilibrium(
     shared = slices.shared[: size - 1, : size - 1]
     loaded = np.zeros((meshes, size))
     loaded[:, 0] = force
-    # Loads of each pair per motion, and at zero motion: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w).
+    # Loads of each pair per motion, and at zero motion: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w_0).
     slopes, constants = np.zeros((owner.size, size, size)), np.zeros((owner.size, size))
-    moved = np.zeros((owner.size, slices.z.size, size))
-    fixed = np.zeros(gap.shape)
-    every = np.arange(owner.size)
-    changed: IndexArray | slice = slice(None)
-    unsettled: IndexArray | slice = slice(None)
+    fields = np.zeros((*gap.shape, 1 + size))
+    changed = unsettled = np.arange(owner.size)
     first = np.searchsorted(owner, np.arange(meshes))
     for _ in range(_MOST_ROUNDS):
-        flat = np.where(touching[changed], slices.flattening * slices.width, 0.0)
-        fixed[changed], moved[changed] = _fields(slices, base[changed], gap[changed], touching[changed], motions)
-        slopes[changed] = (flat[:, :, None] * motions).swapaxes(1, 2) @ (motions - moved[changed])
-        constants[changed] = (flat * (gap[changed] + fixed[changed])) @ motions
-        stiffness = np.add.reduceat(slopes, first, axis=0)
+        _find_fields(slices, changed, base, gap, touching, motions, fields, slopes, constants)
+        stiffness = slices.width * np.add.reduceat(slopes, first, axis=0)
         resisting, apart = stiffness.copy(), stiffness[:, 0, 0] <= 0.0
-        right = loaded + np.add.reduceat(constants, first, axis=0)
+        right = loaded + slices.width * np.add.reduceat(constants, first, axis=0)
         # The shared deflections are the shared compliance times the loads on them.
         resisting[:, 1:] = shared @ stiffness[:, 1:]
         resisting[:, 1:, 1:] += np.eye(size - 1)
         right[:, 1:] = right[:, 1:] @ shared
         resisting[apart] = np.eye(size)
-        motion = np.linalg.solve(resisting, right[..., None])[..., 0]
+        motion: FloatArray = np.asarray(np.linalg.solve(resisting, right[..., None])[..., 0], dtype=np.float64)
         motion[apart] = 0.0
         motion[apart, 0] = nearest[apart]
         # Pairs of meshes without a change keep their solution.
         whose = owner[unsettled]
         deep = motion[whose] @ motions.T
-        yielding = fixed[unsettled] + _combined(moved[unsettled], motion[whose])
+        yielding = _deflection(fields[unsettled], motion[whose])
         touches = meeting[unsettled] & (deep - gap[unsettled] - yielding > 0.0)
         # At least the nearest slice carries.
         none = np.bincount(whose, touches.any(axis=1), meshes) == 0
@@ -405,7 +399,7 @@ def face_equilibrium(
         different = (touches != touching[unsettled]).any(axis=1)
         if not different.any():
             break
-        changed = every[unsettled][different]
+        changed = unsettled[different]
         touching[changed] = touches[different]
         affected = np.zeros(meshes, dtype=np.bool_)
         affected[owner[changed]] = True
@@ -416,12 +410,12 @@ def face_equilibrium(
         )
     unit = np.zeros((meshes, size, 1))
     unit[:, 0] = 1.0
-    rate = np.linalg.solve(resisting, unit)[..., 0]
-    rate = rate / rate[:, :1]
+    softness = np.linalg.solve(resisting, unit)[..., 0]
+    rate: FloatArray = np.asarray(softness / softness[:, :1], dtype=np.float64)
     flat = np.where(touching, slices.flattening, 0.0)
     deep = motion[owner] @ motions.T
-    load = flat * (deep - gap - fixed - _combined(moved, motion[owner]))
-    tangent = flat * _combined(motions - moved, rate[owner])
+    load = flat * (deep - gap - _deflection(fields, motion[owner]))
+    tangent = flat * (rate[owner] @ motions.T - _combined(fields[:, :, 1:], rate[owner]))
     width = slices.width
     loads = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touching)
     carried = np.bincount(owner, loads.force, meshes)
@@ -429,6 +423,11 @@ def face_equilibrium(
     if np.any(np.abs(carried - force) > rounding) or np.any(loads.line_load < -rounding.max()):
         raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
     return motion[:, 0], loads
+
+
+def _deflection(fields: FloatArray, motion: FloatArray) -> FloatArray:
+    """Return the deflection (p, n) of pairs with fields (p, n, 1 + m) at motions y (p, m)."""
+    return np.asarray(fields[:, :, 0] + _combined(fields[:, :, 1:], motion))
 
 
 def _combined(fields: FloatArray, parts: FloatArray) -> FloatArray:
@@ -467,24 +466,32 @@ def _loads(
 
 def _even(slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Solve the deflection ``w = fixed + compression * rising`` of each pair, (p, n) both."""
-    fixed, moved = _fields(slices, base, gap, touching, np.ones((slices.z.size, 1)))
-    return fixed, moved[:, :, 0]
+    fields, pairs = np.empty((*gap.shape, 2)), len(gap)
+    motions = np.ones((slices.z.size, 1))
+    slopes, constants = np.empty((pairs, 1, 1)), np.empty((pairs, 1))
+    _find_fields(slices, np.arange(pairs), base, gap, touching, motions, fields, slopes, constants)
+    return fields[:, :, 0], fields[:, :, 1]
 
 
-def _fields(
-    slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray, motions: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Solve the deflection ``w = fixed + moved y`` of each pair under motions y of its flanks like `motions` (n, m).
+def _find_fields(
+    slices: FaceSlices,
+    pairs: IndexArray,
+    base: FloatArray,
+    gap: FloatArray,
+    touching: BoolArray,
+    motions: FloatArray,
+    fields: FloatArray,
+    slopes: FloatArray,
+    constants: FloatArray,
+) -> None:
+    """Find the rows of some pairs in the last three arrays, see the kernel."""
+    # Imported here: numba is not needed to read a case.
+    from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_under_motions
 
-    Shapes (p, n) and (p, n, m), for given touching slices.
-    """
-    flat = np.where(touching, slices.flattening, 0.0)
-    # The fields are solved one after the other.
-    loads = np.empty((1 + motions.shape[1], *gap.shape))
-    np.multiply(flat, -gap, out=loads[0])
-    np.multiply(flat, motions.T[:, None], out=loads[1:])
-    fields = face_yield(slices, base, touching, np.moveaxis(loads, 0, 2))
-    return fields[:, :, 0], fields[:, :, 1:]
+    link = slices.coupling / slices.width**2
+    arrays = base, gap, touching, slices.flattening, link, motions, fields, slopes, constants
+    if not deflect_under_motions(pairs, *arrays):
+        raise ContactAccuracyError(_UNBOUNDED)
 
 
 def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads: FloatArray) -> FloatArray:
@@ -510,22 +517,12 @@ def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads:
     ContactAccuracyError
         Where the slices yield without bound.
     """
-    n = slices.z.size
-    link = slices.coupling / slices.width**2
-    neighbours = np.full(n, 2.0)
-    neighbours[0] -= 1.0
-    neighbours[-1] -= 1.0
-    diagonal = base + np.where(touching, slices.flattening, 0.0) + link * neighbours
-    beside = np.full(diagonal.shape, -link)
-    beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
-    # All pairs form one symmetric, diagonally dominant tridiagonal matrix; right-hand sides are in LAPACK's order.
-    right = np.array(np.moveaxis(loads, 2, 0)).reshape(loads.shape[2], -1).T
-    _, _, fields, info = dptsv(
-        diagonal.ravel(), beside.ravel()[:-1], right, overwrite_d=1, overwrite_e=1, overwrite_b=1
-    )
-    if info != 0:
-        raise ContactAccuracyError("the slices of the face yield without bound; check the stiffness of the teeth")
-    return np.moveaxis(np.asarray(fields).T.reshape(loads.shape[2], *loads.shape[:2]), 0, 2)
+    from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_all
+
+    fields = np.array(loads, dtype=np.float64, order="C")
+    if not deflect_all(base, touching, slices.flattening, slices.coupling / slices.width**2, fields):
+        raise ContactAccuracyError(_UNBOUNDED)
+    return fields
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:
