@@ -218,6 +218,26 @@ class Measured:
         return np.asarray(np.interp(probability, np.linspace(0.0, 1.0, len(self._ordered)), self._ordered))
 
 
+def widened(law: object, factor: float) -> Distribution | None:
+    """Return a distribution with its range and its spread wider by a factor, about its mean or its peak.
+
+    A uniform one is widened about its middle, one of Rayleigh from 0. None of values that have no tolerance: discrete
+    and measured ones.
+    """
+    match law:
+        case Normal(mean, deviation, low, high):
+            return Normal(mean, factor * deviation, mean + factor * (low - mean), mean + factor * (high - mean))
+        case Uniform(low, high):
+            middle, half = 0.5 * (low + high), 0.5 * factor * (high - low)
+            return Uniform(middle - half, middle + half)
+        case Triangular(low, mode, high):
+            return Triangular(mode + factor * (low - mode), mode, mode + factor * (high - mode))
+        case Rayleigh(scale, high):
+            return Rayleigh(factor * scale, factor * high)
+        case _:
+            return None
+
+
 def _range_findings(kind: str, owner: Uniform | Triangular) -> Iterator[Finding]:
     """Yield what is wrong with the numbers of a range."""
     numbers = {name: Number() for name in ("low", "mode", "high") if hasattr(owner, name)}

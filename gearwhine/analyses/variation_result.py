@@ -21,21 +21,21 @@ from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.from_case.given_housing import given_housing, housing_key
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.sampling import IndexPoints, index_points, sobol_points
+from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems
 from gearwhine.results.variation import varied_dataset, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
-from gearwhine.variation.inputs import Input, correlation_matrix, values_at, varied_inputs
+from gearwhine.variation.inputs import Input, Wider, correlation_matrix, values_at, varied_inputs
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
 from gearwhine.variation.statistics import VariedResult, require_known_limits
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
     from matplotlib.figure import Figure
 
 _NEEDS = {
@@ -48,6 +48,8 @@ _NEEDS = {
 """Tables that an analysis needs of a case."""
 MOST_GEARBOXES = 10_000_000
 """Most gearboxes of a study."""
+MOST_WIDENED = 10.0
+"""Largest factor by which a distribution is made wider."""
 
 
 def solve_variation(
@@ -57,6 +59,7 @@ def solve_variation(
     *,
     samples: int | None = None,
     indices: bool = False,
+    widen: float | None = None,
     seed: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -73,7 +76,7 @@ def solve_variation(
         Content that the case is made of, from which the samples are made, too.
     folder : path
         Folder of the samples; those that it holds already are not solved again.
-    samples, indices, seed, workers, scheduler
+    samples, indices, widen, seed, workers, scheduler
         As of :meth:`gearwhine.case_study.CaseStudy.vary`.
     fresh : bool
         Whether to solve all samples anew.
@@ -94,11 +97,13 @@ def solve_variation(
         raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
     inputs = varied_inputs(source, variation)
     count = variation.samples if samples is None else samples
-    points, design = _points(inputs, variation, count, variation.seed if seed is None else seed, indices=indices)
+    wider = _wider(inputs, widen)
+    seed = variation.seed if seed is None else seed
+    points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
     wanted = _wanted(case, variation)
     plain = replace(source, written={key: table for key, table in source.written.items() if key != "variation"})
     plain = replace(plain, changes=tuple(text for text in source.changes if not text.startswith("variation.")))
-    varied = VariedCase(plain, inputs, wanted)
+    varied = VariedCase(plain, inputs, wanted, wider=wider)
     housing = None
     if case.housing is not None and case.rotor:
         housing = solve_housing(case, progress, command="vary", folder=folder, fresh=fresh)
@@ -109,7 +114,8 @@ def solve_variation(
     nominal = varied.evaluation(varied.case(None))
     require_known_limits(variation.limit, list(nominal.numbers))
     if design is not None:
-        progress(f"{design.rows} rows of {len(inputs)} inputs for Sobol' indices: {len(points)} gearboxes")
+        aim = "Sobol' indices" if indices else "what wider ones cost"
+        progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
     solved = run_samples(
         varied,
         points,
@@ -123,7 +129,7 @@ def solve_variation(
     result = VariedResult(
         inputs=inputs,
         points=points,
-        values=values_at(inputs, points),
+        values=values_at(inputs, points, wider),
         nominal=nominal,
         outcomes=solved.outcomes,
         limits=variation.limit,
@@ -156,6 +162,7 @@ def vary(
     plan: TransientPlan | None = None,
     limits: Mapping[str, tuple[float | None, float | None]] | None = None,
     indices: bool = False,
+    widen: float | None = None,
     seed: int = 1,
     title: str = "",
     progress: Progress = silent,
@@ -181,6 +188,8 @@ def vary(
         ``{"bearing.left.life_h": (5000.0, None)}``.
     indices : bool
         Find Sobol' indices.
+    widen : float, optional
+        Factor by which each distribution in turn is made wider, to see what it costs.
     seed : int
     title : str
     progress : callable
@@ -221,10 +230,11 @@ def vary(
         ranges = {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
     except (TypeError, ValueError) as error:
         raise CouplingError(f"vary: limits of {limits}; expected a least and a largest value, or None, each") from error
-    points, design = _points(inputs, Variation(), samples, seed, indices=indices)
-    values = values_at(inputs, points)
+    wider = _wider(inputs, widen)
+    points, design = _points(inputs, Variation(), samples, seed, indices=indices, wider=wider)
+    values = values_at(inputs, points, wider)
 
-    def found(row: npt.NDArray[np.float64]) -> Evaluation:
+    def found(row: FloatArray) -> Evaluation:
         try:
             machine = make(dict(zip(laws, row.tolist(), strict=True)))
         except ValueError as error:
@@ -244,22 +254,41 @@ def vary(
     return _result(Origin(title), result, start)
 
 
+def _wider(inputs: tuple[Input, ...], factor: float | None) -> Wider:
+    """Return the inputs with distributions wider by a factor, see :func:`gearwhine.variation.inputs.inputs_at`."""
+    if factor is None:
+        return ()
+    if not 1.0 < factor <= MOST_WIDENED:
+        raise CaseError([Problem("widen", factor, f"a factor above 1, at most {MOST_WIDENED:g}, such as 1.4")])
+    wider = [one.widened(factor) for one in inputs]
+    if not any(wider):
+        raise CaseError([Problem("widen", factor, "an input with a tolerance; there are only values without one")])
+    return wider
+
+
 def _points(
-    inputs: tuple[Input, ...], variation: Variation, samples: int, seed: int, *, indices: bool
-) -> tuple[npt.NDArray[np.float64], IndexPoints | None]:
-    """Return the points of the samples, and their design where indices are wanted."""
+    inputs: tuple[Input, ...], variation: Variation, samples: int, seed: int, *, indices: bool, wider: Wider
+) -> tuple[FloatArray, IndexPoints | WidenedPoints | None]:
+    """Return the points of the samples, and their design where indices are wanted, or what wider inputs cost."""
     correlation = correlation_matrix(inputs, variation)
-    total = samples * (len(inputs) + 2) if indices else samples
+    if indices and wider:
+        raise CaseError([Problem("widen", UNSAID, "one of indices and widen; each is a study of its own")])
+    widened = [number for number, one in enumerate(wider) if one is not None]
+    total = samples * (len(inputs) + 2 if indices else 1 + len(widened))
     if total > MOST_GEARBOXES:
         raise CaseError([Problem("the number of gearboxes", total, f"at most {MOST_GEARBOXES}")])
-    if not indices:
-        points = sobol_points(samples, len(inputs), seed)
-        return (points if correlation is None else correlated(points, correlation)), None
-    if correlation is not None:
-        expected = "no correlations beside --indices: the variance splits into parts of independent inputs alone"
-        raise CaseError([Problem("variation.correlation", UNSAID, expected)])
-    design = index_points(samples, tuple((number,) for number in range(len(inputs))), seed)
-    return design.points, design
+    if indices:
+        if correlation is not None:
+            expected = "no correlations beside --indices: the variance splits into parts of independent inputs alone"
+            raise CaseError([Problem("variation.correlation", UNSAID, expected)])
+        design = index_points(samples, tuple((number,) for number in range(len(inputs))), seed)
+        return design.points, design
+    points = sobol_points(samples, len(inputs), seed)
+    points = points if correlation is None else correlated(points, correlation)
+    if not widened:
+        return points, None
+    of_wider = widened_points(points, widened)
+    return of_wider.points, of_wider
 
 
 def _wanted(case: Case, variation: Variation) -> Wanted:

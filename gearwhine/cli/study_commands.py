@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
-from cyclopts import Parameter, validators
+from cyclopts import Parameter, Token, validators
 from docstring_parser.numpydoc import parse
 
 from gearwhine.case_study import CaseStudy
@@ -170,11 +170,27 @@ def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
         # A flag that is off by default needs no option that puts it off.
         negative = None if parameter.default is True else ()
         text = texts[parameter.name]
-        marker = Parameter(name=names, negative=negative, validator=limits, consume_multiple=False, help=text)
+        is_whole = int in (kind, *get_args(kind))
+        marker = Parameter(
+            name=names,
+            negative=negative,
+            validator=limits,
+            converter=_whole_number if is_whole else None,
+            consume_multiple=False,
+            help=text,
+        )
         default = [] if parameter.default == () else parameter.default
         yield parameter.replace(
             kind=inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, marker]
         )
+
+
+def _whole_number(kind: Any, tokens: Sequence[Token]) -> int:
+    """Return a whole number as it is written; cyclopts alone rounds one that is not whole."""
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"expected a whole number, got {tokens[0].value!r}") from None
 
 
 def _shown_option(name: str) -> inspect.Parameter:

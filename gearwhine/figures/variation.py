@@ -43,6 +43,7 @@ HEAD = STYLE_HEAD + 5.0  # for the titles of the upper panels [mm]
 _BAR = 5.0  # height of a bar [mm]
 _NAMES = 52.0  # width for the names of inputs beside bars [mm]
 _MOST_CURVES = 8
+_MOST_WIDENED = 20
 _LONG_LABEL = 30  # letters beyond which a label is smaller than a panel's height
 
 
@@ -55,6 +56,8 @@ def draw_variation(title: str, varied: VariedResult) -> Iterator[tuple[str, Figu
     drawn = [one for one in headlines if one.importance()]
     if drawn:
         yield "vary-importance", _importance(title, drawn)
+    if any(one.change is not None for one in varied.widened):
+        yield "vary-widening", _widening(title, varied)
     for number, one in enumerate(drawn[:_MOST_SCATTERS], start=1):
         yield f"vary-scatter-{number}", _scatter(title, varied, one)
     if len(varied.speeds) > 1 and varied.nominal.curves:
@@ -153,6 +156,28 @@ def _bars(axes: Axes, one: QuantityStatistics) -> None:
     axes.set_ylim(-0.6, len(names) - 0.4)
     axes.grid(visible=False, axis="y")
     panel_title(axes, f"{part_of(one.name)}: {shown_quantity(one.name)[0].partition(' [')[0]}")
+
+
+def _widening(title: str, varied: VariedResult) -> Figure:
+    """Draw the change of the yield by each wider input, with its interval."""
+    rows = [one for one in varied.widened if one.change is not None][:_MOST_WIDENED]
+    height = max(len(rows), 2) * _BAR
+    figure = sheet(
+        HEAD + FOOT + height,
+        "What wider tolerances cost",
+        f"{_begins(title, 50)}the same gearboxes with one input wider; line: 95 % interval.",
+    )
+    axes = panel(figure, FOOT, height, left=LEFT + _NAMES, width=160.0 - LEFT - _NAMES - 6.0)
+    places = np.arange(len(rows))[::-1]
+    changes = 100.0 * np.array([[one.change.difference, one.change.low, one.change.high] for one in rows if one.change])
+    axes.barh(places, changes[:, 0], height=0.62, color=BLUE)
+    axes.hlines(places, changes[:, 1], changes[:, 2], color=INK, lw=0.9)
+    axes.axvline(0.0, color=GREY, lw=0.8)
+    axes.set_yticks(places, [shortened(one.name, 40) for one in rows], fontsize=TICK)
+    axes.set_ylim(-0.6, len(rows) - 0.4)
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel("change of the yield [percentage points]")
+    return figure
 
 
 def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figure:

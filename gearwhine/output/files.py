@@ -140,7 +140,7 @@ ADDING = ("render",)
 """Commands whose pictures are added to their earlier ones."""
 
 _STAGING, _COMPLETE = ".partial-", ".complete-"  # beginnings of the names of folders of staged files
-_DRAWN = (".png", ".glb", ".vtu")
+_DRAWN = (".png", ".glb", ".vtu", ".toml")
 _JSON_LINE = 160  # letters of a document's line that holds a whole list or object
 _LONGEST_FILE_NAME = 60  # length of the longest name in a file's name [characters]
 
@@ -266,8 +266,8 @@ def _move_out(place: Path, folder: Path) -> None:
 def _superseded(place: Path, folder: Path, summary: Path) -> list[Path]:
     """Return the files that an earlier summary lists and a new one, which takes its place, makes stale.
 
-    These are drawings that the command does not draw anew, so that no old mode stands among the new ones; and files of
-    another command, which stand in its own sub-folder now.
+    These are drawings and cases that the command does not make anew, so that no old mode or gearbox stands among new
+    ones; and files of another command, which stand in its own sub-folder now.
     """
     new, old = read_summary(place / summary.parent) or {}, read_summary(folder / summary.parent) or {}
     if new.get("command") in ADDING:

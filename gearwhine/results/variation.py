@@ -57,6 +57,27 @@ QUANTITY = (
 )
 """Quantities of a quantity's distribution; a row is a :class:`gearwhine.variation.statistics.QuantityStatistics`."""
 
+CHANGE = (Quantity("difference"), Quantity("low"), Quantity("high"))
+"""Quantities of a difference of two parts of the gearboxes, with its interval."""
+
+WIDENED = (
+    Quantity("input", "name"),
+    Part("yield", "share", SHARE, optional=True),
+    Part("change", "change", CHANGE, optional=True),
+    Rows(
+        "quantities",
+        "quantities",
+        (
+            Quantity("name"),
+            Quantity("std_before", "deviation_before"),
+            Quantity("std", "deviation"),
+            Quantity("quantile_before", "end_before"),
+            Quantity("quantile", "end"),
+        ),
+    ),
+)
+"""Quantities of a wider input; a row is a :class:`gearwhine.variation.statistics.WidenedInput`."""
+
 VARIED = (
     Quantity("samples", lambda varied: len(varied.outcomes)),
     Quantity("representative", lambda varied: int(varied.representative.sum())),
@@ -84,6 +105,7 @@ VARIED = (
     Rows("quantities", "quantities", QUANTITY),
     Quantity("headlines", lambda varied: [one.name for one in varied.headlines]),
     Part("yield", "yielded", SHARE, optional=True),
+    Rows("widened", lambda varied: varied.widened or None, WIDENED, optional=True),
 )
 """Quantities of a varied case; the object is a :class:`gearwhine.variation.statistics.VariedResult`."""
 
@@ -215,6 +237,7 @@ def report(document: Document) -> Section:
     pictures = (
         Picture("vary-distributions", "How the quantities scatter, with their limits and the gearbox without changes."),
         Picture("vary-importance", "Which inputs the scatter follows from."),
+        Picture("vary-widening", "What wider tolerances cost in yield."),
         Picture("vary-scatter", "Each gearbox by the inputs that matter most."),
         Picture(
             "vary-speeds", "Levels over speed: the gearbox without changes, and the band of nine in ten gearboxes."
@@ -228,6 +251,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys")
     yield from table_of(_COLUMNS, rows, "Distributions")
     yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
+    yield from _what_wider_ones_cost(document.get("widened", []))
     for failure in document["failed"][:_MOST_FAILURES]:
         yield f"Gearbox {failure['number']} failed: {failure['message']}"
     if len(document["failed"]) > _MOST_FAILURES:
@@ -283,3 +307,40 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
     yield from table_of(columns, shown, caption)
     if unexplained:
         yield f"No input alone explains {'; '.join(unexplained)}: more samples, or --indices, may tell."
+
+
+def _what_wider_ones_cost(rows: Sequence[Document]) -> Iterator[str | Table]:
+    """Yield a table of wider inputs: the yield, its change, and how far the first quantity moves."""
+    rows = [row for row in rows if row["quantities"]]
+    if not rows:
+        return
+    first = rows[0]["quantities"][0]["name"]
+    shown = [
+        {
+            "input": row["input"],
+            "yield": f"{100.0 * row['yield']['share']:.1f} %" if "yield" in row else "",
+            "change": f"{100.0 * row['change']['difference']:+.1f}" if "change" in row else "",
+            "interval": f"{100.0 * row['change']['low']:+.1f} to {100.0 * row['change']['high']:+.1f}"
+            if "change" in row
+            else "",
+            **row["quantities"][0],
+        }
+        for row in rows
+    ]
+    columns = (
+        Column("wider input", "input"),
+        Column("yield", "yield"),
+        Column("change [points]", "change"),
+        Column("95 % interval", "interval"),
+        Column("std", _from_to("std_before", "std", ".3g")),
+        Column("bad end", _from_to("quantile_before", "quantile", ".4g")),
+    )
+    of_first = f"std and bad end of {part_of(first)}, {shown_quantity(first)[0]}"
+    caption = f"What wider tolerances cost, the dearest first; {of_first}"
+    yield from table_of(columns, shown, caption)
+
+
+def _from_to(before: str, after: str, form: str) -> Callable[[Document], str]:
+    """Return the function that shows a number of a row before and after its input is widened."""
+    numbers = _number(lambda row: row[before], form), _number(lambda row: row[after], form)
+    return lambda row: " → ".join(number(row) for number in numbers)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,15 @@ from gearwhine.case.variation import Variation, Varied, built_distribution, in_o
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.accuracy import FlankTolerances, flank_tolerances, random_pitch_deviations
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.distributions import Discrete, Distribution, DistributionError, Measured, Normal, Rayleigh
+from gearwhine.numerics.distributions import (
+    Discrete,
+    Distribution,
+    DistributionError,
+    Measured,
+    Normal,
+    Rayleigh,
+    widened,
+)
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.tolerance_zones import ToleranceZoneError, limit_deviations
 
@@ -48,6 +56,11 @@ class Pitches:
     def drawn(self, coordinate: float) -> tuple[float, ...]:
         """Cumulative pitch deviations [m]."""
         return random_pitch_deviations(self.tolerances, self.teeth, int(coordinate * _SEEDS))
+
+    def widened(self, factor: float) -> Pitches:
+        """Return deviations with all tolerances wider by a factor."""
+        wider = {name: factor * size for name, size in asdict(self.tolerances).items()}
+        return replace(self, tolerances=FlankTolerances(**wider))
 
 
 @dataclass(frozen=True)
@@ -79,6 +92,11 @@ class Input:
             return float(np.ptp(self.law.drawn(coordinate)))
         return float(self.law.quantile(np.array([coordinate]))[0])
 
+    def widened(self, factor: float) -> Input | None:
+        """Return the input with a distribution that is wider by a factor; None of values without a tolerance."""
+        law = self.law.widened(factor) if isinstance(self.law, Pitches) else widened(self.law, factor)
+        return None if law is None else replace(self, law=law)
+
     def text(self, value: float) -> str:
         """Value as it is written into the case where it is no pitch deviation."""
         if self.words:
@@ -96,9 +114,23 @@ class Input:
             yield f"{key}={self.text(value if self.words else factor * value)}"
 
 
-def values_at(inputs: Sequence[Input], points: FloatArray) -> FloatArray:
+Wider = Sequence["Input | None"]
+"""Each input with a wider distribution, None where it can have none; empty in a study without."""
+
+
+def inputs_at(inputs: Sequence[Input], point: FloatArray, wider: Wider = ()) -> Iterator[tuple[Input, float]]:
+    """Yield each input with its coordinate at a point of the unit cube, shape (d,).
+
+    In a study of wider inputs a point is (d + 1,): the number of its wider input, from 1, or 0, is behind.
+    """
+    number = int(point[-1]) - 1 if wider else -1
+    for place, (one, coordinate) in enumerate(zip(inputs, point[: len(inputs)].tolist(), strict=True)):
+        yield (wider[place] if place == number else None) or one, coordinate
+
+
+def values_at(inputs: Sequence[Input], points: FloatArray, wider: Wider = ()) -> FloatArray:
     """Values of inputs at points of the unit cube, shape (n, d)."""
-    return np.array([[one.value(float(at)) for one, at in zip(inputs, row, strict=True)] for row in points])
+    return np.array([[one.value(at) for one, at in inputs_at(inputs, point, wider)] for point in points])
 
 
 def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]:

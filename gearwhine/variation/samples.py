@@ -30,7 +30,7 @@ from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing, solve_pairs
-from gearwhine.variation.inputs import Input
+from gearwhine.variation.inputs import Input, Wider, inputs_at
 from gearwhine.variation.quantities import Evaluation, Wanted, evaluate, evaluate_pairs
 from gearwhine.workers import code_digest, require_same_code
 
@@ -86,6 +86,8 @@ class VariedCase:
         Solved housing of the case without changes; None without one.
     housing_key : str
         Key of all that a machine takes of this housing; samples of another key have a housing of their own.
+    wider : sequence of (Input or None)
+        See :func:`gearwhine.variation.inputs.inputs_at`.
     """
 
     source: CaseSource
@@ -93,10 +95,11 @@ class VariedCase:
     wanted: Wanted
     housing: HousingComponent | None = None
     housing_key: str = ""
+    wider: Wider = ()
 
     def overrides(self, point: FloatArray) -> list[str]:
         """Return the ``key.path=value`` of a sample at a point of the unit cube."""
-        return [text for one, at in zip(self.inputs, point, strict=True) for text in one.overrides(float(at))]
+        return [text for one, at in inputs_at(self.inputs, point, self.wider) for text in one.overrides(at)]
 
     def case(self, point: FloatArray | None) -> Case:
         """Return the case of a sample; of None the one without changes.
@@ -134,7 +137,7 @@ class VariedCase:
         return content_key(
             {
                 "case": with_contents(document, case.input_files.contents),
-                "inputs": [repr(one) for one in self.inputs],
+                "inputs": [repr(one) for one in (*self.inputs, *self.wider)],
                 "wanted": repr(self.wanted),
                 "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
                 "source": code_digest(),

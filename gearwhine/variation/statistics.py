@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import stats
 
 from gearwhine.case.variation import Limit
-from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.sampling import IndexPoints
+from gearwhine.numerics.arrays import BoolArray, FloatArray
+from gearwhine.numerics.sampling import IndexPoints, WidenedPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
 from gearwhine.output.quantity import unit_of
 from gearwhine.variation.inputs import Input
@@ -46,6 +45,74 @@ class Share:
         """Return the share of some good ones of all."""
         interval = stats.binomtest(good, total).proportion_ci(CONFIDENCE, method="exact")
         return cls(good / total, float(interval.low), float(interval.high))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Difference of two parts of the same gearboxes, with its 95 % interval.
+
+    The gearboxes that are good in one way only decide: of n, b are good after and not before, c before and not after.
+    The interval is Wald's with half a gearbox added to each cell of the table (Agresti and Min, Stat. Med. 24, 2005).
+
+    Attributes
+    ----------
+    difference, low, high : float
+    """
+
+    difference: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, before: BoolArray, after: BoolArray) -> Difference:
+        """Return the part of good ones after a change less that before, of the same gearboxes (n,)."""
+        gained, lost = int(np.sum(after & ~before)), int(np.sum(before & ~after))
+        total = before.size + 2
+        middle = (gained - lost) / total
+        variance = ((gained + lost + 1) / total - middle**2) / total
+        half = float(stats.norm.ppf(0.5 + 0.5 * CONFIDENCE)) * math.sqrt(variance)
+        return cls((gained - lost) / before.size, max(middle - half, -1.0), min(middle + half, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class QuantityWidened:
+    """A quantity with one wider input beside itself.
+
+    Attributes
+    ----------
+    name : str
+    deviation_before, deviation : float
+        Standard deviation over the same gearboxes.
+    end_before, end : float
+        The quantile at its bad end: of 95 %, of a least value of 5 %.
+    """
+
+    name: str
+    deviation_before: float
+    deviation: float
+    end_before: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class WidenedInput:
+    """What a wider distribution of an input costs.
+
+    Attributes
+    ----------
+    name : str
+    share : Share or None
+        Yield with the wider input; None without limits.
+    change : Difference or None
+        Its difference from that of the same gearboxes without it.
+    quantities : tuple of QuantityWidened
+        The quantities that are drawn.
+    """
+
+    name: str
+    share: Share | None
+    change: Difference | None
+    quantities: tuple[QuantityWidened, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +169,15 @@ class QuantityStatistics:
             return dict.fromkeys(map(str, QUANTILES), math.nan)
         return dict(zip(map(str, QUANTILES), np.quantile(self.found, QUANTILES).tolist(), strict=True))
 
+    @property
+    def bad_end(self) -> float:
+        """Probability of the quantile at the bad end: 0.95, of a least value 0.05."""
+        return QUANTILES[0] if self._has_least_value else QUANTILES[-1]
+
+    @property
+    def _has_least_value(self) -> bool:
+        return self.limit is not None and self.limit.at_most is None
+
     @cached_property
     def rank_correlations(self) -> dict[str, float]:
         """Rank correlation (Spearman) with each input; none where a few samples or no scatter say nothing."""
@@ -126,7 +202,7 @@ class QuantityStatistics:
     @property
     def worst(self) -> list[int]:
         """Numbers of the worst samples: the highest, of a least value the lowest."""
-        sign = 1.0 if self.limit is not None and self.limit.at_most is None else -1.0
+        sign = 1.0 if self._has_least_value else -1.0
         order = np.argsort(sign * np.where(np.isfinite(self.values), self.values, sign * math.inf), kind="stable")
         return [int(number) for number in order[: min(WORST, self.found.size)]]
 
@@ -188,8 +264,8 @@ class VariedResult:
         By quantity.
     speeds : ndarray, shape (s,)
         Signed speeds of curves [rad/s].
-    design : IndexPoints or None
-        Points of the samples where Sobol' indices are wanted.
+    design : IndexPoints, WidenedPoints or None
+        Points of the samples where Sobol' indices are wanted, or what wider inputs cost.
     resumed : int
         Number of samples that an earlier run had found.
     """
@@ -201,7 +277,7 @@ class VariedResult:
     outcomes: tuple[Outcome, ...]
     limits: Mapping[str, Limit]
     speeds: FloatArray
-    design: IndexPoints | None
+    design: IndexPoints | WidenedPoints | None
     resumed: int
 
     @cached_property
@@ -210,11 +286,9 @@ class VariedResult:
         return {number: one for number, one in enumerate(self.outcomes) if isinstance(one, Failure)}
 
     @cached_property
-    def representative(self) -> npt.NDArray[np.bool_]:
-        """Mask of the samples that stand for the production: all, of a design for indices those of A and B."""
-        if self.design is None:
-            return np.ones(len(self.outcomes), dtype=np.bool_)
-        return np.arange(len(self.outcomes)) % (len(self.inputs) + 2) < 2
+    def representative(self) -> BoolArray:
+        """Mask of the samples that stand for the production; the others tell what the scatter follows from."""
+        return np.ones(len(self.outcomes), dtype=np.bool_) if self.design is None else self.design.representative
 
     @cached_property
     def quantities(self) -> tuple[QuantityStatistics, ...]:
@@ -227,7 +301,7 @@ class VariedResult:
         statistics = []
         for name in names:
             values = self.all_values(name)
-            indices = None if self.design is None else sobol_indices(self.design, values)
+            indices = sobol_indices(self.design, values) if isinstance(self.design, IndexPoints) else None
             statistics.append(
                 QuantityStatistics(
                     name,
@@ -253,7 +327,7 @@ class VariedResult:
         return np.array([one.curves.get(name, none) if isinstance(one, Evaluation) else none for one in self.outcomes])
 
     @property
-    def good(self) -> npt.NDArray[np.bool_]:
+    def good(self) -> BoolArray:
         """Mask of the samples within all limits, shape (n,); those without a result are not."""
         held = np.array([isinstance(one, Evaluation) for one in self.outcomes])
         for name, limit in self.limits.items():
@@ -268,6 +342,35 @@ class VariedResult:
             return None
         return Share.of(int((self.good & solved).sum()), int(solved.sum()))
 
+    @cached_property
+    def widened(self) -> tuple[WidenedInput, ...]:
+        """What each wider input costs: the dearest first by the yield, without limits by the first quantity."""
+        if not isinstance(self.design, WidenedPoints):
+            return ()
+        split = self.design.split
+        solved, solved_wide = split(np.array([isinstance(one, Evaluation) for one in self.outcomes]))
+        good, good_wide = split(self.good)
+        ends = [(one.name, one.bad_end, *split(self.all_values(one.name))) for one in self.headlines]
+        found = []
+        for place, number in enumerate(self.design.inputs):
+            both = solved & solved_wide[place]
+            if not both.any():
+                continue
+            before, after = good[both], good_wide[place][both]
+            quantities = []
+            for name, probability, values, values_wide in ends:
+                pair = np.array([values, values_wide[place]])
+                pair = pair[:, np.all(np.isfinite(pair), axis=0)]
+                if pair.shape[1] > 1:
+                    deviations, quantiles = pair.std(axis=1, ddof=1), np.quantile(pair, probability, axis=1)
+                    row = zip(deviations.tolist(), quantiles.tolist(), strict=True)
+                    (deviation, end), (wide_deviation, wide_end) = row
+                    quantities.append(QuantityWidened(name, deviation, wide_deviation, end, wide_end))
+            share = Share.of(int(after.sum()), after.size) if self.limits else None
+            change = Difference.of(before, after) if self.limits else None
+            found.append(WidenedInput(self.inputs[number].name, share, change, tuple(quantities)))
+        return tuple(sorted(found, key=_cost, reverse=True))
+
     @property
     def headlines(self) -> tuple[QuantityStatistics, ...]:
         """Quantities that are drawn: those with a limit, else levels at sensors, else transmission errors, else all."""
@@ -280,6 +383,13 @@ class VariedResult:
             if chosen:
                 return tuple(chosen)
         return tuple(varying)
+
+
+def _cost(one: WidenedInput) -> float:
+    """Return what a wider input costs: the loss of yield, without limits the growth of the first deviation."""
+    if one.change is not None:
+        return -one.change.difference
+    return one.quantities[0].deviation / (one.quantities[0].deviation_before or 1.0) if one.quantities else 0.0
 
 
 def require_known_limits(limits: Mapping[str, Limit], names: Sequence[str]) -> None:
