@@ -432,7 +432,7 @@ class FreeMass:
         return product
 
 
-def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, npt.NDArray[Any]]:
+def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
     """Return the lower triangle by columns on the free degrees of freedom: pointer, rows, and places in blocks.
 
     The blocks are the upper triangle's, by rows, which are the lower one's columns.
@@ -450,4 +450,7 @@ def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArr
     if len(free) < 3 * n:
         is_lower &= (rows >= 0) & np.repeat(number >= 0, lengths)
     counts = np.add.reduceat(is_lower, entries.indptr[:-1], dtype=np.int64)[free]
-    return np.concatenate([[0], np.cumsum(counts)]), rows[is_lower].astype(np.int64), entries.data[is_lower]
+    pointer = np.concatenate([[0], np.cumsum(counts)])
+    rows = rows[is_lower]
+    kind = np.int32 if pointer[-1] < np.iinfo(np.int32).max else np.int64  # scipy takes both arrays of one kind
+    return pointer.astype(kind), rows.astype(kind, copy=False), entries.data[is_lower]

@@ -14,6 +14,7 @@ from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.factorization import Backend, Factorizer
+from gearwhine.housing.fem.linear_algebra import Precision
 from gearwhine.housing.fem.matrices import FreeSystem, Matrices
 from gearwhine.housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
@@ -44,7 +45,7 @@ class ModeSet:
     seconds : dict of str to float
         Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
-        Name of the factorisation.
+        Name of the factorisation, with its precision where that is not double.
     shift : float
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
@@ -99,6 +100,7 @@ def solve_modes(
     port_orders: int = 1,
     solver: Solver = DEFAULT_SOLVER,
     backend: Backend | None = None,
+    precision: Precision | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> ModeSet:
@@ -123,8 +125,9 @@ def solve_modes(
         :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
     solver : {"lanczos", "eigsh"}
         Block Lanczos or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
-    backend, threads
-        See :class:`gearwhine.housing.fem.factorization.Factorizer`.
+    backend, precision, threads
+        See :class:`gearwhine.housing.fem.factorization.Factorizer`. With a factor in single precision the modes are
+        corrected by residuals in double, and certified in double as any others.
     progress : callable
         Called with a line of text before each step.
 
@@ -151,7 +154,7 @@ def solve_modes(
 
     if solver not in get_args(Solver):
         raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
-    factorizer = Factorizer(backend=backend, threads=threads)
+    factorizer = Factorizer(backend=backend, precision=precision, threads=threads, progress=progress)
     factorizer.order_ahead(system.stiffness)
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     solution = (
@@ -188,7 +191,7 @@ def solve_modes(
         shapes=system.expand(vectors),
         certificate=solution.certificate,
         seconds=search.seconds,
-        backend=solution.factor.backend,
+        backend=solution.factor.name,
         shift=solution.shift,
         threads=threads,
         residual_modes=residual_modes,
