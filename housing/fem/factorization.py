@@ -38,7 +38,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from gearwhine.housing.errors import FactorizationError
-from gearwhine.housing.fem.linear_algebra import Precision, SymmetricMatrix
+from gearwhine.housing.fem.linear_algebra import Operator, Precision, SymmetricMatrix
 from gearwhine.housing.fem.memory import available_memory, check_memory
 from gearwhine.numerics.arrays import FloatArray
 
@@ -204,7 +204,8 @@ class Factorization:
 
     Attributes
     ----------
-    backend : {"rslab", "superlu"}
+    backend : str
+        Name of the solver.
     precision : {"double", "single"}
         Precision of the factor; solutions are in double precision in any case.
     size : int
@@ -218,14 +219,14 @@ class Factorization:
         Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes the rest of the ordering.
     """
 
-    backend: Backend
+    backend: str
     precision: Precision
     size: int
     fill: int
     negative: int
     seconds: float
     _factor: NumericFactor
-    _matrix: SymmetricMatrix = field(repr=False)
+    _matrix: Operator | None = field(default=None, repr=False)  # A, where solutions are refined
 
     @property
     def name(self) -> str:
@@ -241,7 +242,7 @@ class Factorization:
             Where the refinement of a factor in single precision does not converge.
         """
         right = np.ascontiguousarray(right)
-        if self.precision == "double":
+        if self._matrix is None:
             return self._factor.solve(right)
         solution = np.zeros_like(right)
         left, last = right, np.inf
@@ -376,21 +377,34 @@ class Factorizer:
                 f"{self.backend} could not factor a matrix of order {matrix.shape[0]}: {error}. The shift may sit on "
                 "an eigenvalue, or a part of the housing may be free"
             ) from error
-        factor = Factorization(
-            backend=self.backend,
-            precision=precision,
-            size=matrix.shape[0],
-            fill=numeric.fill,
-            negative=numeric.negative,
-            seconds=time.perf_counter() - start,
-            _factor=numeric,
-            _matrix=matrix,
-        )
-        if precision == "single":
-            _prove_inertia(factor, matrix)
-        else:
-            _check(factor, matrix)
-        return factor
+        return checked_factor(self.backend, numeric, matrix, time.perf_counter() - start, precision)
+
+
+def checked_factor(
+    backend: str, numeric: NumericFactor, matrix: SymmetricMatrix, seconds: float, precision: Precision = "double"
+) -> Factorization:
+    """Check that a factor solves, and prove its inertia where it is in single precision.
+
+    Raises
+    ------
+    FactorizationError
+        Where it does not solve, or its inertia is not proved.
+    """
+    factor = Factorization(
+        backend=backend,
+        precision=precision,
+        size=matrix.shape[0],
+        fill=numeric.fill,
+        negative=numeric.negative,
+        seconds=seconds,
+        _factor=numeric,
+        _matrix=matrix if precision == "single" else None,
+    )
+    if precision == "single":
+        _prove_inertia(factor, matrix)
+    else:
+        _check(factor, matrix)
+    return factor
 
 
 def default_backend() -> Backend:

@@ -219,6 +219,16 @@ class Matrices:
             blocks[np.searchsorted(self._keys, self._keys_of(upper))] -= shift * upper.blocks
         return blocks
 
+    def mass_blocks(self) -> FloatArray:
+        """M on the pattern [kg], shape (n_blocks, 3, 3)."""
+        blocks = np.zeros_like(self.blocks)
+        for component in range(3):
+            blocks[:, component, component] = self.node_mass
+        if len(self.attached_mass):
+            upper = self.attached_mass.upper
+            blocks[np.searchsorted(self._keys, self._keys_of(upper))] += upper.blocks
+        return blocks
+
     def mass_diagonal(self) -> FloatArray:
         """Return the diagonal of M [kg], shape (3 n_nodes,)."""
         diagonal = np.repeat(self.node_mass[self.pointer[:-1]], 3)
@@ -353,6 +363,10 @@ class FreeSystem:
     def mass(self) -> "FreeMass":
         """M [kg], as an operator."""
         return FreeMass(self._matrices, self.free, self.threads)
+
+    def assembled_mass(self) -> SymmetricMatrix:
+        """M on the pattern of K [kg]."""
+        return self._matrix(self._matrices.mass_blocks().ravel()[self._source])
 
     def shifted(self, shift: float) -> SymmetricMatrix:
         """K - shift M, always on the same pattern [rad²/s²]."""

@@ -1,11 +1,12 @@
 """Certificate of a set of modes by its Sturm count (Sylvester's inertia): none missing, none twice, each accurate.
 
 The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos or scipy's ``eigsh``
-(:mod:`gearwhine.housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
-K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. The search is
-repeated more widely until this count proves it complete. A frequency limit is itself the shift, so that one factor both
-counts the modes below it and finds them. For a number of modes the shift lies just below zero, which keeps the shifted
-matrix positive definite for a free body too, and a second factor counts up to the gap behind the last.
+(:mod:`gearwhine.housing.modes.eigensolver`), or SLEPc on the ranks of MPI (:mod:`gearwhine.housing.fem.slepc`). The
+proof is Sylvester's law of inertia: the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below
+σ, multiple ones counted by their multiplicity. The search is repeated more widely until this count proves it complete.
+A frequency limit is itself the shift, so that one factor both counts the modes below it and finds them. For a number of
+modes the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
+factor counts up to the gap behind the last.
 """
 
 import time
@@ -16,9 +17,10 @@ import numpy as np
 from scipy import linalg
 
 from gearwhine.housing.errors import FactorizationError, HousingError, IncompleteModesError
-from gearwhine.housing.fem.factorization import Factorization, Factorizer
+from gearwhine.housing.fem.factorization import Factorization, Factorizer, checked_factor
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.housing.fem.matrices import FreeSystem
+from gearwhine.housing.fem.slepc import SlepcRanks
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, block_lanczos, nearest_modes
 from gearwhine.housing.modes.mode_correction import corrected_modes
 from gearwhine.numerics.arrays import FloatArray
@@ -91,7 +93,7 @@ class CertifiedSearch:
     """Search for modes, repeated more widely until the certificate is complete; the seconds of each step add up."""
 
     def __init__(
-        self, system: FreeSystem, factorizer: Factorizer, floor: float, solver: Solver = DEFAULT_SOLVER
+        self, system: FreeSystem, factorizer: Factorizer | SlepcRanks, floor: float, solver: Solver = DEFAULT_SOLVER
     ) -> None:
         self.floor = floor
         self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
@@ -175,7 +177,11 @@ class CertifiedSearch:
 
     def _factor(self, shift: float) -> Factorization:
         start = time.perf_counter()
-        factor = self._factorizer.factor(self._system.shifted(shift))
+        if isinstance(self._factorizer, SlepcRanks):
+            numeric = self._factorizer.factor(shift)
+            factor = checked_factor("mumps", numeric, self._system.shifted(shift), time.perf_counter() - start)
+        else:
+            factor = self._factorizer.factor(self._system.shifted(shift))
         self.seconds["factorisation"] += time.perf_counter() - start
         return factor
 
@@ -186,6 +192,8 @@ class CertifiedSearch:
         start = time.perf_counter()
         system = self._system
         try:
+            if isinstance(self._factorizer, SlepcRanks):
+                return self._factorizer.modes(shift, count, above=above, seed=attempt)
             if factor.precision == "single" and self._solver == "lanczos":
                 return self._corrected(factor, shift, count, above=above, attempt=attempt)
             return nearest_modes(

@@ -231,7 +231,7 @@ def orthonormal(
     return Addition(new, new_inertia, np.vstack([within, shares]))
 
 
-Solver = Literal["lanczos", "eigsh"]
+Solver = Literal["lanczos", "eigsh", "slepc"]
 
 DEFAULT_SOLVER: Solver = "lanczos"
 """At least 1.3 times faster than eigsh from factor to certificate, see benchmarks/README.md."""

@@ -16,6 +16,7 @@ from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.factorization import Backend, Factorizer
 from gearwhine.housing.fem.linear_algebra import Precision
 from gearwhine.housing.fem.matrices import FreeSystem, Matrices
+from gearwhine.housing.fem.slepc import SlepcRanks
 from gearwhine.housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from gearwhine.housing.modes.residual_modes import (
@@ -123,10 +124,12 @@ def solve_modes(
     port_orders : int
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
         :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
-    solver : {"lanczos", "eigsh"}
-        Block Lanczos or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
+    solver : {"lanczos", "eigsh", "slepc"}
+        Block Lanczos or ``scipy.sparse.linalg.eigsh``, both on the same factor, or SLEPc with MUMPS on ranks of MPI,
+        see :mod:`gearwhine.housing.fem.slepc`; all with the same certificate.
     backend, precision, threads
-        See :class:`gearwhine.housing.fem.factorization.Factorizer`. With a factor in single precision the modes are
+        See :class:`gearwhine.housing.fem.factorization.Factorizer`; not for SLEPc, which has as many ranks as threads
+        unless the environment says otherwise. With a factor in single precision the modes are
         corrected by residuals in double, and certified in double as any others.
     progress : callable
         Called with a line of text before each step.
@@ -136,6 +139,8 @@ def solve_modes(
     HousingError
         Where neither or both of limit and count are given, they ask for nothing or for everything, or the solver is
         unknown.
+    SlepcUnavailableError
+        Where the ranks of SLEPc cannot be started.
     IncompleteModesError
         Where the certificate is not complete after three searches.
     ReductionError
@@ -154,8 +159,14 @@ def solve_modes(
 
     if solver not in get_args(Solver):
         raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
-    factorizer = Factorizer(backend=backend, precision=precision, threads=threads, progress=progress)
-    factorizer.order_ahead(system.stiffness)
+    factorizer: Factorizer | SlepcRanks
+    if solver == "slepc":
+        if backend is not None or precision is not None:
+            raise HousingError("the solver 'slepc' has a factorisation of its own, in double precision: leave out both")
+        factorizer = SlepcRanks(system.stiffness, system.assembled_mass(), threads)
+    else:
+        factorizer = Factorizer(backend=backend, precision=precision, threads=threads, progress=progress)
+        factorizer.order_ahead(system.stiffness)
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     solution = (
         search.below(frequency_limit, progress)
