@@ -413,7 +413,7 @@ class Housing:
         bearings : mapping of str to (str, float), optional
             Places where the machine bears on the housing: for each bearing, its seat and its distance along z from the
             centre of the seat [m]. By default each seat stands for one bearing at its centre.
-        solver : {"lanczos", "eigsh"}
+        solver : {"lanczos", "eigsh", "slepc"}
             Eigensolver, see :func:`gearwhine.housing.solve_modes`.
         defects : sequence of MeshDefect, optional
             Defects of the mesh where they are known and allowed; found here by default, and refused where the mesh

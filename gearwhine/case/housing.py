@@ -343,8 +343,9 @@ class Housing(Table):
     accuracy: Annotated[float, Quantity(units.RATIO, at_least=1e-3, at_most=0.2)] | None = None
     """Largest estimated error of a mode's frequency by the mesh, such as "1 %", in place of the `mesh_size` of box or
     cad: elements are made smaller until every mode's `discretisation_error` is below it."""
-    solver: Literal["lanczos", "eigsh"] = "lanczos"
-    """Eigensolver of the modes: block Lanczos, or scipy's ARPACK ("eigsh"); both have the same certificate."""
+    solver: Literal["lanczos", "eigsh", "slepc"] = "lanczos"
+    """Eigensolver of the modes: block Lanczos, scipy's ARPACK ("eigsh"), or SLEPc with MUMPS on ranks of MPI, for a
+    housing beyond one machine (`pip install gearwhine[slepc]`); all have the same certificate."""
     box: Box | None = None
     """Housing as a box. Exactly one of `box`, `cad` and `mesh`."""
     cad: CadFile | None = None

@@ -2,17 +2,34 @@
 
 Two direct solvers, rslab and SuperLU, have one interface. Both factor a symmetric matrix that need not be definite,
 from its lower triangle, and report its inertia. Work that would exceed the available memory is refused beforehand.
+
+A factor in single precision takes half the memory of one in double. Its solutions are refined in double precision,
+
+    x ← x + F⁻¹ (b - A x),        F = A + E,
+
+with F the matrix of which the factor is exact and E its backward error, and so are as accurate as those of a factor in
+double. Its inertia is that of F. That this is the inertia of A too is proved by the refinement itself: on the way from
+F to A, as F - tE for t from 0 to 1, an eigenvalue changes its sign only where the matrix is singular, which is where
+the refinement's matrix
+
+    G = F⁻¹ E = I - F⁻¹ A
+
+has the real eigenvalue 1/t ≥ 1. With yᵀ its left eigenvector, the error e of a refinement from x = 0 keeps at least
+its part along y: |yᵀ e_k| = t⁻ᵏ |yᵀ e_0| ≥ |yᵀ e_0|. For a known solution of independent standard normal numbers,
+yᵀ e_0 / |y| is a standard normal number itself, so that an error is as small as |e_k| with a probability of at most
+√(2/π) |e_k|, and those of m independent columns with the product of these. This product, for a refinement that was
+carried out, bounds the probability of an inertia that is not A's. A norm of E says less: it would need a gap between
+the shift and the modes that single precision never leaves on a fine mesh.
 """
 
 import importlib
-import os
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.util import find_spec
-from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, Literal, Protocol
 
@@ -21,108 +38,9 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from gearwhine.housing.errors import FactorizationError
-from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
+from gearwhine.housing.fem.linear_algebra import Operator, Precision, SymmetricMatrix
+from gearwhine.housing.fem.memory import available_memory, check_memory
 from gearwhine.numerics.arrays import FloatArray
-
-
-def available_memory(*, system: Path = Path("/")) -> float:
-    """Memory that this process can still allocate: the least of the machine's, its control group's and its own limit.
-
-    The machine's is MemAvailable and SwapFree of ``/proc/meminfo``; the group's, of a container or a batch job, is the
-    limit of the control group less its use without files that can be dropped; its own is RLIMIT_AS less the address
-    space in use. A limit that the system does not report is infinite.
-
-    Parameters
-    ----------
-    system : path
-        Root of the file system that has ``proc`` and ``sys``.
-
-    Returns
-    -------
-    float
-        Memory [bytes], not negative.
-    """
-    return max(min(_machine(system), _group(system), _own_limit(system)), 0.0)
-
-
-def check_memory(needed: float, task: str) -> None:
-    """Refuse work that needs more memory than is available.
-
-    Parameters
-    ----------
-    needed : float
-        Memory needed [bytes].
-    task : str
-        Subject of the message's sentence.
-
-    Raises
-    ------
-    MemoryError
-        Where less than that is available; the message says both and what to do.
-    """
-    available = available_memory()
-    if needed > available:
-        raise MemoryError(
-            f"{task} needs {needed / 1e9:.2g} GB of memory, and {available / 1e9:.2g} GB are available; "
-            "a larger mesh_size needs less"
-        )
-
-
-def _machine(system: Path) -> float:
-    entries = _entries(system / "proc" / "meminfo")
-    return 1024.0 * (entries.get("MemAvailable:", float("inf")) + entries.get("SwapFree:", 0.0))
-
-
-def _group(system: Path) -> float:
-    """Memory left to the nearest control group and those around it, in version 1 or 2 of the kernel's files."""
-    least = float("inf")
-    for line in _lines(system / "proc" / "self" / "cgroup"):
-        number, controllers, name = line.strip().split(":", 2)
-        if number == "0":
-            top, limit, use, cache = system / "sys/fs/cgroup", "memory.max", "memory.current", "inactive_file"
-        elif "memory" in controllers.split(","):
-            top, limit, use = system / "sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes"
-            cache = "total_inactive_file"
-        else:
-            continue
-        place = top / name.lstrip("/")
-        for folder in (place, *place.parents):
-            most, usage = _number(folder / limit), _number(folder / use)
-            if most is not None and usage is not None:
-                least = min(least, most - usage + _entries(folder / "memory.stat").get(cache, 0.0))
-            if folder == top:
-                break
-    return least
-
-
-def _own_limit(system: Path) -> float:
-    try:
-        import resource
-    except ImportError:  # no such limits on this system
-        return float("inf")
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if limit == resource.RLIM_INFINITY:
-        return float("inf")
-    pages = next(iter(_lines(system / "proc" / "self" / "statm")), "0").split()[0]
-    return float(limit - int(pages) * os.sysconf("SC_PAGE_SIZE"))
-
-
-def _entries(path: Path) -> dict[str, float]:
-    """Name and number of each line."""
-    pairs = (line.split() for line in _lines(path))
-    return {pair[0]: float(pair[1]) for pair in pairs if len(pair) > 1 and pair[1].isdigit()}
-
-
-def _number(path: Path) -> float | None:
-    text = "".join(_lines(path)).strip()
-    return float(text) if text.isdigit() else None
-
-
-def _lines(path: Path) -> list[str]:
-    try:
-        return path.read_text(encoding="ascii", errors="replace").splitlines()
-    except OSError:
-        return []
 
 
 class NumericFactor(Protocol):
@@ -195,23 +113,29 @@ class RslabSolver:
             nd_init_trials=4,
         )
 
-    def factor(self, matrix: SymmetricMatrix) -> "_RslabFactor":
+    def memory(self, matrix: SymmetricMatrix, precision: Precision) -> float:
+        """Memory that a factor and its solutions take, beside that of the ordering, which is found if need be."""
+        if self._symbolic is None:
+            self.order(matrix)
+        plan = self._symbolic.memory_plan(dtype=_KINDS[precision].__name__, nrhs=_COLUMNS)
+        return float(plan["factor_peak_bytes"])
+
+    def factor(self, matrix: SymmetricMatrix, precision: Precision) -> "_RslabFactor":
         """Factor in the ordering found, or in the first matrix's."""
         if self._symbolic is None:
             self.order(matrix)
-        # Where an allocation fails the library ends the process; so the need is foreseen, from the ordering.
-        estimate = self._symbolic.estimate_memory()
-        check_memory(estimate["transient_peak_bytes"], f"the factor of a matrix of order {matrix.shape[0]}")
-        return _RslabFactor(self._symbolic.factor(matrix.values))
+        kind = _KINDS[precision]
+        return _RslabFactor(self._symbolic.factor(matrix.values.astype(kind, copy=False)), kind)
 
 
 class _RslabFactor:
-    def __init__(self, handle: Any) -> None:
-        self._handle = handle
+    def __init__(self, handle: Any, kind: type) -> None:
+        self._handle, self._kind = handle, kind
         self.negative, self.fill = int(handle.inertia[1]), int(handle.factor_nnz)
 
     def solve(self, right: FloatArray) -> FloatArray:
-        return np.asarray(self._handle.solve(right) if right.ndim == 1 else self._handle.solve_many(right))
+        solve = self._handle.solve if right.ndim == 1 else self._handle.solve_many
+        return np.asarray(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
 
 
 class SuperluSolver:
@@ -220,8 +144,12 @@ class SuperluSolver:
     def order(self, matrix: SymmetricMatrix) -> None:
         """Do nothing: SuperLU orders each matrix anew."""
 
-    def factor(self, matrix: SymmetricMatrix) -> "_SuperluFactor":
-        """Factor a matrix."""
+    def memory(self, matrix: SymmetricMatrix, precision: Precision) -> float:
+        """Return 0: SuperLU does not foresee its memory."""
+        return 0.0
+
+    def factor(self, matrix: SymmetricMatrix, precision: Precision) -> "_SuperluFactor":
+        """Factor a matrix, in double precision."""
         handle = splu(
             matrix.full(),
             permc_spec="MMD_AT_PLUS_A",
@@ -244,6 +172,14 @@ class _SuperluFactor:
 
 Backend = Literal["rslab", "superlu"]
 
+_KINDS: dict[Precision, type] = {"double": np.float64, "single": np.float32}
+_VECTORS_BESIDE = 200  # vectors in double precision beside the factor: those of a search for modes
+_COLUMNS = 8  # solved at once
+_MISCOUNT = 1e-15  # probability of a wrong inertia that is let pass
+_REFINEMENTS = 40
+_CONVERGING = 0.7  # part of an error that a refinement leaves at most, while it converges
+_REFINED = 1e-14  # last correction, as a part of the solution
+_UNREFINED = 1e-9  # the same, where rounding ends the refinement
 _RESIDUAL_BOUND = 1e-8
 _ERROR_BOUND = 1e-2  # error of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
 
@@ -253,7 +189,13 @@ class _Solver(Protocol):
 
     def order(self, matrix: SymmetricMatrix) -> None: ...
 
-    def factor(self, matrix: SymmetricMatrix) -> NumericFactor: ...
+    def memory(self, matrix: SymmetricMatrix, precision: Precision) -> float: ...
+
+    def factor(self, matrix: SymmetricMatrix, precision: Precision) -> NumericFactor: ...
+
+
+class UnprovedInertiaError(FactorizationError):
+    """The inertia of a factor in single precision is not proved to be the matrix's."""
 
 
 @dataclass(frozen=True)
@@ -262,7 +204,10 @@ class Factorization:
 
     Attributes
     ----------
-    backend : {"rslab", "superlu"}
+    backend : str
+        Name of the solver.
+    precision : {"double", "single"}
+        Precision of the factor; solutions are in double precision in any case.
     size : int
         Order of the matrix.
     fill : int
@@ -274,16 +219,57 @@ class Factorization:
         Time taken by the factorisation [s]; the first of a :class:`Factorizer` includes the rest of the ordering.
     """
 
-    backend: Backend
+    backend: str
+    precision: Precision
     size: int
     fill: int
     negative: int
     seconds: float
     _factor: NumericFactor
+    _matrix: Operator | None = field(default=None, repr=False)  # A, where solutions are refined
+
+    @property
+    def name(self) -> str:
+        """Name of the solver, with the precision where that is not double."""
+        return self.backend if self.precision == "double" else f"{self.backend}, {self.precision} precision"
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """Solve A x = b for one or many right-hand sides, shape (n,) or (n, m)."""
-        return self._factor.solve(np.ascontiguousarray(right))
+        """Solve A x = b for one or many right-hand sides, shape (n,) or (n, m).
+
+        Raises
+        ------
+        FactorizationError
+            Where the refinement of a factor in single precision does not converge.
+        """
+        right = np.ascontiguousarray(right)
+        if self._matrix is None:
+            return self._factor.solve(right)
+        solution = np.zeros_like(right)
+        left, last = right, np.inf
+        for _ in range(_REFINEMENTS):
+            correction = self.solve_approximately(left)
+            solution += correction
+            sizes = np.linalg.norm(solution, axis=0)
+            change = float(np.max(np.linalg.norm(correction, axis=0) / np.where(sizes > 0.0, sizes, 1.0)))
+            if change < _REFINED or _CONVERGING * last < change < _UNREFINED:
+                return solution
+            if not change < 2.0 * last:
+                break
+            left, last = right - self._matrix @ solution, change
+        raise FactorizationError(
+            f"the refinement of solutions from a factor in single precision stops at corrections of {change:.1e}; "
+            "move the limit a little, or give more memory, which a factor in double precision needs"
+        )
+
+    def solve_approximately(self, right: FloatArray) -> FloatArray:
+        """Solve in the precision of the factor, F x = b, without refinement."""
+        right = np.ascontiguousarray(right)
+        if self.precision == "double":
+            return self._factor.solve(right)
+        # Small numbers in double precision may be none in single.
+        scale = np.max(np.abs(right), axis=0)
+        scale = np.where(scale > 0.0, scale, 1.0)
+        return np.asarray(self._factor.solve(right / scale) * scale)
 
 
 class Factorizer:
@@ -293,19 +279,37 @@ class Factorizer:
     ----------
     backend : {"rslab", "superlu"}, optional
         rslab where it can be imported, else SuperLU in symmetric mode, about ten times slower.
+    precision : {"double", "single"}, optional
+        By default double, and single where a factor in double precision does not fit in the available memory. A factor
+        in single precision whose inertia is not proved is made again in double; SuperLU has double only.
     threads : int
         Workers of the factorisation; SuperLU has one.
+    progress : callable
+        Called with a line of text where the precision is not double, and why.
 
     Raises
     ------
     FactorizationError
-        Where the backend asked for is not installed.
+        Where the backend asked for is not installed, or does not have the precision.
     """
 
-    def __init__(self, *, backend: Backend | None = None, threads: int = 2) -> None:
+    def __init__(
+        self,
+        *,
+        backend: Backend | None = None,
+        precision: Precision | None = None,
+        threads: int = 2,
+        progress: Callable[[str], None] = lambda message: None,
+    ) -> None:
         self.backend: Backend = backend or default_backend()
+        if precision not in (None, *_KINDS):
+            raise FactorizationError(f"precision {precision!r}; expected one of {', '.join(map(repr, _KINDS))}")
+        self._precision = precision
+        self._progress = progress
         self._solver: _Solver
         if self.backend == "superlu":
+            if precision == "single":
+                raise FactorizationError("the backend superlu factors in double precision only; single needs rslab")
             self._solver = SuperluSolver()
         elif not can_import("rslab"):
             raise FactorizationError("the backend rslab needs the package rslab, which is not installed")
@@ -335,25 +339,72 @@ class Factorizer:
         if not isinstance(matrix, SymmetricMatrix):
             matrix = SymmetricMatrix.of(matrix)
         start = time.perf_counter()
+        if self._ordering is not None:
+            self._ordering.result()
+            self._ordering = None  # with the matrix that it holds
+        precision = self._precision or self._fitting(matrix)
+        if precision == "double":
+            return self._factored(matrix, precision, start)
         try:
-            if self._ordering is not None:
-                self._ordering.result()
-            numeric = self._solver.factor(matrix)
+            return self._factored(matrix, precision, start)
+        except FactorizationError as error:
+            self._progress(f"{error}; factoring in double precision")
+            try:
+                return self._factored(matrix, "double", start)
+            except MemoryError as too_large:
+                raise MemoryError(f"{error}; {too_large}, or move the limit a little") from error
+
+    def _fitting(self, matrix: SymmetricMatrix) -> Precision:
+        """Double precision, or single where the available memory is too small for it."""
+        needed = self._solver.memory(matrix, "double") + 8.0 * _VECTORS_BESIDE * matrix.shape[0]
+        available = available_memory()
+        if self.backend == "superlu" or needed <= available:
+            return "double"
+        self._progress(
+            "factoring in single precision, with proofs and refinement in double: a factor in double precision needs "
+            f"{needed / 1e9:.2g} GB of memory, and {available / 1e9:.2g} GB are available"
+        )
+        return "single"
+
+    def _factored(self, matrix: SymmetricMatrix, precision: Precision, start: float) -> Factorization:
+        # Where an allocation fails the library ends the process; so the need is foreseen, from the ordering.
+        needed = self._solver.memory(matrix, precision)
+        check_memory(needed, f"the factor of a matrix of order {matrix.shape[0]} in {precision} precision")
+        try:
+            numeric = self._solver.factor(matrix, precision)
         except RuntimeError as error:
             raise FactorizationError(
                 f"{self.backend} could not factor a matrix of order {matrix.shape[0]}: {error}. The shift may sit on "
                 "an eigenvalue, or a part of the housing may be free"
             ) from error
-        factor = Factorization(
-            backend=self.backend,
-            size=matrix.shape[0],
-            fill=numeric.fill,
-            negative=numeric.negative,
-            seconds=time.perf_counter() - start,
-            _factor=numeric,
-        )
+        return checked_factor(self.backend, numeric, matrix, time.perf_counter() - start, precision)
+
+
+def checked_factor(
+    backend: str, numeric: NumericFactor, matrix: SymmetricMatrix, seconds: float, precision: Precision = "double"
+) -> Factorization:
+    """Check that a factor solves, and prove its inertia where it is in single precision.
+
+    Raises
+    ------
+    FactorizationError
+        Where it does not solve, or its inertia is not proved.
+    """
+    factor = Factorization(
+        backend=backend,
+        precision=precision,
+        size=matrix.shape[0],
+        fill=numeric.fill,
+        negative=numeric.negative,
+        seconds=seconds,
+        _factor=numeric,
+        _matrix=matrix if precision == "single" else None,
+    )
+    if precision == "single":
+        _prove_inertia(factor, matrix)
+    else:
         _check(factor, matrix)
-        return factor
+    return factor
 
 
 def default_backend() -> Backend:
@@ -375,3 +426,25 @@ def _check(factor: Factorization, matrix: SymmetricMatrix) -> None:
             f"{_RESIDUAL_BOUND:.0e} and {_ERROR_BOUND:.0e}; the matrix is singular or nearly so: try another shift or "
             "another backend"
         )
+
+
+def _prove_inertia(factor: Factorization, matrix: SymmetricMatrix) -> None:
+    """Refine known solutions until a wrong inertia is as good as excluded; a factor that does not allow it is refused.
+
+    The proof is that of the module's docstring, with eight columns.
+    """
+    exact = np.random.default_rng(0).standard_normal((factor.size, _COLUMNS))
+    right = matrix @ exact
+    left, solution, last = right, np.zeros_like(exact), np.inf
+    for _ in range(_REFINEMENTS):
+        solution += factor.solve_approximately(left)
+        errors = np.linalg.norm(solution - exact, axis=0)
+        if np.prod(np.sqrt(2.0 / np.pi) * errors) < _MISCOUNT:
+            return
+        if not errors.max() < _CONVERGING * last:
+            break
+        left, last = right - matrix @ solution, float(errors.max())
+    raise UnprovedInertiaError(
+        f"the inertia of a matrix of order {factor.size} is not proved by its factor in single precision, whose "
+        f"refinement leaves an error of {errors.max() / np.sqrt(factor.size):.1e}"
+    )

@@ -10,14 +10,18 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from itertools import pairwise
-from typing import Protocol, TypeVar
+from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 
-from gearwhine.numerics.arrays import FloatArray, IntArray
+from gearwhine.numerics.arrays import FloatArray
 
 T = TypeVar("T")
+
+Precision = Literal["double", "single"]
+"""Precision of numbers: 8 bytes with 53 bits, or 4 bytes with 24 bits."""
 
 _WORTH_A_THREAD = 2**22  # multiplications of one triangle: fewer are done sooner than a thread starts
 
@@ -64,7 +68,7 @@ class SymmetricMatrix:
     Attributes
     ----------
     pointer : ndarray of int, shape (n + 1,)
-        Place where each column begins.
+        Place where each column begins. Of 32 bits as the rows are, unless there are more entries.
     rows : ndarray of int
         Ascending within a column, the diagonal first.
     values : ndarray
@@ -73,8 +77,8 @@ class SymmetricMatrix:
         to the last bit.
     """
 
-    pointer: IntArray
-    rows: IntArray
+    pointer: npt.NDArray[Any]
+    rows: npt.NDArray[Any]
     values: FloatArray
     threads: int = 1
 
@@ -83,7 +87,7 @@ class SymmetricMatrix:
         """Take the lower triangle of a matrix with both."""
         lower = sparse.csc_array(sparse.tril(matrix, format="csc"))
         lower.sum_duplicates()
-        return cls(lower.indptr.astype(np.int64), lower.indices.astype(np.int64), lower.data)
+        return cls(lower.indptr, lower.indices, lower.data)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -92,7 +96,7 @@ class SymmetricMatrix:
 
     def diagonal(self) -> FloatArray:
         """Diagonal, shape (n,)."""
-        return self.values[self.pointer[:-1]]
+        return np.asarray(self.values[self.pointer[:-1]])
 
     @cached_property
     def lower(self) -> sparse.csc_array:
@@ -120,6 +124,7 @@ class SymmetricMatrix:
 
 
 _SHARES = 4  # shares into which the rows are divided
+_ROWS_AT_ONCE = 2**14  # rows of a product in place
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
@@ -141,11 +146,13 @@ class BlockAlgebra:
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
     def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
-        """LᵀR, shape (columns of L, columns of R)."""
-        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])))
+        """LᵀR, shape (columns of L, columns of R); in single precision where L is."""
+        right = right.astype(left.dtype, copy=False)
+        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])), dtype=np.float64)
 
     def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
-        """Subtract B p from a block of columns, in place."""
+        """Subtract B p from a block of columns, in place; the product is in single precision where B is."""
+        parts = parts.astype(basis.dtype, copy=False)
 
         def take(rows: slice) -> None:
             block[rows] -= (parts.T @ basis[rows].T).T  # one column after another: half the time of basis[rows] @ parts
@@ -155,6 +162,16 @@ class BlockAlgebra:
     def combined(self, block: FloatArray, mixture: FloatArray) -> FloatArray:
         """B m, shape (rows, columns of m)."""
         return np.concatenate(self._each(lambda rows: block[rows] @ mixture))
+
+    def replace(self, block: FloatArray, mixture: FloatArray) -> None:
+        """Replace the first columns of B by B m, in place, a few rows at a time."""
+
+        def mix(rows: slice) -> None:
+            for begin in range(rows.start, rows.stop, _ROWS_AT_ONCE):
+                few = slice(begin, min(begin + _ROWS_AT_ONCE, rows.stop))
+                block[few, : mixture.shape[1]] = block[few] @ mixture
+
+        self._each(mix)
 
     def _each(self, work: Callable[[slice], T]) -> list[T]:
         def together(shares: list[slice]) -> list[T]:

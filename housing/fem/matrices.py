@@ -219,6 +219,16 @@ class Matrices:
             blocks[np.searchsorted(self._keys, self._keys_of(upper))] -= shift * upper.blocks
         return blocks
 
+    def mass_blocks(self) -> FloatArray:
+        """M on the pattern [kg], shape (n_blocks, 3, 3)."""
+        blocks = np.zeros_like(self.blocks)
+        for component in range(3):
+            blocks[:, component, component] = self.node_mass
+        if len(self.attached_mass):
+            upper = self.attached_mass.upper
+            blocks[np.searchsorted(self._keys, self._keys_of(upper))] += upper.blocks
+        return blocks
+
     def mass_diagonal(self) -> FloatArray:
         """Return the diagonal of M [kg], shape (3 n_nodes,)."""
         diagonal = np.repeat(self.node_mass[self.pointer[:-1]], 3)
@@ -354,6 +364,10 @@ class FreeSystem:
         """M [kg], as an operator."""
         return FreeMass(self._matrices, self.free, self.threads)
 
+    def assembled_mass(self) -> SymmetricMatrix:
+        """M on the pattern of K [kg]."""
+        return self._matrix(self._matrices.mass_blocks().ravel()[self._source])
+
     def shifted(self, shift: float) -> SymmetricMatrix:
         """K - shift M, always on the same pattern [rad²/s²]."""
         return self._matrix(self._matrices.shifted_blocks(shift).ravel()[self._source])
@@ -432,7 +446,7 @@ class FreeMass:
         return product
 
 
-def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, npt.NDArray[Any]]:
+def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
     """Return the lower triangle by columns on the free degrees of freedom: pointer, rows, and places in blocks.
 
     The blocks are the upper triangle's, by rows, which are the lower one's columns.
@@ -450,4 +464,7 @@ def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArr
     if len(free) < 3 * n:
         is_lower &= (rows >= 0) & np.repeat(number >= 0, lengths)
     counts = np.add.reduceat(is_lower, entries.indptr[:-1], dtype=np.int64)[free]
-    return np.concatenate([[0], np.cumsum(counts)]), rows[is_lower].astype(np.int64), entries.data[is_lower]
+    pointer = np.concatenate([[0], np.cumsum(counts)])
+    rows = rows[is_lower]
+    kind = np.int32 if pointer[-1] < np.iinfo(np.int32).max else np.int64  # scipy takes both arrays of one kind
+    return pointer.astype(kind), rows.astype(kind, copy=False), entries.data[is_lower]

@@ -1,11 +1,12 @@
 """Certificate of a set of modes by its Sturm count (Sylvester's inertia): none missing, none twice, each accurate.
 
 The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos or scipy's ``eigsh``
-(:mod:`gearwhine.housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
-K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. The search is
-repeated more widely until this count proves it complete. A frequency limit is itself the shift, so that one factor both
-counts the modes below it and finds them. For a number of modes the shift lies just below zero, which keeps the shifted
-matrix positive definite for a free body too, and a second factor counts up to the gap behind the last.
+(:mod:`gearwhine.housing.modes.eigensolver`), or SLEPc on the ranks of MPI (:mod:`gearwhine.housing.fem.slepc`). The
+proof is Sylvester's law of inertia: the number of negative pivots in K - σM = L D Lᵀ is the number of eigenvalues below
+σ, multiple ones counted by their multiplicity. The search is repeated more widely until this count proves it complete.
+A frequency limit is itself the shift, so that one factor both counts the modes below it and finds them. For a number of
+modes the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a second
+factor counts up to the gap behind the last.
 """
 
 import time
@@ -16,10 +17,12 @@ import numpy as np
 from scipy import linalg
 
 from gearwhine.housing.errors import FactorizationError, HousingError, IncompleteModesError
-from gearwhine.housing.fem.factorization import Factorization, Factorizer
+from gearwhine.housing.fem.factorization import Factorization, Factorizer, checked_factor
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.housing.fem.matrices import FreeSystem
-from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
+from gearwhine.housing.fem.slepc import SlepcRanks
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, block_lanczos, nearest_modes
+from gearwhine.housing.modes.mode_correction import corrected_modes
 from gearwhine.numerics.arrays import FloatArray
 
 RESIDUAL_BOUND = 1e-8
@@ -65,6 +68,9 @@ _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away fr
 MOST_MODES = 2000
 """Largest number of modes of one search: the basis of more would exceed any memory."""
 _DRAFT = 1e-4  # residual of the last modes of a draft; modes of half their frequency then have all digits
+_IN_SINGLE = 1e-3  # residual of the modes of a factor in single precision, before they are corrected
+_COMPANIONS = 0.1  # the same of modes next to the shift that the correction needs
+_CORRECTED = 0.2 * RESIDUAL_BOUND
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
@@ -87,7 +93,7 @@ class CertifiedSearch:
     """Search for modes, repeated more widely until the certificate is complete; the seconds of each step add up."""
 
     def __init__(
-        self, system: FreeSystem, factorizer: Factorizer, floor: float, solver: Solver = DEFAULT_SOLVER
+        self, system: FreeSystem, factorizer: Factorizer | SlepcRanks, floor: float, solver: Solver = DEFAULT_SOLVER
     ) -> None:
         self.floor = floor
         self.seconds = {"factorisation": 0.0, "eigensolver": 0.0}
@@ -171,7 +177,11 @@ class CertifiedSearch:
 
     def _factor(self, shift: float) -> Factorization:
         start = time.perf_counter()
-        factor = self._factorizer.factor(self._system.shifted(shift))
+        if isinstance(self._factorizer, SlepcRanks):
+            numeric = self._factorizer.factor(shift)
+            factor = checked_factor("mumps", numeric, self._system.shifted(shift), time.perf_counter() - start)
+        else:
+            factor = self._factorizer.factor(self._system.shifted(shift))
         self.seconds["factorisation"] += time.perf_counter() - start
         return factor
 
@@ -182,6 +192,10 @@ class CertifiedSearch:
         start = time.perf_counter()
         system = self._system
         try:
+            if isinstance(self._factorizer, SlepcRanks):
+                return self._factorizer.modes(shift, count, above=above, seed=attempt)
+            if factor.precision == "single" and self._solver == "lanczos":
+                return self._corrected(factor, shift, count, above=above, attempt=attempt)
             return nearest_modes(
                 self._solver,
                 factor.solve,
@@ -200,6 +214,34 @@ class CertifiedSearch:
             return np.empty(0), np.empty((system.size, 0))
         finally:
             self.seconds["eigensolver"] += time.perf_counter() - start
+
+    def _corrected(
+        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """Uncertified modes of a factor in single precision, corrected in double."""
+        system = self._system
+        _, vectors = block_lanczos(
+            factor.solve_approximately,
+            self._mass,
+            shift,
+            count,
+            above=above,
+            seed=attempt,
+            threads=system.threads,
+            tolerance=_IN_SINGLE,
+            precision="single",
+            companion_tolerance=_COMPANIONS,
+        )
+        return corrected_modes(
+            system.stiffness,
+            self._mass,
+            factor.solve_approximately,
+            vectors,
+            count,
+            floor=self.floor,
+            tolerance=_CORRECTED,
+            threads=system.threads,
+        )
 
     def _certify(
         self, values: FloatArray, vectors: FloatArray, limit: float, below: int

@@ -29,7 +29,7 @@ import numpy as np
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from gearwhine.housing.errors import IncompleteModesError
-from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
+from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator, Precision
 from gearwhine.numerics.arrays import FloatArray
 
 TOLERANCE = 1e-9
@@ -37,6 +37,7 @@ TOLERANCE = 1e-9
 
 _BLOCK = 8
 _DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
+_DEPENDENT_IN_SINGLE = 1e-6  # the same, where the basis is in single precision
 _NEARLY_WITHIN = 1e-4  # remainder of a column, as a part of it, below which its rounding shows
 _ORTHONORMAL = 1e-14  # largest error of the products of a new block's columns from those of orthonormal ones
 _DEPENDENT_COLUMN_CORRELATION = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
@@ -52,6 +53,8 @@ def block_lanczos(
     seed: int = 0,
     threads: int = 1,
     tolerance: float = TOLERANCE,
+    precision: Precision = "double",
+    companion_tolerance: float = 0.0,
 ) -> tuple[FloatArray, FloatArray]:
     """Solve for the modes nearest to a shift on one side of it by block Lanczos.
 
@@ -74,12 +77,17 @@ def block_lanczos(
     tolerance : float
         Tolerance of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of
         that.
+    precision : {"double", "single"}
+        Precision in which the basis is kept.
+    companion_tolerance : float
+        Where positive, further modes come behind the wanted ones: those next to the shift on its upper side, beyond the
+        wanted modes or across the shift from them, whose residuals are below this.
 
     Returns
     -------
-    values : ndarray, shape (count,)
+    values : ndarray, shape (count,) or more
         λ, ascending [rad²/s²].
-    vectors : ndarray, shape (n, count)
+    vectors : ndarray, shape (n, count) or more
         φ, with φᵀ M φ = 1.
 
     Raises
@@ -90,40 +98,48 @@ def block_lanczos(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
+    kind = np.dtype(np.float64 if precision == "double" else np.float32)
     # The operating system allocates only the pages that are used.
-    basis, inertia = (np.empty((n, most + width), order="F") for _ in range(2))
+    basis = np.empty((n, most + width), dtype=kind, order="F")
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
     algebra = BlockAlgebra(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
-    block_step = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
+    addition = orthonormal(basis[:, :0], solve(np.ascontiguousarray(mass @ start)), mass, algebra)
+    recent = np.empty((n, 0))
     begin, size, checked = 0, 0, 0
-    while block_step.block.shape[1] and size + block_step.block.shape[1] <= most + width:
-        previous, begin, size = begin, size, size + block_step.block.shape[1]
-        basis[:, begin:size], inertia[:, begin:size] = block_step.block, block_step.inertia
-        block_step = _orthonormal(
-            basis[:, :size], inertia[:, :size], size - previous, solve(block_step.inertia), mass, algebra
+    while addition.block.shape[1] and size + addition.block.shape[1] <= most + width:
+        begin, size = size, size + addition.block.shape[1]
+        basis[:, begin:size] = addition.block
+        inertia = addition.inertia
+        addition = orthonormal(
+            basis[:, :size], solve(inertia), mass, algebra, recent=np.concatenate([recent, inertia], axis=1)
         )
-        small[:size, begin:size] = block_step.projections[:size]
-        remainder = block_step.projections[size:]
-        whole = block_step.block.shape[1] == 0
+        recent = inertia
+        small[:size, begin:size] = addition.projections[:size]
+        remainder = addition.projections[size:]
+        whole = addition.block.shape[1] == 0
         # Once in a twentieth of the basis: the small eigenproblem must not outgrow the large one.
         if size >= count and (whole or size - checked >= size // 20 or size + width > most):
             checked = size
             nu, mixtures = np.linalg.eigh(0.5 * (small[:size, :size] + small[:size, :size].T))
-            chosen = np.argsort(-sign * nu)[:count]
-            wanted, mixture = nu[chosen], mixtures[:, chosen]
-            outside = remainder @ mixture[begin:]
-            errors = np.linalg.norm(outside, axis=0)
-            if whole or (np.all(sign * wanted > 0.0) and np.all(errors < tolerance * np.abs(wanted))):
+            ranked = np.argsort(-sign * nu)
+            errors = np.linalg.norm(remainder @ mixtures[begin:], axis=0)
+            wanted = ranked[:count]
+            if whole or (np.all(sign * nu[wanted] > 0.0) and np.all(errors[wanted] < tolerance * np.abs(nu[wanted]))):
+                others = (
+                    (ranked[count:] if sign > 0.0 else ranked[: count - 1 : -1]) if companion_tolerance else wanted[:0]
+                )
+                others = others[(nu[others] > 0.0) & (errors[others] < companion_tolerance * np.abs(nu[others]))]
+                chosen = np.concatenate([wanted[np.argsort(1.0 / nu[wanted])], others])
+                mixture = mixtures[:, chosen]
                 # Basis and block are orthonormal, so that the norms follow from the coefficients.
-                step = outside / wanted
+                step = remainder @ mixture[begin:] / nu[chosen]
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
-                order = np.argsort(1.0 / wanted)
-                vectors = algebra.combined(block_step.block, (step / norms)[:, order])
-                algebra.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
-                return shift + 1.0 / wanted[order], vectors
+                vectors = algebra.combined(addition.block, step / norms)
+                algebra.subtract(vectors, basis[:, :size], -(mixture / norms))
+                return shift + 1.0 / nu[chosen], vectors
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
     raise IncompleteModesError(
@@ -133,7 +149,7 @@ def block_lanczos(
 
 
 @dataclass(frozen=True)
-class _Addition:
+class Addition:
     """Extension of a basis of m vectors by a block.
 
     Attributes
@@ -151,31 +167,42 @@ class _Addition:
     projections: FloatArray
 
 
-def _orthonormal(
+def orthonormal(
     basis: FloatArray,
-    inertia_of_basis: FloatArray,
-    recent: int,
     block: FloatArray,
     mass: Operator,
     algebra: BlockAlgebra,
-) -> _Addition:
-    """Orthonormalise a block against a basis V, given M V.
+    *,
+    recent: FloatArray | None = None,
+) -> Addition:
+    """Orthonormalise a block against an M-orthonormal basis V, in place.
 
-    First the ``recent`` last vectors of the basis are projected out, which in exact arithmetic is everything; then all
-    of them.
+    V is projected out twice; of the first time the products with the last vectors of the basis suffice where the block
+    comes of a recurrence, which in exact arithmetic leaves the others out.
+
+    Parameters
+    ----------
+    basis : ndarray, shape (n, m)
+        V, in double or single precision.
+    block : ndarray, shape (n, width)
+    mass : operator, shape (n, n)
+    algebra : BlockAlgebra
+    recent : ndarray, shape (n, r), optional
+        M times the last r vectors of the basis.
     """
     within = np.zeros((basis.shape[1], block.shape[1]))
-    last = slice(basis.shape[1] - recent, None)
-    within[last] = algebra.products(inertia_of_basis[:, last], block)
+    last = slice(0 if recent is None else basis.shape[1] - recent.shape[1], None)
+    within[last] = algebra.products(basis, mass @ block) if recent is None else algebra.products(recent, block)
     algebra.subtract(block, basis[:, last], within[last])
-    again = algebra.products(inertia_of_basis, block)
+    again = algebra.products(basis, mass @ block)
     algebra.subtract(block, basis, again)
     within += again
     inertia = mass @ block
     products = algebra.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
     norms = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
-    independent = left > _DEPENDENT * norms
+    dependent = _DEPENDENT if basis.dtype == np.float64 else _DEPENDENT_IN_SINGLE
+    independent = left > dependent * norms
     values, turn = np.linalg.eigh(
         products[np.ix_(independent, independent)] / np.outer(left[independent], left[independent])
     )
@@ -193,7 +220,7 @@ def _orthonormal(
     if new.shape[1]:
         # Scaling up the remainder of a block that nearly lay in the basis scales up its rounding: once more.
         if float(np.min(left[independent] / norms[independent])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
-            algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
+            algebra.subtract(new, basis, algebra.products(basis, new_inertia))
             new_inertia = mass @ new
             shares = algebra.products(new, inertia)
         gram = algebra.products(new, new_inertia)
@@ -201,10 +228,10 @@ def _orthonormal(
             unit = np.linalg.inv(np.linalg.cholesky(gram)).T
             new, new_inertia = algebra.combined(new, unit), algebra.combined(new_inertia, unit)
             shares = algebra.products(new, inertia)
-    return _Addition(new, new_inertia, np.vstack([within, shares]))
+    return Addition(new, new_inertia, np.vstack([within, shares]))
 
 
-Solver = Literal["lanczos", "eigsh"]
+Solver = Literal["lanczos", "eigsh", "slepc"]
 
 DEFAULT_SOLVER: Solver = "lanczos"
 """At least 1.3 times faster than eigsh from factor to certificate, see benchmarks/README.md."""

@@ -14,7 +14,9 @@ from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.factorization import Backend, Factorizer
+from gearwhine.housing.fem.linear_algebra import Precision
 from gearwhine.housing.fem.matrices import FreeSystem, Matrices
+from gearwhine.housing.fem.slepc import SlepcRanks
 from gearwhine.housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from gearwhine.housing.modes.residual_modes import (
@@ -44,7 +46,7 @@ class ModeSet:
     seconds : dict of str to float
         Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
-        Name of the factorisation.
+        Name of the factorisation, with its precision where that is not double.
     shift : float
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
@@ -99,6 +101,7 @@ def solve_modes(
     port_orders: int = 1,
     solver: Solver = DEFAULT_SOLVER,
     backend: Backend | None = None,
+    precision: Precision | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> ModeSet:
@@ -121,10 +124,13 @@ def solve_modes(
     port_orders : int
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
         :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
-    solver : {"lanczos", "eigsh"}
-        Block Lanczos or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
-    backend, threads
-        See :class:`gearwhine.housing.fem.factorization.Factorizer`.
+    solver : {"lanczos", "eigsh", "slepc"}
+        Block Lanczos or ``scipy.sparse.linalg.eigsh``, both on the same factor, or SLEPc with MUMPS on ranks of MPI,
+        see :mod:`gearwhine.housing.fem.slepc`; all with the same certificate.
+    backend, precision, threads
+        See :class:`gearwhine.housing.fem.factorization.Factorizer`; not for SLEPc, which has as many ranks as threads
+        unless the environment says otherwise. With a factor in single precision the modes are
+        corrected by residuals in double, and certified in double as any others.
     progress : callable
         Called with a line of text before each step.
 
@@ -133,6 +139,8 @@ def solve_modes(
     HousingError
         Where neither or both of limit and count are given, they ask for nothing or for everything, or the solver is
         unknown.
+    SlepcUnavailableError
+        Where the ranks of SLEPc cannot be started.
     IncompleteModesError
         Where the certificate is not complete after three searches.
     ReductionError
@@ -151,8 +159,14 @@ def solve_modes(
 
     if solver not in get_args(Solver):
         raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
-    factorizer = Factorizer(backend=backend, threads=threads)
-    factorizer.order_ahead(system.stiffness)
+    factorizer: Factorizer | SlepcRanks
+    if solver == "slepc":
+        if backend is not None or precision is not None:
+            raise HousingError("the solver 'slepc' has a factorisation of its own, in double precision: leave out both")
+        factorizer = SlepcRanks(system.stiffness, system.assembled_mass(), threads)
+    else:
+        factorizer = Factorizer(backend=backend, precision=precision, threads=threads, progress=progress)
+        factorizer.order_ahead(system.stiffness)
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     solution = (
         search.below(frequency_limit, progress)
@@ -188,7 +202,7 @@ def solve_modes(
         shapes=system.expand(vectors),
         certificate=solution.certificate,
         seconds=search.seconds,
-        backend=solution.factor.backend,
+        backend=solution.factor.name,
         shift=solution.shift,
         threads=threads,
         residual_modes=residual_modes,

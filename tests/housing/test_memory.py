@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from gearwhine.failures import explain
-from gearwhine.housing.fem import factorization
-from gearwhine.housing.fem.factorization import available_memory, check_memory
+from gearwhine.housing.fem import memory
+from gearwhine.housing.fem.memory import available_memory, check_memory
 
 GB = 1e9
 
@@ -42,7 +42,7 @@ def test_the_first_version_of_control_groups_is_read_as_well(tmp_path: Path) -> 
 
 
 def test_what_does_not_fit_is_refused_with_both_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(factorization, "available_memory", lambda: 2.0 * GB)
+    monkeypatch.setattr(memory, "available_memory", lambda: 2.0 * GB)
     check_memory(2.0 * GB, "the factor")
     with pytest.raises(
         MemoryError, match=r"the factor needs 3 GB of memory, and 2 GB are available; .*mesh_size"
@@ -84,7 +84,10 @@ except MemoryError as error:
 def test_a_factor_beyond_the_limit_is_refused_where_the_library_would_abort() -> None:
     """The process lives, and says the sentence; with room enough it factors."""
     pytest.importorskip("rslab")
-    for spare, said in ((4_000_000, "the factor of a matrix of order 12288 needs 0.0"), (2_000_000_000, "")):
+    for spare, said in (
+        (4_000_000, "the factor of a matrix of order 12288 in single precision needs 0.0"),
+        (2_000_000_000, ""),
+    ):
         command = [sys.executable, "-c", _FACTOR.replace("SPARE", str(spare))]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
