@@ -43,7 +43,8 @@ class ReducedFiles(Table):
     nodes: tuple[NodeNumber, ...] = Field(default=(), max_length=500)
     """Nodes of the first rows, six each, of files that do not name them; the rows after these are internal."""
     mapping: CaseFile | None = None
-    """Nodes and components of the rows, in place of `nodes`: mapping of Ansys (`.mapping`) or CalculiX (`.dof`)."""
+    """Nodes and components of the rows, in place of `nodes`: file of Ansys (`.mapping`), CalculiX (`.dof`) or Nastran
+    (`.pch` with a card EXTRN)."""
     units: Literal["SI", "mm-t-s"] = "SI"
     """Units of the matrices."""
 
