@@ -80,19 +80,8 @@ class LabelledMatrix:
         if len(coordinates) != len(self.values):
             order = len(self.values)
             raise HousingError(f"{file} is of order {order}; expected {len(coordinates)}, the rows of the mapping")
-        values = self.values.copy()
-        place = {coordinate: row for row, coordinate in enumerate(coordinates)}
-        for node, axes in rows.axes.items():
-            for three in ((1, 2, 3), (4, 5, 6)):
-                at = [place[node, axis] for axis in three if (node, axis) in place]
-                if len(at) == 3:
-                    values[at] = axes.T @ values[at]
-                    values[:, at] = values[:, at] @ axes
-                elif at:
-                    raise HousingError(
-                        f"{file}: node {node} has {len(at)} of its motions {three[0]} to {three[2]}, along axes of its "
-                        "own; expected all three or none"
-                    )
+        turned = in_basic_axes(self.values, rows, file)
+        values = in_basic_axes(turned.T, rows, file).T
         return LabelledMatrix(values, coordinates)
 
 
@@ -109,6 +98,29 @@ class RowLabels:
 
     coordinates: tuple[Coordinate, ...]
     axes: Mapping[int, FloatArray] = field(default_factory=dict)
+
+
+def in_basic_axes(values: FloatArray, rows: RowLabels, file: str = "the file") -> FloatArray:
+    """Return columns by motions along the axes of all in place of those along a node's own, A T; (..., n).
+
+    Raises
+    ------
+    HousingError
+        Where a node with axes of its own has one or two of three motions.
+    """
+    turned = values.copy()
+    place = {coordinate: row for row, coordinate in enumerate(rows.coordinates)}
+    for node, axes in rows.axes.items():
+        for three in ((1, 2, 3), (4, 5, 6)):
+            at = [place[node, axis] for axis in three if (node, axis) in place]
+            if len(at) == 3:
+                turned[..., at] = turned[..., at] @ axes
+            elif at:
+                raise HousingError(
+                    f"{file}: node {node} has {len(at)} of its motions {three[0]} to {three[2]}, along axes of its "
+                    "own; expected all three or none"
+                )
+    return turned
 
 
 def chosen_matrix(names: Sequence[str], name: str, kind: str, file: str) -> str:
