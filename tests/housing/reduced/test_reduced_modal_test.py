@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy import linalg
+from scipy.spatial.transform import Rotation
 
 import gearwhine as gw
 from gearwhine.case import CaseError
@@ -75,14 +76,19 @@ def reduced(units: str = "SI", *, named: bool = False, recovered: bool = True) -
     return ReducedHousing(matrices, seats, limit=1.5 * float(FREQUENCIES[KEPT - 1]), recovered=points)
 
 
-def measured(*, shift: FloatArray | float = 0.0, directions: int = 3) -> MeasuredModes:
-    """The whole model's own modes 2 % lower, along skew directions of all points."""
-    ways = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0][:directions]
-    points = np.repeat(np.arange(2 + INNER), directions)
+def measured(*, shift: float = 0.0, frame: FloatArray | None = None) -> MeasuredModes:
+    """The whole model's own modes 2 % lower, along skew directions of all points, seen in a frame of axes as rows."""
+    frame = np.eye(3) if frame is None else frame
+    ways = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
+    points = np.repeat(np.arange(2 + INNER), 3)
     turned = np.tile(ways, (2 + INNER, 1))
     motions = SHAPES.reshape(2 + INNER, 6, COUNT)[:, :3, :KEPT]
     shapes = np.einsum("di,dim->md", turned, motions[points])
-    geometry = MeasuredGeometry(tuple("123456"), PLACES + shift, points, turned)
+    # The survey lists its points in an order of its own.
+    listed = np.array([4, 0, 5, 2, 1, 3])
+    labels = tuple(str(point + 1) for point in listed)
+    positions = PLACES[listed] @ frame.T + shift
+    geometry = MeasuredGeometry(labels, positions, np.argsort(listed)[points], turned @ frame.T)
     return MeasuredModes(0.98 * FREQUENCIES[:KEPT], np.full(KEPT, 0.01), (1.7 - 0.4j) * shapes, geometry)
 
 
@@ -102,8 +108,10 @@ def test_by_landmarks_and_in_a_frame_of_its_own() -> None:
     """Seen from elsewhere the points have other places; three of them with their places on the housing align all."""
     with pytest.raises(HousingError, match=r"points within .* mm of nodes and recovered points .* mm off"):
         compare_reduced(reduced(), ModalTest(measured(shift=5.0)))
+    turned = Rotation.from_euler("xyz", [0.5, 1.0, -2.0]).as_matrix()
     landmarks = {label: tuple(place) for label, place in zip("1234", PLACES.tolist(), strict=False)}
-    comparison = compare_reduced(reduced(), ModalTest(measured(shift=5.0), align=landmarks)).comparison
+    test = ModalTest(measured(shift=5.0, frame=turned), align=landmarks)
+    comparison = compare_reduced(reduced(), test).comparison
     np.testing.assert_allclose([pair.mac for pair in comparison.pairs], 1.0, atol=1e-9)
 
 
@@ -112,7 +120,7 @@ def test_only_points_of_known_motion_are_compared() -> None:
     compared = compare_reduced(reduced(recovered=False), ModalTest(measured()))
     kept = compared.test.modes.geometry
     assert kept is not None
-    assert kept.points.tolist() == [0, 0, 0, 1, 1, 1]
+    assert [kept.labels[point] for point in kept.points] == ["1", "1", "1", "2", "2", "2"]
     assert compared.comparison.shapes is not None
     expected = np.abs(np.sum(SHAPES[[0, 1, 2, 6, 7, 8], 0] * SHAPES[[0, 1, 2, 6, 7, 8], 4])) ** 2
     sizes = [np.sum(SHAPES[[0, 1, 2, 6, 7, 8], mode] ** 2) for mode in (0, 4)]
