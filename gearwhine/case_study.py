@@ -39,8 +39,9 @@ if TYPE_CHECKING:
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
-    from gearwhine.housing.modal_test import PlannedSurvey
+    from gearwhine.housing.modal_test import ComparedTest, PlannedSurvey
     from gearwhine.housing.modes.housing_field import HousingField
+    from gearwhine.housing.reduced import ReducedHousing
     from gearwhine.meshes import Mesh
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
@@ -223,6 +224,14 @@ class CaseStudy(Study):
         return self.solved_housing()
 
     @cached_property
+    def _reduced_housing(self) -> "ReducedHousing | None":
+        """Description of the housing of reduced matrices; None in a case without one."""
+        from gearwhine.from_case.reduced_housing import build_reduced_housing
+
+        table = self.case.reduced_housing
+        return None if table is None else build_reduced_housing(table, self.case.input_files)
+
+    @cached_property
     def _reduced(self) -> "HousingComponent | None":
         """The housing of reduced matrices; None in a case without one."""
         from gearwhine.from_case.reduced_housing import reduced_component
@@ -294,8 +303,10 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes] | Result[ReducedHousing]":
         """Natural modes of the housing, certified complete, with checks of the model.
+
+        Of a housing of reduced matrices the modes of these, with what is proved of them.
 
         Parameters
         ----------
@@ -311,6 +322,10 @@ class CaseStudy(Study):
         """
         from gearwhine.analyses.housing import modes_result
 
+        if (reduced := self._reduced_housing) is not None:
+            from gearwhine.analyses.reduced_housing import reduced_modes_result
+
+            return reduced_modes_result(reduced, self.origin)
         return modes_result(self._required_housing("modes"), self.origin, detail=detail)
 
     def compare(self) -> "Result[Comparison]":
@@ -326,6 +341,15 @@ class CaseStudy(Study):
         from gearwhine.solve.comparison import compare_measured, require_comparable
 
         measured = measured_table(self.case, "compare")
+        if (reduced := self._reduced_housing) is not None:
+            from gearwhine.analyses.reduced_housing import reduced_compare_result
+            from gearwhine.housing.reduced_modal_test import compare_reduced
+            from gearwhine.solve.comparison import modal_test_of, refused_by_key
+
+            test = modal_test_of(measured, self.progress)
+            with refused_by_key():
+                compared = compare_reduced(reduced, test)
+            return reduced_compare_result(reduced, compared, test.modes, self.origin)
         require_comparable(measured, self.case.housing)
         housing = self._required_housing("compare")
         compared = compare_measured(measured, housing, self.progress, with_responses=True)
@@ -823,12 +847,12 @@ class CaseStudy(Study):
                 refuse(self._kept.solved.mesh)
             return self._kept.solved
 
-    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
+    def compared_modes(self, housing: "HousingModes") -> "ComparedTest | None":
         """Compare the modes of the housing with those of `[measured]`; None without."""
         from gearwhine.solve.comparison import compare_measured
 
         measured = self.case.measured
-        return None if measured is None else compare_measured(measured, housing, self.progress).comparison
+        return None if measured is None else compare_measured(measured, housing, self.progress)
 
     def found_load(self) -> "tuple[SolvedLoad | None, Sequence[ResultWarning]]":
         """Find the operating point; where the case does not need one that is not found, a warning gives the reason."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.housing import HousingModes
-    from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.housing.modal_test import ComparedTest
     from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
@@ -185,7 +185,7 @@ class StudiedMachine:
             require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
         return housing
 
-    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
+    def compared_modes(self, housing: "HousingModes") -> "ComparedTest | None":
         """Compare the modes of the housing with measured ones; None without such."""
         return None
 

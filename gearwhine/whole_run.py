@@ -129,11 +129,11 @@ class WholeRun:
         if housing is None:
             return {}
         document = joined({"housing": modes_document(housing)}, origin_document(housing))
-        comparison = self.study.compared_modes(housing)
-        if comparison is not None:
-            self.solution = replace(self.solution, comparison=comparison)
-            document["compare"] = comparison_document(comparison, housing)
-            add_warnings(document, comparison_warnings(comparison, housing.modes))
+        compared = self.study.compared_modes(housing)
+        if compared is not None:
+            self.solution = replace(self.solution, comparison=compared.comparison)
+            document["compare"] = comparison_document(compared.comparison, housing)
+            add_warnings(document, comparison_warnings(compared.comparison, housing.modes, compared.test.modes))
         return document
 
     def _system(self) -> Document | None:

@@ -22,7 +22,7 @@ Sub-packages and modules, each of which imports only those before it: ``gearwhin
 updating), ``gearwhine.housing.pictures`` (rendering), ``gearwhine.housing.model_warnings``, and
 ``gearwhine.housing.housing``: the whole description, and what is known of it once its modes are solved. Upon these
 stand ``gearwhine.housing.mesh_refinement`` and ``gearwhine.housing.modal_test``. ``gearwhine.housing.reduced`` stands
-beside them.
+beside them, and ``gearwhine.housing.reduced_modal_test`` upon it.
 """
 
 from gearwhine.housing.correlation.comparison import compare_by_dominance as compare_by_dominance

@@ -6,7 +6,7 @@ compared with the model's at the same points by FRAC. A planned survey has senso
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +43,9 @@ from gearwhine.meshes import Mesh
 from gearwhine.numerics.findings import Finding, Instance, Number, Part, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
+
+if TYPE_CHECKING:
+    from gearwhine.housing.reduced import ReducedModes
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -189,7 +192,7 @@ def compare_test(
 
 
 def comparison_warnings(
-    comparison: Comparison, modes: ModeSet, measured: MeasuredModes | None = None
+    comparison: Comparison, modes: "ModeSet | ReducedModes", measured: MeasuredModes | None = None
 ) -> list[ResultWarning]:
     """Warn of measured modes without a partner, of pairs that are weak evidence or hang on the mesh, and of edges.
 
@@ -223,7 +226,7 @@ def comparison_warnings(
     return warnings
 
 
-def _mesh_dependence(comparison: Comparison, modes: ModeSet) -> list[ResultWarning]:
+def _mesh_dependence(comparison: Comparison, modes: "ModeSet | ReducedModes") -> list[ResultWarning]:
     """Warn of pairs by frequency or dominance whose modes lie closer to others than their errors by the mesh.
 
     By its estimated error e a mode at f lies between f (1 - e) and f on a fine mesh. Where two of these ranges overlap

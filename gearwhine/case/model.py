@@ -353,7 +353,7 @@ def lacking(case: Case, *tables: str, command: str) -> CaseError:
     if "housing" in missing and case.reduced_housing is not None:
         expected = (
             f"a box, CAD or mesh file: '{command}' needs a mesh and the shapes of its modes, which reduced matrices do "
-            "not have; `check` lists their natural frequencies"
+            "not have; `modes` lists their natural frequencies"
         )
         return CaseError([Problem("housing.reduced", UNSAID, expected)])
     return CaseError(_lacking(table, command) for table in missing)
@@ -380,8 +380,9 @@ def measured_table(case: Case, command: str) -> Measured:
     CaseError
         Where the case lacks one of them.
     """
-    if case.housing is None or case.measured is None:
-        raise lacking(case, "housing", "measured", command=command)
+    has_housing = case.housing is not None or (command == "compare" and case.reduced_housing is not None)
+    if case.measured is None or not has_housing:
+        raise lacking(case, *(() if has_housing else ("housing",)), "measured", command=command)
     return case.measured
 
 

@@ -40,10 +40,14 @@ class ReducedFiles(Table):
     """Name of the damping matrix in a file of several. Default: the only one, or one named as usual."""
     static: CaseFile | None = None
     """Static stiffness of the interface nodes from another computation, for a proof: `check` states the difference."""
+    recovery: CaseFile | None = None
+    """Points beside the nodes and their motions by the coordinates, for `compare`: `.npz` or `.nc` with `positions`,
+    `recovery`."""
     nodes: tuple[NodeNumber, ...] = Field(default=(), max_length=500)
     """Nodes of the first rows, six each, of files that do not name them; the rows after these are internal."""
     mapping: CaseFile | None = None
-    """Nodes and components of the rows, in place of `nodes`: mapping of Ansys (`.mapping`) or CalculiX (`.dof`)."""
+    """Nodes and components of the rows, in place of `nodes`: file of Ansys (`.mapping`), CalculiX (`.dof`) or Nastran
+    (`.pch` with a card EXTRN)."""
     units: Literal["SI", "mm-t-s"] = "SI"
     """Units of the matrices."""
 

@@ -29,6 +29,10 @@ def import_(
     mass: Annotated[
         Path | None, Parameter(name=["--mass"], help="Reduced mass of the housing, where it is in another file.")
     ] = None,
+    mapping: Annotated[
+        Path | None,
+        Parameter(name=["--mapping"], help="Nodes of the matrices' rows. Default: .dof, .mapping or .pch beside them."),
+    ] = None,
     json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
         False
     ),
@@ -39,10 +43,17 @@ def import_(
     """
     from gearwhine.output.terminal import shown_by
 
-    hand_over(_import(file, output, load_case, housing, mass), Common(json=json), shown_by(_sections))
+    hand_over(_import(file, output, load_case, housing, mass, mapping), Common(json=json), shown_by(_sections))
 
 
-def _import(file: str, output: Path | None, load_case: str, housing: Path | None, mass: Path | None) -> dict[str, Any]:
+def _import(
+    file: str,
+    output: Path | None,
+    load_case: str,
+    housing: Path | None,
+    mass: Path | None,
+    mapping: Path | None,
+) -> dict[str, Any]:
     from gearwhine.case import CaseError, Problem
     from gearwhine.case import load_case as read_case
     from gearwhine.case.load import imported_case, read_rexs_file
@@ -61,12 +72,13 @@ def _import(file: str, output: Path | None, load_case: str, housing: Path | None
         # The matrix of the casing stays in the file: the case names it by the way from its own folder.
         way = os.path.relpath(file, target.parent)
         imported.document["housing"]["reduced"]["stiffness"] = Path(way).as_posix()
-    if mass is not None and housing is None:
-        raise CaseError([Problem("--mass", str(mass), "--housing beside it")])
+    for option, given in (("--mass", mass), ("--mapping", mapping)):
+        if given is not None and housing is None:
+            raise CaseError([Problem(option, str(given), "--housing beside it")])
     if housing is not None:
         from gearwhine.from_case.housing_of_matrices import with_reduced_housing
 
-        imported = with_reduced_housing(imported, housing, mass, target.parent)
+        imported = with_reduced_housing(imported, housing, mass, target.parent, mapping)
     with staging(target.parent, listed=False) as place:  # the case is the user's
         (place / target.name).write_text(imported.toml, encoding="utf-8")
     try:

@@ -92,7 +92,7 @@ STUDY_COMMANDS = (
     ),
     StudyCommand("check", "check.summary", longer=("verbose", "check.sections")),
     StudyCommand("mesh", "mesh.sections", always_writes=True, names={"suffix": "format"}),
-    StudyCommand("modes", "housing.sections", longer=("detail", "housing.detailed_sections"), fresh=_FRESH_MODES),
+    StudyCommand("modes", "modes.sections", longer=("detail", "modes.detailed_sections"), fresh=_FRESH_MODES),
     StudyCommand("rotors", "rotors.sections", writes_with="write_ross"),
     StudyCommand("gears", "gears.sections", without=("aims",)),
     StudyCommand("load", "operating_point.sections", "operating_point", fresh=_FRESH_MODES),

@@ -14,8 +14,9 @@ from gearwhine.exchange.rexs.importing import ImportedCase
 from gearwhine.exchange.rexs.notes import Note
 from gearwhine.exchange.rexs.quantities import mm, of
 from gearwhine.housing import HousingError
-from gearwhine.housing.reduced import LabelledMatrix, read_matrix
+from gearwhine.housing.reduced import LabelledMatrix, read_matrix, read_row_labels
 from gearwhine.housing.reduced.assignment import assign_nodes
+from gearwhine.housing.reduced.row_labels import row_labels_beside
 
 LIMIT_HZ = 3000.0
 """Frequency limit of a reduction that states none [Hz]."""
@@ -23,7 +24,9 @@ REVOLUTIONS, DISCARDED = 40.0, 20.0
 """Revolutions of the input over which the motion is integrated, and those left out as its beginning."""
 
 
-def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | None, folder: Path) -> ImportedCase:
+def with_reduced_housing(
+    imported: ImportedCase, stiffness: Path, mass: Path | None, folder: Path, mapping: Path | None = None
+) -> ImportedCase:
     """Return an imported gear unit whose bearings on the ground stand in a housing of reduced matrices.
 
     Each of these bearings gets a seat at a node, and a sensor there along y. The nodes and the units of the matrices
@@ -38,6 +41,8 @@ def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | N
         File of the mass, where it is another one.
     folder : path
         Folder of the case, from which it names the files.
+    mapping : path or None
+        File of the nodes and components of the rows; by default one of the name of ``stiffness`` beside it.
 
     Raises
     ------
@@ -63,6 +68,11 @@ def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | N
         places.append((*rotor.axis, rotor.start + bearing.at))
     try:
         read = _read(stiffness, mass)
+        if read["stiffness"].coordinates is None:
+            mapping = mapping or row_labels_beside(stiffness)
+        if mapping is not None:
+            labels = read_row_labels(mapping)
+            read = {kind: matrix.with_rows(labels, stiffness.name) for kind, matrix in read.items()}
         found = assign_nodes(read, places)
     except HousingError as error:
         raise CaseError([Problem("--housing", stiffness.name, f"matrices of a housing; {error}")]) from error
@@ -73,7 +83,9 @@ def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | N
     reduced: dict[str, Any] = {"stiffness": way(stiffness)}
     if "mass" in read:
         reduced["mass"] = way(mass or stiffness)
-    if found.by_order:
+    if mapping is not None:
+        reduced["mapping"] = way(mapping)
+    elif found.by_order:
         reduced["nodes"] = sorted(found.nodes)
     reduced["units"] = found.units
     seats, sensors, shown = [], [], []
@@ -88,8 +100,9 @@ def with_reduced_housing(imported: ImportedCase, stiffness: Path, mass: Path | N
     housing = {**tables, "seat": seats, "sensor": sensors}
     proof = "its rigid motions are free by them" if found.is_proved else "in their order, which nothing proves"
     about = f"housing {stiffness.name}"
+    rows = "" if mapping is None else f"rows by {mapping.name}; "
     notes = [
-        Note("assumed", about, f"nodes {', '.join(shown)}, in {found.units}: {proof}", ("housing", "reduced")),
+        Note("assumed", about, f"{rows}nodes {', '.join(shown)}, in {found.units}: {proof}", ("housing", "reduced")),
         Note("assumed", about, "a band, which the files of a reduction do not state", ("housing", "frequency_limit")),
         Note("assumed", about, "1 % of critical damping", ("housing", "damping_ratio")),
         Note("assumed", about, "a sensor along y at each seat", ("housing", "sensor", 0)),

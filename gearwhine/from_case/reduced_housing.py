@@ -21,11 +21,14 @@ from gearwhine.housing.reduced import (
     NodeSensor,
     NodeSpring,
     ReducedHousing,
+    ReducedMatrices,
+    RowLabels,
     read_matrix,
     read_row_labels,
     reduced_matrices,
     static_stiffness,
 )
+from gearwhine.housing.reduced.recovery import RecoveredPoints, RecoveryFile, read_recovery
 from gearwhine.housing.reduced.writing import NAMES
 
 _TWO_PI = 6.283185307179586
@@ -57,11 +60,12 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
     CaseError
         With what is wrong with the files, their matrices, or with what is at their nodes.
     """
-    read = _read(table.reduced, files)
+    read, labels, recovery = _read(table.reduced, files)
     static = read.pop("static", None)
     try:
+        matrices = reduced_matrices(read, table.reduced.nodes, table.reduced.units)
         return ReducedHousing(
-            reduced_matrices(read, table.reduced.nodes, table.reduced.units),
+            matrices,
             [NodeSeat(seat.name, seat.node, seat.center) for seat in table.seat],
             [NodeSensor(one.name, one.node, one.position, unit_vector(one.direction)) for one in table.sensor],
             [
@@ -71,6 +75,7 @@ def build_reduced_housing(table: ReducedTable, files: InputFiles) -> ReducedHous
             table.damping_ratio,
             limit=_TWO_PI * table.frequency_limit,
             static=None if static is None else static_stiffness(static, table.reduced.nodes, table.reduced.units),
+            recovered=None if recovery is None else _recovered(recovery, matrices, read["stiffness"], labels, table),
         )
     except HousingError as error:
         raise CaseError(_problems(table, error)) from error
@@ -113,9 +118,34 @@ def tables_of(reduced: InterfaceMatrices, files: Mapping[str, Path], limit: floa
     return "\n".join([*lines, ""])
 
 
-def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
-    """Read the matrices; each file that cannot be used is a problem of its key."""
-    read, problems, labels = dict[str, LabelledMatrix](), [], None
+def _recovered(
+    recovery: RecoveryFile,
+    matrices: ReducedMatrices,
+    stiffness: LabelledMatrix,
+    labels: RowLabels | None,
+    table: ReducedTable,
+) -> RecoveredPoints:
+    """Return recovered points, columns that their file does not name in the order of the rows of the stiffness.
+
+    Raises
+    ------
+    CaseError
+        Where they do not fit the matrices.
+    """
+    if labels is None and stiffness.coordinates is not None:
+        labels = RowLabels(stiffness.coordinates)
+    try:
+        return recovery.points(matrices.coordinates, labels, table.reduced.units)
+    except HousingError as error:
+        name = "" if table.reduced.recovery is None else table.reduced.recovery.name
+        raise CaseError([Problem("housing.reduced.recovery", name, f"rows of the matrices; {error}")]) from error
+
+
+def _read(
+    table: ReducedFiles, files: InputFiles
+) -> tuple[dict[str, LabelledMatrix], RowLabels | None, RecoveryFile | None]:
+    """Read the matrices, labels of their rows, and recovery rows; each file that cannot be used is a problem."""
+    read, problems, labels, recovery = dict[str, LabelledMatrix](), [], None, None
     if table.mapping is not None:
         try:
             labels = files.read(table.mapping, read_row_labels)
@@ -139,9 +169,14 @@ def _read(table: ReducedFiles, files: InputFiles) -> dict[str, LabelledMatrix]:
             read[kind] = matrix if labels is None or kind == "static" else matrix.with_rows(labels, path.name)
         except (HousingError, ChangedFileError) as error:
             problems.append(Problem(f"housing.reduced.{kind}", path.name, f"a file of the {kind} matrix; {error}"))
+    if table.recovery is not None:
+        try:
+            recovery = files.read(table.recovery, read_recovery)
+        except (HousingError, ChangedFileError) as error:
+            problems.append(Problem("housing.reduced.recovery", table.recovery.name, f"recovery rows; {error}"))
     if problems:
         raise CaseError(problems)
-    return read
+    return read, labels, recovery
 
 
 def _casing_stiffness(path: Path) -> LabelledMatrix:

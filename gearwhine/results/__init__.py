@@ -25,6 +25,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         comparison,
         gears,
         housing,
+        modes,
         operating_point,
         rotors,
         run,
@@ -50,6 +51,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         return check.sections(document)
     chapters: tuple[tuple[Callable[[Document], Section], Document], ...] = (
         (housing.report, part("housing") or if_command("certificate", "modes")),
+        (modes.report, if_command("reduced_housing", "modes")),
         (comparison.report, part("compare") or if_command("pairing", "compare")),
         (update.report, if_command("parameters", "update")),
         (rotors.report, if_command("rotors", "rotors", *_RUNS)),

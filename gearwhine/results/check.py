@@ -431,7 +431,7 @@ def _in_words(parts: Iterable[tuple[str, list[str]]]) -> tuple[Section, ...]:
 def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
     parts = {
         "imported": imported_lines(document["imported"]) if "imported" in document else [],
-        "housing": _housing_summary(document["housing"]) if "housing" in document else _reduced_lines(document),
+        "housing": _housing_summary(document["housing"]) if "housing" in document else reduced_lines(document),
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(
             document.get("bearings", ()),
@@ -537,7 +537,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
     on_bearings = bool(document.get("bearings"))
     parts = {
         "imported": imported_lines(document["imported"]) if "imported" in document else [],
-        "housing": _housing_lines(document["housing"]) if "housing" in document else _reduced_lines(document),
+        "housing": _housing_lines(document["housing"]) if "housing" in document else reduced_lines(document),
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
         "thrust": [_location_line(location) for location in document.get("axial_location", ())],
@@ -650,7 +650,7 @@ def _housing_lines(housing: Document) -> list[str]:
     return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
 
 
-def _reduced_lines(document: Document) -> list[str]:
+def reduced_lines(document: Document) -> list[str]:
     """Return the lines of a housing of reduced matrices; none without one."""
     housing = document.get("reduced_housing")
     if housing is None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
     from gearwhine.housing.measured import MappedSurvey, MeasuredGeometry
     from gearwhine.housing.modal_test import ResponseCorrelation
+    from gearwhine.housing.reduced import ReducedHousing
 
 PAIR = (
     Quantity(
@@ -223,7 +224,7 @@ _BY_MESH = "discretisation_error"
 _MESH_ERROR = Column("mesh error [%]", _BY_MESH, ".2g", 100.0)
 
 
-def comparison_document(comparison: "Comparison", solved: "HousingModes") -> dict[str, Any]:
+def comparison_document(comparison: "Comparison", solved: "HousingModes | ReducedHousing") -> dict[str, Any]:
     """Return the comparison as the command's JSON."""
     shapes = comparison.shapes
     last = comparison.pairs[-1].measured if shapes is None else float(shapes.measured_frequencies[-1])

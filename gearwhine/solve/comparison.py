@@ -98,6 +98,7 @@ def refused_by_key() -> Iterator[None]:
     keys = {
         ("modal test", "align"): "measured.align",
         ("modal test", "modes"): "measured.file",
+        ("modal test", "pairing"): "measured.pairing",
         ("housing", "seats"): "housing.seat",
         ("housing", "below_hz"): "housing.frequency_limit",
     }

@@ -11,6 +11,7 @@
 from gearwhine.housing.reduced.certificate import ReducedCertificate as ReducedCertificate
 from gearwhine.housing.reduced.matrices import LabelledMatrix as LabelledMatrix
 from gearwhine.housing.reduced.matrices import ReducedMatrices as ReducedMatrices
+from gearwhine.housing.reduced.matrices import RowLabels as RowLabels
 from gearwhine.housing.reduced.matrices import StaticStiffness as StaticStiffness
 from gearwhine.housing.reduced.matrices import reduced_matrices as reduced_matrices
 from gearwhine.housing.reduced.matrices import static_stiffness as static_stiffness

@@ -12,12 +12,16 @@ import numpy as np
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.certificate import RIGID_STRAIN, condensed_stiffness, rigid_motions_of
 from gearwhine.housing.reduced.matrices import UNITS, LabelledMatrix, reduced_matrices
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, refuse
 
 Point = tuple[float, float, float]
 
 MOST_ORDERED = 6
 """Places up to which every order of the nodes is tried: 720 orders."""
+
+_FREE = 1e-3  # sixth least eigenvalue over the seventh, below which six motions are free and no more
+_NEAR = 0.05  # largest distance of a node from its place, over the extent of all places
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ def assign_nodes(matrices: Mapping[str, LabelledMatrix], places: Sequence[Point]
         misfit = abs(np.log(max(lever, 1e-12) / max(extent, 1e-12)))
         first = Assignment(tuple(nodes[: len(places)]), units, is_proved=False, by_order=by_order)
         unproved.append((float(misfit), first))
-        for order in _orders(nodes, len(places)):
+        for order in _orders(stiffness, nodes, places):
             taken = [6 * nodes.index(node) + axis for node in order for axis in range(6)]
             if len(order) == len(nodes):
                 part = stiffness[np.ix_(taken, taken)]
@@ -85,15 +89,60 @@ def assign_nodes(matrices: Mapping[str, LabelledMatrix], places: Sequence[Point]
     return min(unproved, key=lambda one: one[0])[1]
 
 
-def _orders(nodes: Sequence[int], count: int) -> Iterator[tuple[int, ...]]:
-    """Yield orders of the nodes, the one in which they came first."""
-    if len(nodes) > MOST_ORDERED:
-        yield tuple(nodes[:count])
-        return
-    yield from permutations(nodes, count)
+def _orders(stiffness: FloatArray, nodes: Sequence[int], places: Sequence[Point]) -> Iterator[tuple[int, ...]]:
+    """Yield orders of the nodes: the one in which they came, that by their positions, and of few nodes all others."""
+    count = len(places)
+    yield tuple(nodes[:count])
+    positions = free_positions(stiffness)
+    if positions is not None and (at := _nearest(positions, np.asarray(places))) is not None:
+        yield tuple(nodes[place] for place in at)
+    if len(nodes) <= MOST_ORDERED:
+        yield from permutations(nodes, count)
 
 
-def _is_free(stiffness: np.ndarray, places: Sequence[Point]) -> bool:
+def free_positions(stiffness: FloatArray) -> FloatArray | None:
+    """Positions of nodes beside the first one, by the motions that a free stiffness leaves free.
+
+    A free motion of all nodes has the translations t + θ x r of a node at r and the rotation θ, which is that of all.
+    Those with θ along x, y and z have the translations W of a node beside those of the first, of columns e_k x d: the
+    position d follows from the antisymmetric part of W.
+
+    Parameters
+    ----------
+    stiffness : ndarray, shape (6 n, 6 n)
+        Of three translations and three rotations of each node.
+
+    Returns
+    -------
+    ndarray, shape (n, 3), or None
+        None where the stiffness leaves other motions free than six.
+    """
+    size = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(size[:, None] * stiffness * size)
+    if len(values) < 7 or not abs(values[5]) < _FREE * values[6]:
+        return None
+    free = (size[:, None] * vectors[:, :6]).reshape(-1, 2, 3, 6)
+    about_axes = np.linalg.pinv(free[:, 1].mean(axis=0))
+    moved = free[:, 0] @ about_axes
+    beside = moved - moved[0]
+    pairs = [beside[:, second, third] - beside[:, third, second] for second, third in ((1, 2), (2, 0), (0, 1))]
+    return 0.5 * np.stack(pairs, axis=1)
+
+
+def _nearest(positions: FloatArray, places: FloatArray) -> list[int] | None:
+    """Rows of the positions that have places, up to a shift of all; None where they are far from them."""
+    extent = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+    best, least = None, _NEAR * extent
+    for first in positions:
+        away = np.linalg.norm(positions[None] - (first + places - places[0])[:, None], axis=2)
+        rows = away.argmin(axis=1).tolist()
+        farthest = float(away.min(axis=1).max())
+        if farthest < least and len(set(rows)) == len(rows):
+            best, least = rows, farthest
+    return best
+
+
+def _is_free(stiffness: FloatArray, places: Sequence[Point]) -> bool:
     """Whether the rigid motions of nodes at these places are not resisted, about the places' centre."""
     motions = rigid_motions_of(np.subtract(places, np.mean(places, axis=0)))
     strain = np.abs(np.einsum("ia,ij,ja->a", motions, stiffness, motions))

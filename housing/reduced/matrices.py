@@ -6,7 +6,7 @@ Bampton 1968, AIAA Journal 6(7), Eq. 15).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -62,20 +62,65 @@ class LabelledMatrix:
     values: FloatArray
     coordinates: tuple[Coordinate, ...] | None = None
 
-    def with_rows(self, coordinates: Sequence[Coordinate], file: str) -> "LabelledMatrix":
+    def with_rows(self, rows: "RowLabels", file: str) -> "LabelledMatrix":
         """Return the matrix with coordinates of its rows from another file than its own, called ``file``.
+
+        Nodes that move along axes A of their own, the rows of A, have the motions A u of those along the axes of all:
+        with T of these blocks the matrix becomes Tᵀ K T.
 
         Raises
         ------
         HousingError
-            Where the file names them itself, or there are more or fewer of them.
+            Where the file names them itself, there are more or fewer of them, or a node with axes of its own has one or
+            two of three motions.
         """
         if self.coordinates is not None:
             raise HousingError(f"{file} names its nodes itself; expected no mapping of rows beside it")
+        coordinates = tuple(rows.coordinates)
         if len(coordinates) != len(self.values):
             order = len(self.values)
             raise HousingError(f"{file} is of order {order}; expected {len(coordinates)}, the rows of the mapping")
-        return LabelledMatrix(self.values, tuple(coordinates))
+        turned = in_basic_axes(self.values, rows, file)
+        values = in_basic_axes(turned.T, rows, file).T
+        return LabelledMatrix(values, coordinates)
+
+
+@dataclass(frozen=True)
+class RowLabels:
+    """Coordinates of the rows of a matrix, as another file than its own names them.
+
+    Attributes
+    ----------
+    coordinates : tuple of Coordinate
+    axes : mapping of int to ndarray, shape (3, 3)
+        Axes of the motions of a node, as rows, where they are others than those of all nodes.
+    """
+
+    coordinates: tuple[Coordinate, ...]
+    axes: Mapping[int, FloatArray] = field(default_factory=dict)
+
+
+def in_basic_axes(values: FloatArray, rows: RowLabels, file: str = "the file") -> FloatArray:
+    """Return columns by motions along the axes of all in place of those along a node's own, A T; (..., n).
+
+    Raises
+    ------
+    HousingError
+        Where a node with axes of its own has one or two of three motions.
+    """
+    turned = values.copy()
+    place = {coordinate: row for row, coordinate in enumerate(rows.coordinates)}
+    for node, axes in rows.axes.items():
+        for three in ((1, 2, 3), (4, 5, 6)):
+            at = [place[node, axis] for axis in three if (node, axis) in place]
+            if len(at) == 3:
+                turned[..., at] = turned[..., at] @ axes
+            elif at:
+                raise HousingError(
+                    f"{file}: node {node} has {len(at)} of its motions {three[0]} to {three[2]}, along axes of its "
+                    "own; expected all three or none"
+                )
+    return turned
 
 
 def chosen_matrix(names: Sequence[str], name: str, kind: str, file: str) -> str:
@@ -101,6 +146,8 @@ def chosen_matrix(names: Sequence[str], name: str, kind: str, file: str) -> str:
     if name:
         if name not in names:
             raise HousingError(f"{file}: expected a matrix {name!r}; it has {listed}")
+        if (count := names.count(name)) > 1:
+            raise HousingError(f"{file}: expected one matrix {name!r}; it has {count} of this name")
         return name
     if len(names) == 1:
         return names[0]

@@ -4,11 +4,13 @@ Sizes are checked before anything is allocated, and nothing in a file is execute
 """
 
 import io
+import math
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -152,15 +154,70 @@ def _numpy_array(path: Path, name: str, kind: str) -> FloatArray:
             if len(arrays) > 1:
                 arrays.pop(label, None)
         name = chosen_matrix(sorted(arrays), name, kind, path.name)
-        with archive.open(arrays[name]) as file:
-            version = np.lib.format.read_magic(file)
-            header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-            shape, _, dtype = header(file)
-        _check_shape(f"{path.name}: array {name!r}", shape)
-        if dtype.kind not in "fiu":
-            raise HousingError(f"{path.name}: array {name!r} is of {dtype}; expected real numbers")
-        with archive.open(arrays[name]) as file:
-            return np.asarray(np.lib.format.read_array(file, allow_pickle=False), dtype=np.float64)
+        _check_shape(f"{path.name}: array {name!r}", _numpy_shape(path, archive, arrays[name]))
+        return _numpy_values(archive, arrays[name])
+
+
+def _numpy_shape(path: Path, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> tuple[int, ...]:
+    """Return the shape of an array of real numbers by its head."""
+    with archive.open(entry) as file:
+        version = np.lib.format.read_magic(file)
+        header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = header(file)
+    if dtype.kind not in "fiu":
+        name = entry.filename.removesuffix(".npy")
+        raise HousingError(f"{path.name}: array {name!r} is of {dtype}; expected real numbers")
+    return tuple(map(int, shape))
+
+
+def _numpy_values(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> FloatArray:
+    with archive.open(entry) as file:
+        return np.asarray(np.lib.format.read_array(file, allow_pickle=False), dtype=np.float64)
+
+
+def read_arrays(
+    path: Path, names: Sequence[str], most: int
+) -> tuple[dict[str, FloatArray], tuple[Coordinate, ...] | None]:
+    """Read arrays of real numbers by name from an archive of NumPy or a NetCDF4 file, and the coordinates beside them.
+
+    Parameters
+    ----------
+    path : path
+    names : sequence of str
+    most : int
+        Number of entries beyond which an array is refused.
+
+    Raises
+    ------
+    HousingError
+        Where the file cannot be read, lacks an array or has a larger one.
+    """
+
+    def refuse_large(name: str, shape: tuple[int, ...]) -> None:
+        if math.prod(shape) > most:
+            raise HousingError(f"{path.name}: array {name!r} has {math.prod(shape)} entries; expected at most {most}")
+
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise HousingError(f"{path.name}: expected a file of at most {LARGEST_FILE // 10**6} MB")
+        arrays = dict[str, FloatArray]()
+        if path.suffix.lower() == ".nc":
+            with _whole_netcdf(path) as variables:
+                for name in names:
+                    one = _netcdf_variable(path, variables, name)
+                    refuse_large(name, one.shape)
+                    arrays[name] = np.asarray(one[()], dtype=np.float64)
+                return arrays, _netcdf_coordinates(path, variables)
+        with _whole_archive(path), zipfile.ZipFile(path) as archive:
+            entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+            for name in names:
+                if name not in entries:
+                    raise HousingError(f"{path.name}: expected an array {name!r}")
+                refuse_large(name, _numpy_shape(path, archive, entries[name]))
+                arrays[name] = _numpy_values(archive, entries[name])
+        return arrays, _numpy_coordinates(path)
+    except OSError as error:
+        raise HousingError(f"{path.name}: expected a readable file ({error.strerror or error})") from error
 
 
 @contextmanager
@@ -178,21 +235,46 @@ def _netcdf_arrays(path: Path, name: str, kind: str) -> tuple[FloatArray, tuple[
     """Read a variable of two dimensions, and coordinates by ``nodes`` and ``axes``, where it has these."""
     import h5py
 
+    with _whole_netcdf(path) as variables:
+        arrays = [key for key, one in variables.items() if isinstance(one, h5py.Dataset) and one.ndim == 2]
+        chosen = chosen_matrix(sorted(arrays), name, kind, path.name)
+        dataset = _netcdf_variable(path, variables, chosen)
+        _check_shape(f"{path.name}: variable {chosen!r}", dataset.shape)
+        return np.asarray(dataset[()], dtype=np.float64), _netcdf_coordinates(path, variables)
+
+
+def _netcdf_variable(path: Path, variables: Any, name: str) -> Any:
+    """Return a variable of real numbers."""
+    import h5py
+
+    dataset = variables.get(name)
+    if not isinstance(dataset, h5py.Dataset):
+        raise HousingError(f"{path.name}: expected a variable {name!r}")
+    if dataset.dtype.kind not in "fiu":
+        raise HousingError(f"{path.name}: variable {name!r} is of {dataset.dtype}; expected real numbers")
+    return dataset
+
+
+def _netcdf_coordinates(path: Path, variables: Any) -> tuple[Coordinate, ...] | None:
+    """Coordinates by the variables ``nodes`` and ``axes``; None without these."""
+    import h5py
+
+    labels = [variables.get(key) for key in ("nodes", "axes")]
+    if any(one is None for one in labels):
+        return None
+    if any(not isinstance(one, h5py.Dataset) or one.size > MOST_COORDINATES for one in labels):
+        raise HousingError(f"{path.name}: expected nodes and axes of at most {MOST_COORDINATES} rows")
+    return _coordinates(path, *(np.asarray(one[()]) for one in labels))
+
+
+@contextmanager
+def _whole_netcdf(path: Path) -> Iterator[Any]:
+    """Open a NetCDF4 file; refuse one that is damaged."""
+    import h5py
+
     try:
-        with h5py.File(path, "r") as file:
-            arrays = {key: one for key, one in file.items() if isinstance(one, h5py.Dataset) and one.ndim == 2}
-            chosen = chosen_matrix(sorted(arrays), name, kind, path.name)
-            dataset = arrays[chosen]
-            _check_shape(f"{path.name}: variable {chosen!r}", dataset.shape)
-            if dataset.dtype.kind not in "fiu":
-                raise HousingError(f"{path.name}: variable {chosen!r} is of {dataset.dtype}; expected real numbers")
-            values = np.asarray(dataset[()], dtype=np.float64)
-            labels = [file.get(key) for key in ("nodes", "axes")]
-            if any(one is None for one in labels):
-                return values, None
-            if any(not isinstance(one, h5py.Dataset) or one.size > MOST_COORDINATES for one in labels):
-                raise HousingError(f"{path.name}: expected nodes and axes of at most {MOST_COORDINATES} rows")
-            return values, _coordinates(path, *(np.asarray(one[()]) for one in labels))
+        with h5py.File(path, "r") as variables:
+            yield variables
     except HousingError:
         raise
     except (ValueError, KeyError, RuntimeError, TypeError, OSError) as error:

@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 Strings = Iterator[tuple[int, int, FloatArray]]
 """Column, first row and numbers of each string of a matrix."""
 
-_WORDS = {1: 1, 2: 2}  # words of a number by the type of real matrices
+_REAL_TYPES = (1, 2)  # single and double precision
 _STRING = 65536
 
 
@@ -55,6 +55,12 @@ class _Layout:
         """Return the first integers of a record."""
         return struct.unpack(f"{self.order}{count}{'q' if self.word == 8 else 'i'}", data[: count * self.word])
 
+    def name(self, data: bytes) -> str:
+        """Name of a matrix: two words of eight characters, of which some programs fill four and four with blanks."""
+        text = data.decode("latin-1").upper()
+        parts = [text[at : at + self.word] for at in range(0, len(text), self.word)]
+        return "".join(part[:4] if not part[4:].strip() else part for part in parts).strip()
+
     def number(self, kind: int) -> "np.dtype[np.float64] | np.dtype[np.float32]":
         """Numbers of a matrix of this type."""
         return np.dtype(self.order + ("f4" if self.word == 4 and kind == 1 else "f8"))
@@ -73,20 +79,25 @@ def read_op4(path: Path, name: str = "", kind: str = "") -> FloatArray:
     Raises
     ------
     HousingError
-        Where there is no such matrix, it is complex, not square or too large, or the file is damaged.
+        Where there is no such matrix, it is complex, not square or too large, or the file is damaged. Where no name is
+        given, such matrices are passed over beside others.
     OSError
         Where the file cannot be opened.
     """
     content = path.read_bytes()
     parts = _of_text if _is_text(content) else _of_records
-    names = []
+    heads = list[_Head]()
     for head, columns in parts(content, path.name):
-        names.append(head.name)
-        if name.upper() in ("", head.name):
-            _check(head, path.name)
+        heads.append(head)
         for _ in columns:
             pass
-    wanted = chosen_matrix(names, name.upper(), kind, path.name)
+    meant = [head for head in heads if name.upper() in ("", head.name)]
+    square = [head for head in meant if not _fault(head)]
+    if meant and not square:
+        raise HousingError(f"{path.name}: {_fault(meant[0])}")
+    # An external superelement has loads, recovery rows and empty matrices of order 1 beside stiffness and mass.
+    filled = [head for head in square if head.rows > 1] or square
+    wanted = chosen_matrix([head.name for head in filled or heads], name.upper(), kind, path.name)
     for head, columns in parts(content, path.name):
         if head.name == wanted:
             return _square(head, columns, path.name)
@@ -95,13 +106,14 @@ def read_op4(path: Path, name: str = "", kind: str = "") -> FloatArray:
     raise AssertionError(wanted)
 
 
-def _check(head: _Head, file: str) -> None:
-    """Refuse a matrix that is complex, not square or too large."""
-    if head.type not in _WORDS:
-        raise HousingError(f"{file}: matrix {head.name} is of type {head.type}; expected 1 or 2 (real)")
+def _fault(head: _Head) -> str:
+    """Why a matrix is none of a housing: it is complex, not square or too large; empty where it may be one."""
+    if head.type not in _REAL_TYPES:
+        return f"matrix {head.name} is of type {head.type}; expected 1 or 2 (real)"
     if head.columns != head.rows or not 0 < head.rows <= MOST_COORDINATES:
         size = f"{head.rows} x {head.columns}"
-        raise HousingError(f"{file}: {head.name} is {size}; expected a square matrix of order 1 to {MOST_COORDINATES}")
+        return f"{head.name} is {size}; expected a square matrix of order 1 to {MOST_COORDINATES}"
+    return ""
 
 
 def _square(head: _Head, columns: Strings, file: str) -> FloatArray:
@@ -140,8 +152,7 @@ def _of_records(content: bytes, file: str) -> Iterator[tuple[_Head, Strings]]:
         if len(record) != layout.head:
             raise HousingError(f"{file}: expected the beginning of a matrix after the last one")
         columns, rows, _, kind = layout.integers(record, 4)
-        name = record[4 * layout.word :].decode("latin-1").strip().upper()
-        head = _Head(name, columns, abs(rows), kind, rows < 0)
+        head = _Head(layout.name(record[4 * layout.word :]), columns, abs(rows), kind, rows < 0)
         yield head, _binary_columns(records, head, layout, file)
 
 
@@ -259,7 +270,7 @@ class _Lines:
 
 def _text_columns(lines: _Lines, head: _Head, width: int) -> Strings:
     """Yield column, first row and numbers of each string of a matrix up to its last record."""
-    words = _WORDS.get(head.type, 2)
+    words = 1 if head.type in (1, 3) else 2  # of a real number, or of a part of a complex one
     while True:
         column, row, left = lines.integers(lines.next(), 3)
         if column > head.columns:

@@ -14,6 +14,7 @@ from scipy import linalg
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.certificate import ReducedCertificate, certify, rigid_motions
 from gearwhine.housing.reduced.matrices import MASSLESS, ReducedMatrices, StaticStiffness, scaled
+from gearwhine.housing.reduced.recovery import RecoveredPoints
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -160,6 +161,16 @@ class ReducedModes:
     known: int
 
     @property
+    def frequencies_hz(self) -> FloatArray:
+        """Natural frequencies, shape (m,) [Hz]."""
+        return self.frequencies / _TWO_PI
+
+    @property
+    def discretisation_errors(self) -> None:
+        """Not known: the mesh is another program's."""
+        return None
+
+    @property
     def all_frequencies(self) -> FloatArray:
         """Frequencies of the modes and of the static coordinates, shape (m + k,) [rad/s]."""
         static = self.vectors.shape[1] - len(self.frequencies)
@@ -184,6 +195,8 @@ class ReducedHousing:
         their static response.
     static : StaticStiffness, optional
         Static stiffness of interface nodes from another computation, which the certificate holds the matrices against.
+    recovered : RecoveredPoints, optional
+        Points beside the nodes whose motions the coordinates give.
 
     Raises
     ------
@@ -199,6 +212,7 @@ class ReducedHousing:
     damping_ratio: float = 0.01
     limit: float = field(kw_only=True)
     static: StaticStiffness | None = None
+    recovered: RecoveredPoints | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies; check names, nodes, places and the mass."""
@@ -212,6 +226,9 @@ class ReducedHousing:
         refuse([*attribute_findings(_PART, self, **rules), *kinds], HousingError)
         refuse(self._node_findings(), HousingError)
         refuse(self._mass_findings(), HousingError)
+        if self.recovered is not None and self.recovered.rows.shape[2] != self.matrices.size:
+            columns, expected = self.recovered.rows.shape[2], f"rows of {self.matrices.size} columns"
+            refuse([Finding(("reduced housing", "recovery"), "", columns, expected)], HousingError)
 
     def _needed(self) -> dict[tuple[str, str], list[int]]:
         """Components that the node of each seat and sensor must have."""
@@ -376,6 +393,44 @@ class ReducedHousing:
         for axis, row in self.matrices.rows(node).items():
             motions[:, axis - 1] = self.modes.vectors[row]
         return motions
+
+    @property
+    def trusted_limit_hz(self) -> float:
+        """Frequency up to which the modes are known [Hz]."""
+        return self.limit / _TWO_PI
+
+    @property
+    def points(self) -> RecoveredPoints:
+        """Nodes of known place that move along x, y and z, and the recovered points."""
+        positions, rows = [], []
+        for node, place in self._places.items():
+            at = self.matrices.rows(node)
+            if {1, 2, 3} <= set(at):
+                positions.append(place)
+                rows.append(np.eye(self.matrices.size)[[at[1], at[2], at[3]]])
+        if self.recovered is not None:
+            positions += list(self.recovered.positions)
+            rows += list(self.recovered.rows)
+        n = self.matrices.size
+        return RecoveredPoints(np.array(positions).reshape(-1, 3), np.array(rows).reshape(-1, 3, n))
+
+    def node_motions(self) -> FloatArray:
+        """Six motions of each interface node by the modes below the limit, shape (known, n_nodes, 6)."""
+        motions = np.stack([self._node_motions(node) for node in self.matrices.nodes], axis=1)
+        return np.asarray(motions[: self.modes.known])
+
+    @property
+    def extent(self) -> float:
+        """Largest distance between points of known motion along an axis [m]; 0 of fewer than two."""
+        positions = self.points.positions
+        return float(np.ptp(positions, axis=0).max()) if len(positions) else 0.0
+
+    def damping_ratios(self) -> FloatArray:
+        """Modal damping ratio of each mode below the limit, with damping matrix and dashpots, shape (known,)."""
+        known = self.modes.known
+        omegas = self.modes.frequencies[:known]
+        own = np.diag(self.damping_matrix())[:known]
+        return np.asarray(np.divide(own, 2.0 * omegas, out=np.full(known, np.nan), where=omegas > 0.0))
 
     def damping_matrix(self) -> FloatArray:
         """Damping 2 ζ ω of each mode, and Φᵀ C Φ of the damping matrix and dashpots, shape (m + k, m + k) [1/s]."""

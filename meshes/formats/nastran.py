@@ -39,7 +39,7 @@ _TO_VTK = {
 }
 _SHELLS = {"CTRIA3": 3, "CTRIAR": 3, "CTRIA6": 3, "CQUAD4": 4, "CQUADR": 4, "CQUAD8": 4}
 _SYSTEMS = {f"CORD{way}{kind}": (way, kind) for way in (1, 2) for kind in "RCS"}
-_CARDS_READ = {"GRID", "GRDSET", *_SOLIDS, *_SHELLS, *_SYSTEMS}
+_CARDS_READ = {"GRID", "GRDSET", "EXTRN", *_SOLIDS, *_SHELLS, *_SYSTEMS}
 # Other solids (pyramids, those of p elements) and cards that make elements; a card "=" repeats the one before it.
 _REFUSED = re.compile(r"C(I?HEX|TET|PEN|PYR)|CGEN$|=")
 _DEPTH = 20  # levels of files that include files
@@ -49,7 +49,7 @@ _Place = tuple[Path, int]
 
 
 @dataclass
-class _Card:
+class Card:
     """A card with its fields after the name, continuations included."""
 
     name: str
@@ -57,22 +57,27 @@ class _Card:
     place: _Place
 
     def integer(self, number: int) -> int:
+        """Whole number of a field; 0 of one that is blank or absent."""
         text = self.fields[number] if number < len(self.fields) else ""
         return int(text) if text else 0
 
     def real(self, number: int) -> float:
+        """Real number of a field; 0 of one that is blank or absent."""
         text = self.fields[number] if number < len(self.fields) else ""
         return _real(text) if text else 0.0
 
 
 @dataclass
-class _Bulk:
+class Bulk:
     """Content of the bulk data read so far, by the deck's own numbers."""
 
     grids: dict[int, tuple[int | None, tuple[float, float, float]]] = field(default_factory=dict)
     default_system: int = 0
-    systems: dict[int, _Card] = field(default_factory=dict)
-    solids: dict[str, list[tuple[int, list[int], _Card]]] = field(default_factory=dict)
+    motion_systems: dict[int, int | None] = field(default_factory=dict)
+    default_motion_system: int = 0
+    boundary: list[Card] = field(default_factory=list)
+    systems: dict[int, Card] = field(default_factory=dict)
+    solids: dict[str, list[tuple[int, list[int], Card]]] = field(default_factory=dict)
     shells: list[tuple[int, list[int]]] = field(default_factory=list)
 
 
@@ -98,6 +103,23 @@ class _System:
             local = places
         return np.asarray(self.origin + local @ self.axes)
 
+    def axes_at(self, place: FloatArray) -> FloatArray:
+        """Axes along which a node at a place of the basic system moves, as rows in the basic one, shape (3, 3)."""
+        x, y, z = self.axes @ (place - self.origin)
+        turn = np.arctan2(y, x)
+        radial = np.array([np.cos(turn), np.sin(turn), 0.0])
+        around = np.array([-np.sin(turn), np.cos(turn), 0.0])
+        upward = np.array([0.0, 0.0, 1.0])
+        if self.kind == "C":
+            local = np.stack([radial, around, upward])
+        elif self.kind == "S":
+            tilt = np.arctan2(np.hypot(x, y), z)
+            outward = np.sin(tilt) * radial + np.cos(tilt) * upward
+            local = np.stack([outward, np.cos(tilt) * radial - np.sin(tilt) * upward, around])
+        else:
+            local = np.eye(3)
+        return np.asarray(local @ self.axes)
+
 
 def is_nastran(path: Path) -> bool:
     """Whether a file is a deck of Nastran: by its ending, or of ``.dat`` by executive statements or cards in it."""
@@ -121,15 +143,26 @@ def read_nastran(path: Path) -> MeshContent:
         Where the deck holds pyramids or other unknown solids, cards that repeat or generate others, superelements, or
         references to numbers or files that are not there.
     """
-    bulk = _Bulk()
+    return _content(read_bulk(path), path)
+
+
+def read_bulk(path: Path) -> Bulk:
+    """Read the cards of a deck.
+
+    Raises
+    ------
+    GeometryError
+        As :func:`read_nastran`, where a card is wrong by itself.
+    """
+    bulk = Bulk()
     for card in _cards(_bulk_lines(path)):
         try:
             _take(bulk, card)
         except GeometryError:
             raise
         except ValueError as error:
-            raise GeometryError(f"{_where(card.place)}, card {card.name}: {error}; expected a number") from error
-    return _content(bulk, path)
+            raise GeometryError(f"{where(card.place)}, card {card.name}: {error}; expected a number") from error
+    return bulk
 
 
 def included_decks(path: Path) -> Iterator[Path]:
@@ -140,7 +173,8 @@ def included_decks(path: Path) -> Iterator[Path]:
                 yield path.parent / name
 
 
-def _where(place: _Place) -> str:
+def where(place: _Place) -> str:
+    """Return file and line in words."""
     return f"mesh file {place[0]}, line {place[1]}"
 
 
@@ -177,7 +211,7 @@ def _lines(path: Path, depth: int = 0) -> Iterator[tuple[str, _Place]]:
     for line, place in _own_lines(path):
         if name := _included(line):
             if not (path.parent / name).is_file():
-                raise GeometryError(f"{_where(place)} includes {name!r}: no such file beside it")
+                raise GeometryError(f"{where(place)} includes {name!r}: no such file beside it")
             yield from _lines(path.parent / name, depth + 1)
         else:
             yield line, place
@@ -188,7 +222,7 @@ def _bulk_lines(path: Path) -> Iterator[tuple[str, _Place]]:
     lines = list(_lines(path))
     begins = [number for number, (line, _) in enumerate(lines) if re.match(r"\s*BEGIN\b", line, re.IGNORECASE)]
     if len(begins) > 1:
-        again = _where(lines[begins[1]][1])
+        again = where(lines[begins[1]][1])
         raise GeometryError(f"{again} begins bulk data again, of a superelement; write the deck without superelements")
     for line, place in lines[begins[0] + 1 if begins else 0 :]:
         if line.upper().startswith("ENDDATA"):
@@ -196,9 +230,9 @@ def _bulk_lines(path: Path) -> Iterator[tuple[str, _Place]]:
         yield line, place
 
 
-def _cards(lines: Iterator[tuple[str, _Place]]) -> Iterator[_Card]:
+def _cards(lines: Iterator[tuple[str, _Place]]) -> Iterator[Card]:
     """Yield the cards that are taken, each with its continuations."""
-    card: _Card | None = None
+    card: Card | None = None
     width, end = 0, ""  # fields that the card has by the end of its last whole line, and what that line ends with
     large = False
     for line, place in lines:
@@ -209,14 +243,14 @@ def _cards(lines: Iterator[tuple[str, _Place]]) -> Iterator[_Card]:
             name = head.rstrip("*_ ").upper()  # CHEXA_ is how meshio writes bricks of 20 nodes
             if _REFUSED.match(name) and name not in _SOLIDS:
                 raise GeometryError(
-                    f"{_where(place)}: card {name} is not known here; write the deck with every element on a card of "
+                    f"{where(place)}: card {name} is not known here; write the deck with every element on a card of "
                     f"its own, solids as {', '.join(_SOLIDS)}"
                 )
-            card = _Card(name, [], place) if name in _CARDS_READ else None
+            card = Card(name, [], place) if name in _CARDS_READ else None
             width = 0
         elif card is not None and len(head) > 1 and len(end) > 1 and head[1:] != end[1:]:
             raise GeometryError(
-                f"{_where(place)}: continuation {head!r} of card {card.name} follows a line that ends with {end!r}; "
+                f"{where(place)}: continuation {head!r} of card {card.name} follows a line that ends with {end!r}; "
                 "write the deck sorted"
             )
         if card is not None:
@@ -254,18 +288,22 @@ def _real(text: str) -> float:
     return float(text if "E" in text else _EXPONENT.sub("E", text))
 
 
-def _take(bulk: _Bulk, card: _Card) -> None:
+def _take(bulk: Bulk, card: Card) -> None:
     if card.name == "GRID":
         place = (card.real(2), card.real(3), card.real(4))
         system = card.integer(1) if len(card.fields) > 1 and card.fields[1] else None
         if bulk.grids.setdefault(card.integer(0), (system, place)) != (system, place):
-            raise GeometryError(f"{_where(card.place)}: GRID {card.integer(0)} is there already, at another place")
+            raise GeometryError(f"{where(card.place)}: GRID {card.integer(0)} is there already, at another place")
+        bulk.motion_systems[card.integer(0)] = card.integer(5) if len(card.fields) > 5 and card.fields[5] else None
     elif card.name == "GRDSET":
         bulk.default_system = card.integer(1)
+        bulk.default_motion_system = card.integer(5)
+    elif card.name == "EXTRN":
+        bulk.boundary.append(card)
     elif card.name in _SYSTEMS:
         bulk.systems[card.integer(0)] = card
         if _SYSTEMS[card.name][0] == 1 and card.integer(4):  # two systems on one card
-            bulk.systems[card.integer(4)] = _Card(card.name, card.fields[4:8], card.place)
+            bulk.systems[card.integer(4)] = Card(card.name, card.fields[4:8], card.place)
     elif card.name in _SHELLS:
         n_corners = _SHELLS[card.name]
         bulk.shells.append((card.integer(1), [int(number) for number in card.fields[2 : 2 + n_corners]]))
@@ -277,13 +315,13 @@ def _take(bulk: _Bulk, card: _Card) -> None:
         if kind is None or not all(nodes):
             numbers = " or ".join(map(str, _SOLIDS[card.name]))
             raise GeometryError(
-                f"{_where(card.place)}: {card.name} {card.integer(0)} has {np.count_nonzero(nodes)} nodes; "
+                f"{where(card.place)}: {card.name} {card.integer(0)} has {np.count_nonzero(nodes)} nodes; "
                 f"expected {numbers}, without gaps"
             )
         bulk.solids.setdefault(kind, []).append((card.integer(1), nodes, card))
 
 
-def _content(bulk: _Bulk, path: Path) -> MeshContent:
+def _content(bulk: Bulk, path: Path) -> MeshContent:
     position = {number: place for place, number in enumerate(bulk.grids)}
     solids: list[ElementBlock] = []
     properties: list[int] = []
@@ -291,7 +329,7 @@ def _content(bulk: _Bulk, path: Path) -> MeshContent:
         for _, nodes, card in elements:
             if absent := [node for node in nodes if node not in position]:
                 raise GeometryError(
-                    f"{_where(card.place)}: {card.name} {card.integer(0)} names GRID {absent[0]}, which is not there"
+                    f"{where(card.place)}: {card.name} {card.integer(0)} names GRID {absent[0]}, which is not there"
                 )
         rows = np.array([[position[node] for node in nodes] for _, nodes, _ in elements], dtype=np.int64)
         solids.append(ElementBlock(kind, rows[:, _TO_VTK.get(kind, slice(None))]))
@@ -304,7 +342,7 @@ def _content(bulk: _Bulk, path: Path) -> MeshContent:
         facets.setdefault(number, []).append([*corners, *[NO_NODE] * (4 - len(corners))])
     numbers = np.array(properties, dtype=np.int64)
     return MeshContent(
-        points=_points(bulk, path),
+        points=grid_points(bulk, path),
         solids=tuple(solids),
         volumes={_named(number): np.flatnonzero(numbers == number) for number in np.unique(numbers).tolist() if number},
         shells={_named(number): _rows(rows) for number, rows in facets.items() if number},
@@ -319,7 +357,7 @@ def _rows(rows: list[list[int]]) -> IntArray:
     return np.array(rows, dtype=np.int64).reshape(-1, 4)
 
 
-def _points(bulk: _Bulk, path: Path) -> FloatArray:
+def grid_points(bulk: Bulk, path: Path) -> FloatArray:
     """Return the nodes in the basic coordinate system."""
     points = np.array([place for _, place in bulk.grids.values()], dtype=np.float64).reshape(-1, 3)
     owners = np.array([_owner(bulk, number) for number in bulk.grids], dtype=np.int64)
@@ -327,17 +365,17 @@ def _points(bulk: _Bulk, path: Path) -> FloatArray:
     for number in np.unique(owners).tolist():
         if number:
             inside = owners == number
-            moved[inside] = _system(bulk, number, path, ()).basic(points[inside])
+            moved[inside] = grid_system(bulk, number, path, ()).basic(points[inside])
     return moved
 
 
-def _owner(bulk: _Bulk, grid: int) -> int:
+def _owner(bulk: Bulk, grid: int) -> int:
     """Return the number of the coordinate system in which a node stands, 0 for the basic one."""
     system, _ = bulk.grids[grid]
     return bulk.default_system if system is None else system
 
 
-def _system(bulk: _Bulk, number: int, path: Path, within: tuple[int, ...]) -> _System:
+def grid_system(bulk: Bulk, number: int, path: Path, within: tuple[int, ...]) -> _System:
     """Return a coordinate system, which may itself stand in another one."""
     if number == 0:
         return _System("R", np.zeros(3), np.eye(3))
@@ -348,23 +386,23 @@ def _system(bulk: _Bulk, number: int, path: Path, within: tuple[int, ...]) -> _S
         )
     card = bulk.systems[number]
     if number in within:
-        raise GeometryError(f"{_where(card.place)}: coordinate system {number} is defined by itself")
+        raise GeometryError(f"{where(card.place)}: coordinate system {number} is defined by itself")
     way, kind = _SYSTEMS[card.name]
     if way == 2:
         given = np.array([card.real(field_number) for field_number in range(2, 11)]).reshape(3, 3)
-        three = _system(bulk, card.integer(1), path, (*within, number)).basic(given)
+        three = grid_system(bulk, card.integer(1), path, (*within, number)).basic(given)
     else:
         three = np.empty((3, 3))
         for place, grid in enumerate(card.integer(field_number) for field_number in (1, 2, 3)):
             if grid not in bulk.grids:
-                raise GeometryError(f"{_where(card.place)}: {card.name} {number} names GRID {grid}, which is not there")
-            owner = _system(bulk, _owner(bulk, grid), path, (*within, number))
+                raise GeometryError(f"{where(card.place)}: {card.name} {number} names GRID {grid}, which is not there")
+            owner = grid_system(bulk, _owner(bulk, grid), path, (*within, number))
             three[place] = owner.basic(np.array([bulk.grids[grid][1]]))[0]
     # The origin, a point of the third axis, and one of the half plane of the first and third.
     origin, axis, plane = three
     third = axis - origin
     second = np.cross(third, plane - origin)
     if not np.linalg.norm(second) > 1e-9 * np.linalg.norm(third) * np.linalg.norm(plane - origin):
-        raise GeometryError(f"{_where(card.place)}: the three points of {card.name} {number} are on one line")
+        raise GeometryError(f"{where(card.place)}: the three points of {card.name} {number} are on one line")
     third, second = third / np.linalg.norm(third), second / np.linalg.norm(second)
     return _System(kind, origin, np.stack([np.cross(second, third), second, third]))

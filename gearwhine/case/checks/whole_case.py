@@ -277,7 +277,7 @@ def warnings_of(case: Case) -> tuple[str, ...]:
     if case.reduced_housing is not None:
         warnings += [
             f"[{table}] has no effect: [housing.reduced] has no shapes, so that there is no {purpose}"
-            for table, purpose in (("acoustics", "sound"), ("measured", "comparison"), ("update", "fit"))
+            for table, purpose in (("acoustics", "sound"), ("update", "fit"))
             if getattr(case, table) is not None
         ]
     document = case_document(case)

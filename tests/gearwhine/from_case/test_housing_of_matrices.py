@@ -14,7 +14,7 @@ import gearwhine as gw
 from gearwhine.cli.command_line import run_command
 from gearwhine.housing import HousingError
 from gearwhine.housing.reduced import LabelledMatrix
-from gearwhine.housing.reduced.assignment import assign_nodes
+from gearwhine.housing.reduced.assignment import assign_nodes, free_positions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,11 +30,8 @@ def rigid(center: FloatArray) -> FloatArray:
 
 def free_housing() -> tuple[FloatArray, FloatArray]:
     """Mass and stiffness of four nodes of 10 kg in SI, springs between what is not a rigid motion of all."""
-    motions = np.vstack([rigid(CENTERS[name]) for name in NODES])
-    size = np.tile([1.0] * 3 + [0.05] * 3, len(NODES))
-    q, _ = np.linalg.qr(size[:, None] * motions)
-    stiffness = size[:, None] * (2e8 * (np.eye(24) - q @ q.T)) * size
-    return np.diag(np.tile([10.0] * 3 + [0.05] * 3, len(NODES))), 0.5 * (stiffness + stiffness.T)
+    stiffness = springs_between(np.array([CENTERS[name] for name in NODES]))
+    return np.diag(np.tile([10.0] * 3 + [0.05] * 3, len(NODES))), stiffness
 
 
 def in_millimetres(matrix: FloatArray) -> FloatArray:
@@ -62,6 +59,32 @@ def test_swapped_nodes_and_units_are_found_by_the_free_motions_of_a_frame() -> N
             assert (found.nodes, found.units, found.is_proved) == (nodes, units, True)
         one = assign_nodes({kind: LabelledMatrix(matrix) for kind, matrix in read.items()}, [*PLACES.values()])
         assert (one.nodes, one.units, one.by_order) == ((1, 2), units, True)
+
+
+def springs_between(positions: FloatArray) -> FloatArray:
+    """Stiffness of springs that resist every motion of nodes but the rigid ones of all, (6 n, 6 n)."""
+    motions = np.vstack([rigid(place) for place in positions])
+    size = np.tile([1.0] * 3 + [0.05] * 3, len(positions))
+    q, _ = np.linalg.qr(size[:, None] * motions)
+    matrix = size[:, None] * (2e8 * (np.eye(len(motions)) - q @ q.T)) * size
+    return 0.5 * (matrix + matrix.T)
+
+
+def test_four_of_eleven_nodes_are_found_by_the_positions_that_free_motions_tell() -> None:
+    """Feet and sensors among the nodes: eleven nodes have 7,920 orders of four. The file's origin is another one."""
+    positions = np.random.default_rng(7).uniform(-0.3, 0.3, (11, 3))
+    coordinates = tuple((10 * number, axis) for number in range(1, 12) for axis in range(1, 7))
+    places = positions[[8, 2, 10, 5]] + [0.2, -0.1, 0.4]
+    stiffness = springs_between(positions)
+    np.testing.assert_allclose(free_positions(stiffness), positions - positions[0], atol=1e-9)
+    for matrix, units in ((stiffness, "SI"), (in_millimetres(stiffness), "mm-t-s")):
+        found = assign_nodes({"stiffness": LabelledMatrix(matrix, coordinates)}, [tuple(one) for one in places])
+        assert (found.nodes, found.units, found.is_proved) == ((90, 30, 110, 60), units, True)
+    # A foot on a spring: nothing is free any more, and nothing tells the positions.
+    held = stiffness.copy()
+    held[0, 0] += 1e9
+    assert free_positions(held) is None
+    assert not assign_nodes({"stiffness": LabelledMatrix(held, coordinates)}, [tuple(one) for one in places]).is_proved
 
 
 def test_what_is_held_proves_nothing_and_its_lever_tells_the_units() -> None:
@@ -111,10 +134,46 @@ def test_the_matrices_take_the_place_of_a_static_stiffness_in_the_file_of_the_un
     assert {seat.node for seat in table.seat} == set(NODES.values())
 
 
+@pytest.mark.parametrize("given", [False, True])
+def test_rows_of_an_external_superelement_are_named_by_its_punch_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], given: bool
+) -> None:
+    """What EXTSEOUT writes: matrices in one file, and the order of their rows beside them, a scalar point first."""
+    mass, stiffness = free_housing()
+    matrices = {"MAA": in_millimetres(mass), "KAA": in_millimetres(stiffness)}
+    text = ""
+    for name, matrix in matrices.items():
+        whole = np.diag([3e-3 if name == "MAA" else 4e5, *np.zeros(24)])
+        whole[1:, 1:] = matrix
+        text += f"{25:8}{25:8}{6:8}{2:8}{name:<8}1P,3E23.16\n"
+        for number, column in enumerate(whole, start=1):
+            text += f"{number:8}{1:8}{25:8}\n" + "".join(f"{one:23.16E}\n" for one in column)
+        text += f"{26:8}{1:8}{1:8}\n{1.0:23.16E}\n"
+    (tmp_path / "se.op4").write_text(text)
+    punch = tmp_path / ("rows.pch" if given else "se.pch")
+    points = "".join(f"{node:8}  123456" for node in NODES.values())
+    punch.write_text(f"BEGIN SUPER       75\nEXTRN{9001:11}       0{points[:48]}\n        {points[48:]}\n")
+    (tmp_path / "unit.rexs").write_bytes(helical_stage().xml())
+    monkeypatch.chdir(tmp_path)
+    options = ["--mapping", "rows.pch"] if given else []
+    assert run_command(["import", "unit.rexs", "--housing", "se.op4", *options, "-o", "made/unit.toml"]) == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert f"rows by {punch.name}; nodes" in words
+    assert "in mm-t-s: its rigid motions are free by them" in words
+    study = gw.load("made/unit.toml")
+    table = study.case.reduced_housing
+    assert table is not None
+    assert table.reduced.mapping is not None
+    assert {seat.name.removesuffix(" seat"): seat.node for seat in table.seat} == NODES
+    assert study.check().document["reduced_housing"]["certificate"]["free_rigid_motions"] == 6
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--mass", "box.pch"], "--mass: expected --housing beside it"),
+        (["--mapping", "box.pch"], "--mapping: expected --housing beside it"),
+        (["--housing", "box.pch", "--mapping", "box.pch"], "box.pch has no card EXTRN"),
         (["--housing", "none.pch"], "--housing: expected matrices of a housing; none.pch: expected a readable file"),
         (["--housing", "unit.rexs"], "expected a file that ends in one of .mtx"),
         (["--housing", "small.npz"], "the order of the stiffness is 2"),

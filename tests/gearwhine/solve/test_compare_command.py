@@ -72,3 +72,16 @@ def test_a_mode_that_a_finer_mesh_would_bring_nearer_is_told() -> None:
     (told,) = comparison_warnings(comparison, modes)
     assert told["modes"] == [1]
     assert comparison_warnings(replace(comparison, pairing="order"), modes) == []
+
+
+@pytest.mark.slow
+def test_a_run_warns_of_the_edge_of_the_band_as_the_comparison_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mode identified at the edge of the measured band stays doubtful where a run shows it beside the model's."""
+    cut = MeasuredModes(2.0 * np.pi * np.array([1900.0, 2300.0]), np.array([0.01, 0.02]), cut_by_band=(1,))
+    monkeypatch.setattr("gearwhine.solve.comparison.read_measured", lambda measured, progress: cut)
+    few = ("housing.box.mesh_size=60 mm", "measured={frequencies=['1 kHz']}")
+    study = gw.load("steel-box", few)
+    for result in (study.run(), study.compare()):
+        (told,) = (one for one in result.document["warnings"] if one["name"] == "edge of the band")
+        assert told["modes"] == [2]
+        assert "half-power width of measured mode 2 (2300 Hz)" in told["message"]

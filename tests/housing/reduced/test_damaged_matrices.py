@@ -66,7 +66,7 @@ def test_damaged_files_are_refused_by_name_or_read(tmp_path: Path) -> None:
             begin = time.process_time()
             try:
                 if file.suffix in (".mapping", ".dof"):
-                    assert len(read_row_labels(path)) <= MOST_COORDINATES
+                    assert len(read_row_labels(path).coordinates) <= MOST_COORDINATES
                 else:
                     read = read_matrix(path, kind="stiffness")
                     assert read.values.shape[0] == read.values.shape[1] <= MOST_COORDINATES
@@ -88,7 +88,7 @@ def test_damaged_files_are_refused_by_name_or_read(tmp_path: Path) -> None:
 def test_whole_files_are_read(tmp_path: Path) -> None:
     for file in sources(tmp_path):
         if file.suffix in (".mapping", ".dof"):
-            assert read_row_labels(file) == tuple(FRAME_COORDINATES)
+            assert read_row_labels(file).coordinates == tuple(FRAME_COORDINATES)
         else:
             np.testing.assert_allclose(read_matrix(file, kind="stiffness").values, STIFFNESS, rtol=1e-9)
 

@@ -128,6 +128,56 @@ def text(*lines: str) -> Callable[[], bytes]:
 HEAD = "       2       2       2       2KGG     1P,2E13.5"
 
 
+def empty(name: bytes, rows: int, columns: int, kind: int) -> bytes:
+    """A matrix without an entry: its head, and the record behind its last column."""
+    head = struct.pack("<5i8si", 24, columns, rows, 2, kind, name.ljust(8), 24)
+    return head + struct.pack("<4idi", 20, columns + 1, 1, 1, 1.0, 20)
+
+
+def renamed(content: bytes, name: bytes) -> bytes:
+    return content.replace(b"KGG     ", name.ljust(8), 1)
+
+
+def test_external_superelements_have_loads_recovery_and_empty_matrices_beside_stiffness_and_mass(
+    tmp_path: Path,
+) -> None:
+    """In the order of EXTSEOUT with MATOP4: K, M, empty B and K4, loads, and complex ones where there are any."""
+    parts = [renamed(binary(STIFFNESS), b"KAA"), renamed(binary(MASS, sparse="one"), b"MAA"), empty(b"BXX", 1, 1, 2)]
+    parts += [empty(b"PA", 4, 1, 2), empty(b"QHH", 4, 4, 4), renamed(binary(STIFFNESS[:3]), b"MUG1")]
+    (tmp_path / "se.op4").write_bytes(b"".join(parts))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "se.op4", kind="stiffness").values, STIFFNESS)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "se.op4", kind="mass").values, MASS)
+    with pytest.raises(HousingError, match=r"se.op4: MUG1 is 3 x 4; expected a square matrix"):
+        read_matrix(tmp_path / "se.op4", name="mug1")
+    with pytest.raises(HousingError, match=r"expected the name of one of its matrices; it has 'KAA', 'MAA'$"):
+        read_matrix(tmp_path / "se.op4", kind="damping")
+    (tmp_path / "twice.op4").write_bytes(2 * parts[0])
+    with pytest.raises(HousingError, match="expected one matrix 'KAA'; it has 2 of this name"):
+        read_matrix(tmp_path / "twice.op4", name="kaa")
+
+
+def test_names_of_eight_byte_words_of_which_four_are_filled(tmp_path: Path) -> None:
+    """MSC Nastran 2017 with integers of eight bytes writes LAMB, four blanks, DA and six blanks."""
+    for name, read in (
+        (b"LAMB    DA      ", "LAMBDA"),
+        (b"LAMBDA          ", "LAMBDA"),
+        (b"STIFFNESS       ", "stiffness"),
+    ):
+        content = binary(STIFFNESS, word=8).replace(b"KGG".ljust(16), name, 1)
+        (tmp_path / "k.op4").write_bytes(content)
+        np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4", name=read).values, STIFFNESS)
+
+
+def test_complex_numbers_of_single_precision_beside_real_ones(tmp_path: Path) -> None:
+    """A string of two complex numbers as text has four real ones of a word each: 1 + 65536 (4 + 1)."""
+    lines = ["       2       2       2       3B       1P,5E16.9", "       1       0       5", "      327681"]
+    lines += [" 4.500000000E+00-1.500000000E+00 1.000000000E+00 2.000000000E+00", "       3       1       1"]
+    lines += [" 1.000000000E+00", "       1       1       2       2KGG     1P,5E16.9", "       1       1       2"]
+    lines += [" 7.000000000E+00", "       2       1       1", " 1.000000000E+00", ""]
+    (tmp_path / "k.op4").write_text("\n".join(lines))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4").values, [[7.0]])
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [
@@ -143,8 +193,8 @@ HEAD = "       2       2       2       2KGG     1P,2E13.5"
             lambda: binary(STIFFNESS, sparse="two").replace(struct.pack("<2i", 5, 1), struct.pack("<2i", 5, 4)),
             "rows 4 to 5 of column 1",
         ),
-        (lambda: struct.pack("<6i", 24, 2, 2, 2, 4, 0) + struct.pack("<2i", 0, 24), "of type 4; expected 1 or 2"),
-        (lambda: struct.pack("<6i", 24, 90000, 90000, 2, 2, 0) + struct.pack("<2i", 0, 24), "order 1 to 3000"),
+        (lambda: empty(b"KGG", 2, 2, 4), "matrix KGG is of type 4; expected 1 or 2"),
+        (lambda: empty(b"KGG", 90000, 90000, 2), "order 1 to 3000"),
         (text(HEAD, "       1       1       2", "  1.50000E+03"), "complete to its end"),
         (text(HEAD, "       1       1       3", "  1.0 2.0 3.0"), "numbers 13 wide"),
         (text(HEAD, "       1       1 many"), "expected 3 whole numbers"),

@@ -11,7 +11,7 @@ from reduced_frames import FRAME_COORDINATES, frame
 from solver_text import write_abaqus_terms, write_ansys_mapping, write_harwell_boeing, write_user_element
 
 from gearwhine.housing import HousingError
-from gearwhine.housing.reduced import LabelledMatrix, read_matrix, read_row_labels, reduced_matrices
+from gearwhine.housing.reduced import LabelledMatrix, RowLabels, read_matrix, read_row_labels, reduced_matrices
 
 MASS, STIFFNESS = frame()
 
@@ -274,8 +274,8 @@ def test_damaged_mappings(tmp_path: Path, lines: tuple[str, ...], words: str) ->
 
 
 def test_rows_of_another_number_or_named_twice(tmp_path: Path) -> None:
-    read = LabelledMatrix(MASS)
+    read, rows = LabelledMatrix(MASS), RowLabels(tuple(FRAME_COORDINATES))
     with pytest.raises(HousingError, match=r"m.hb is of order 12; expected 2, the rows of the mapping"):
-        read.with_rows([(1, 1), (1, 2)], "m.hb")
+        read.with_rows(RowLabels(((1, 1), (1, 2))), "m.hb")
     with pytest.raises(HousingError, match=r"m.hb names its nodes itself"):
-        read.with_rows(FRAME_COORDINATES, "m.hb").with_rows(FRAME_COORDINATES, "m.hb")
+        read.with_rows(rows, "m.hb").with_rows(rows, "m.hb")
