@@ -474,7 +474,7 @@ def _sizes(curve: Curve, sizes: FloatArray) -> tuple[float | None, float | None]
 
 
 def _crossing(probability: Callable[[float], float], low: float, high: float) -> float | None:
-    """Return the least size from which a probability stays at 0.9 or more up to the largest; None where there is none."""
+    """Return the least size from which a probability stays at 0.9 or more up to the largest; None without one."""
     if probability(high) < _DETECTED:
         return None
     grid = np.linspace(low, high, _GRID)
