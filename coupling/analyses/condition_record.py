@@ -188,7 +188,7 @@ def _gears(transient: SolvedTransient) -> Iterator[MonitoredGear]:
                 reason = "the gear meshes with planets: its mesh frequency is no multiple of its shaft's turns"
             elif frequencies[name] + turn > transient.trusted_limit:
                 reason = (
-                    f"its mesh frequency, {frequencies[name]:.4g} Hz, with its sidebands is beyond the trusted limit of "
+                    f"its mesh frequency, {frequencies[name]:.4g} Hz, with sidebands is beyond the trusted limit of "
                     f"{transient.trusted_limit:.4g} Hz"
                 )
             yield MonitoredGear(name, shaft, teeth, others, turn, 0, reason)
