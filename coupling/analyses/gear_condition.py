@@ -1,15 +1,17 @@
 """Condition indicators of every gear at every sensor of a record, with the reason where one is undefined.
 
 The indicators are those of :mod:`gearwhine.coupling.signals.condition_indicators`. Beside the ratios there are the rms
-values of the residual and of the difference signal, which no ratio hides. The spectral kurtosis is the highest one over
-the frequencies of the record, by windows of an eighth of a turn; the envelope is that of the upper half of the band, at
-the turn of the gear's shaft or at a tone of a bearing, over the mean square in the band.
+values of the residual and of the difference signal, which no ratio hides, and that of the change of the difference
+signal since an earlier record, which takes a tachometer that knows the angle. The spectral kurtosis is the highest one
+over the frequencies of the record, by windows of an eighth of a turn; the envelope is that of the upper half of the
+band, at the turn of the gear's shaft or at a tone of a bearing, over the mean square in the band.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -48,7 +50,7 @@ class WatchedSignal:
     unsettled : SynchronousAverage or None
         What the average is not sure of; None where that is known to be nothing.
     healthy : SynchronousAverage or None
-        Average of the gear without the fault, that NA4 refers to; None where the record is the first one.
+        Average of an earlier record, without a fault; None where the record is the first one.
     """
 
     average: SynchronousAverage
@@ -91,6 +93,10 @@ class Indicator:
         Whether it says nothing without a difference signal.
     of_time : bool
         Whether it needs a constant speed.
+    growth : {"ratio", "difference", "itself"}
+        How it is compared with that of an earlier record; NA4 and the rms of the change are so already.
+    lacking : str
+        Reason where it has no value.
     """
 
     key: str
@@ -98,6 +104,8 @@ class Indicator:
     of: Callable[[WatchedSignal], float | None]
     of_residual: bool = False
     of_time: bool = False
+    growth: Literal["ratio", "difference", "itself"] = "ratio"
+    lacking: str = "the average has no mesh harmonics"
 
     def value(self, watched: WatchedSignal) -> tuple[float | None, str]:
         """Return the value, or None with the reason why there is none."""
@@ -110,8 +118,16 @@ class Indicator:
         except CouplingError as error:
             return None, str(error)
         if value is None or not math.isfinite(value):
-            return None, "the average has no mesh harmonics"
+            return None, self.lacking
         return value, ""
+
+    def grown(self, value: float, before: float) -> float:
+        """Compare a value with that of an earlier record; NaN where there is no ratio."""
+        if self.growth == "itself":
+            return value
+        if self.growth == "difference":
+            return value - before
+        return value / before if before > 0.0 else math.nan
 
 
 def _na4(watched: WatchedSignal) -> float | None:
@@ -120,6 +136,13 @@ def _na4(watched: WatchedSignal) -> float | None:
         return na4([watched.average])
     mean_square = float(np.mean(watched.healthy.residual**2))
     return float(np.mean(watched.average.residual**4)) / mean_square**2 if mean_square > 0.0 else None
+
+
+def _change_rms(watched: WatchedSignal) -> float | None:
+    """Rms of the difference signal of the average less that of the earlier record."""
+    if watched.healthy is None:
+        return None
+    return float(np.std(watched.average.difference - watched.healthy.difference))
 
 
 def _highest_kurtosis(watched: WatchedSignal) -> float:
@@ -157,21 +180,28 @@ INDICATORS: dict[str, Indicator] = {
     "fm4": Indicator("fm4", "FM4", lambda one: one.average.fm4, of_residual=True),
     "m6a": Indicator("m6a", "M6A", lambda one: one.average.m6a, of_residual=True),
     "m8a": Indicator("m8a", "M8A", lambda one: one.average.m8a, of_residual=True),
-    "na4": Indicator("na4", "NA4", _na4, of_residual=True),
+    "na4": Indicator("na4", "NA4", _na4, of_residual=True, growth="itself"),
     "energy_ratio": Indicator("energy_ratio", "energy ratio", lambda one: one.average.energy_ratio),
     "sideband_index": Indicator("sideband_index_m_per_s2", "sideband index", lambda one: one.average.sideband_index),
     "sideband_level_factor": Indicator(
         "sideband_level_factor", "sideband level factor", lambda one: one.average.sideband_level_factor
     ),
-    "spectral_kurtosis": Indicator("spectral_kurtosis", "spectral kurtosis", _highest_kurtosis, of_time=True),
+    "spectral_kurtosis": Indicator(
+        "spectral_kurtosis", "spectral kurtosis", _highest_kurtosis, of_time=True, growth="difference"
+    ),
     "envelope": Indicator(
         "envelope",
         "envelope at the turn",
         lambda one: envelope_at(one.signal, one.interval, one.limit_hz, one.turn_hz),
         of_time=True,
     ),
+    "change_rms": Indicator(
+        "change_rms_m_per_s2", "change rms", _change_rms, growth="itself", lacking="there is no earlier record"
+    ),
 }
 """Condition indicators by name."""
+OF_ONE_RECORD = tuple(name for name in INDICATORS if name != "change_rms")
+"""Condition indicators that take no earlier record."""
 
 
 @dataclass(frozen=True)
@@ -248,7 +278,7 @@ def averaged_gear(gear: MonitoredGear, samples: FloatArray, limit_hz: float) -> 
     return SynchronousAverage(samples, gear.teeth, harmonics, gear.others)
 
 
-def machine_condition(record: ConditionRecord, indicators: Sequence[str] = tuple(INDICATORS)) -> MachineCondition:
+def machine_condition(record: ConditionRecord, indicators: Sequence[str] = OF_ONE_RECORD) -> MachineCondition:
     """Find the condition indicators of a record.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,10 +20,10 @@ from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.variation import Variation
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.condition_record import LEAST_TURNS
-from gearwhine.coupling.analyses.gear_condition import INDICATORS
+from gearwhine.coupling.analyses.gear_condition import INDICATORS, OF_ONE_RECORD
 from gearwhine.coupling.gears import GearError
-from gearwhine.detection.detectability import DetectionResult, Monitor, detected_parts
-from gearwhine.detection.samples import FAULTY, HEALTHY, DetectionCase, detection_points
+from gearwhine.detection.detectability import DetectionResult, Monitor, Observation, detected_parts
+from gearwhine.detection.samples import Design, DetectionCase, detection_design
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import correlated
@@ -34,9 +34,9 @@ from gearwhine.results.detection import detection_dataset, detection_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
-from gearwhine.variation.quantities import Wanted
+from gearwhine.variation.quantities import Evaluation, Wanted
 from gearwhine.variation.run import run_samples
-from gearwhine.variation.samples import Failure, VariedCase
+from gearwhine.variation.samples import Failure, Outcome, VariedCase
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,6 +58,8 @@ class PlannedDetection:
     inputs : tuple of Input
         Varied inputs; none where all gearboxes are alike.
     variation : Variation
+    between : tuple of int
+        Numbers of the inputs that differ between two records of one gearbox.
     without : str
         Change that makes a healthy gearbox.
     gear : str
@@ -68,6 +70,7 @@ class PlannedDetection:
     source: CaseSource
     inputs: tuple[Input, ...]
     variation: Variation
+    between: tuple[int, ...]
     without: str
     gear: str
     monitor: Monitor
@@ -100,14 +103,16 @@ def plan_detection(case: Case, source: CaseSource) -> PlannedDetection:
     _require_turns(case, gear)
     monitor = Monitor(
         sensors,
-        settings.indicators or tuple(INDICATORS),
+        settings.indicators or (tuple(INDICATORS) if settings.baseline == "own" else OF_ONE_RECORD),
         settings.sensor_noise,
         settings.averages,
         settings.false_alarm,
         settings.threshold,
         settings.seed,
+        settings.baseline == "own",
     )
-    return PlannedDetection(settings, plain, inputs, variation, without, gear, monitor)
+    between = _between(source, variation, settings, inputs)
+    return PlannedDetection(settings, plain, inputs, variation, between, without, gear, monitor)
 
 
 _OWN = ("detection", "variation")
@@ -162,25 +167,18 @@ def solve_detection(
     # Gearboxes that are all alike have one record, and as many noises.
     is_varied = bool(planned.inputs)
     healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
-    points = detection_points(_cube(planned, healthy + faulty * len(written)), settings.sizes, healthy, faulty)
+    cube = _cube(planned, healthy + faulty * len(written))
+    between = planned.between if is_varied and monitor.has_own_baseline else None
+    design = detection_design(cube, settings.sizes, healthy, faulty, between)
+    points = design.points
     progress("the gearbox without the fault")
     first = run_samples(study, points[:1], folder, workers=1, fresh=fresh, place=FOLDER, progress=silent)
     if isinstance(reference := first.outcomes[0], Failure):
         raise CouplingError(f"the gearbox without the fault: {reference.message}")
     solved = run_samples(study, points, folder, progress, workers=workers, scheduler=scheduler, place=FOLDER)
     outcomes = solved.outcomes
-    kinds, sizes = points[:, 0], points[:, 1]
-    of_size = {
-        size: [outcomes[number] for number in np.flatnonzero((kinds == FAULTY) & (sizes == size))] for size in written
-    }
     progress("thresholds and probabilities of detection")
-    parts = detected_parts(
-        monitor,
-        reference,
-        [outcomes[number] for number in np.flatnonzero(kinds == HEALTHY)],
-        of_size,
-        (1, 1) if is_varied else (settings.healthy, settings.faulty),
-    )
+    parts = detected_parts(monitor, list(_observations(design, outcomes, settings, is_varied=is_varied)))
     result = DetectionResult(
         fault=settings.fault,
         gear=planned.gear,
@@ -195,6 +193,19 @@ def solve_detection(
         resumed=solved.resumed - (0 if first.resumed else 1),
     )
     return _result(Origin(case.title, case=case, housing=housing), result, start)
+
+
+def _observations(
+    design: Design, outcomes: Sequence[Outcome], settings: Detection, *, is_varied: bool
+) -> Iterator[Observation]:
+    """Yield the records with those that they are compared with; of a gearbox that does not vary with many noises."""
+    noise = 0
+    for number, size in enumerate(design.sizes.tolist()):
+        found, earlier = outcomes[design.gearbox(number)], outcomes[design.baseline(number)]
+        for _ in range(1 if is_varied else settings.faulty if size else settings.healthy):
+            noise += 1
+            if isinstance(found, Evaluation) and isinstance(earlier, Evaluation):
+                yield Observation(found, earlier, size, noise)
 
 
 def _result(origin: Origin, result: DetectionResult, start: float) -> Result[DetectionResult]:
@@ -234,6 +245,24 @@ def _cube(planned: PlannedDetection, count: int) -> FloatArray:
 
 def _text(written: str | float) -> str:
     return written if isinstance(written, str) else repr(written)
+
+
+def _between(source: CaseSource, variation: Variation, settings: Detection, inputs: Sequence[Input]) -> tuple[int, ...]:
+    """Return the numbers of the inputs that differ between two records of one gearbox."""
+    problems = [
+        Problem(
+            key_of(("detection", "between", number)),
+            key,
+            f"a key of [variation.vary], as it stands there{did_you_mean(key, variation.vary)}",
+        )
+        for number, key in enumerate(settings.between)
+        if key not in variation.vary
+    ]
+    if problems:
+        raise CaseError(problems)
+    chosen = variation.model_copy(update={"vary": {key: variation.vary[key] for key in settings.between}})
+    names = {one.name for one in varied_inputs(source, chosen)}
+    return tuple(number for number, one in enumerate(inputs) if one.name in names)
 
 
 def _sensors(case: Case, settings: Detection) -> tuple[str, ...]:

@@ -75,7 +75,7 @@ class RunSolution:
         Parameters
         ----------
         names : sequence of str
-            Indicators of :data:`gearwhine.coupling.analyses.gear_condition.INDICATORS`; by default all.
+            Indicators of :data:`gearwhine.coupling.analyses.gear_condition.INDICATORS`; by default all of one record.
 
         Raises
         ------
@@ -84,11 +84,11 @@ class RunSolution:
         """
         from gearwhine.coupling import CouplingError
         from gearwhine.coupling.analyses.condition_record import condition_record
-        from gearwhine.coupling.analyses.gear_condition import INDICATORS, machine_condition
+        from gearwhine.coupling.analyses.gear_condition import OF_ONE_RECORD, machine_condition
 
         if self.transient is None:
             raise CouplingError("condition indicators: expected a motion over time, as of a case with [transient]")
-        return machine_condition(condition_record(self.transient, self.tones_hz), tuple(names) or tuple(INDICATORS))
+        return machine_condition(condition_record(self.transient, self.tones_hz), tuple(names) or OF_ONE_RECORD)
 
     def result(self, command: str, origin: Origin, document: dict[str, Any], **written: Any) -> Result[RunSolution]:
         """Return the result of the analyses that were made; ``written`` are further fields of it."""

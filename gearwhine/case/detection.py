@@ -28,7 +28,14 @@ class Detection(Table):
     """Names of sensors. Default: all."""
     indicators: Annotated[tuple[Annotated[str, Field(max_length=100)], ...], Field(max_length=100)] = ()
     """Condition indicators: rms, residual_rms, difference_rms, fm0, fm4, m6a, m8a, na4, energy_ratio, sideband_index,
-    sideband_level_factor, spectral_kurtosis, envelope. Default: all."""
+    sideband_level_factor, spectral_kurtosis, envelope, change_rms. Default: all."""
+    baseline: Literal["own", "fleet"] = "own"
+    """What a record is compared with: "own", an earlier record of the same gearbox without the fault, by the ratios of
+    the indicators (of spectral_kurtosis by the difference), NA4 and change_rms by its average; or "fleet", the records
+    of healthy gearboxes alone."""
+    between: Annotated[tuple[KeyPath, ...], Field(max_length=500)] = ()
+    """Keys of `[variation.vary]` that differ between two records of one gearbox, such as "operation.torque"; the others
+    differ from gearbox to gearbox."""
     healthy: Annotated[int, Whole(10, MOST_GEARBOXES)] = 64
     """Number of healthy gearboxes, drawn from `[variation]`; without it as many records of the one gearbox, which
     differ by the noise."""

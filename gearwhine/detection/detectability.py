@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from gearwhine.case.units import split_quantity
-from gearwhine.coupling.signals.condition_indicators import SynchronousAverage
 from gearwhine.detection.records import indicator_values, watched_signal
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.detection_probability import Detection, DetectionError, Law, Threshold, detection, threshold
 from gearwhine.variation.quantities import Evaluation
-from gearwhine.variation.samples import Failure, Outcome
+from gearwhine.variation.samples import Failure
 
 
 @dataclass(frozen=True)
@@ -31,6 +30,8 @@ class Monitor:
     false_alarm : float
     law : {"log-normal", "normal", "order"}
     seed : int
+    has_own_baseline : bool
+        Whether a record is compared with an earlier one of the same gearbox.
     """
 
     sensors: tuple[str, ...]
@@ -40,6 +41,7 @@ class Monitor:
     false_alarm: float
     law: Law
     seed: int
+    has_own_baseline: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,60 +186,62 @@ class DetectionResult:
 
 
 @dataclass(frozen=True)
-class _Sample:
-    """A record and the numbers of its noise: of a gearbox that stands for many records there are several."""
+class Observation:
+    """A record of a gearbox, and the one that it is compared with.
+
+    Attributes
+    ----------
+    found, earlier : Evaluation
+    size : float
+        Size of the fault; 0 of a healthy gearbox.
+    noise : int
+        Number of its noise: records of one gearbox alike differ by that alone.
+    """
 
     found: Evaluation
+    earlier: Evaluation
     size: float
     noise: int
 
 
-def detected_parts(
-    monitor: Monitor,
-    reference: Evaluation,
-    healthy: Sequence[Outcome],
-    faulty: Mapping[float, Sequence[Outcome]],
-    repeats: tuple[int, int] = (1, 1),
-) -> tuple[Detectability, ...]:
-    """Find the detectability by every indicator at every sensor.
+def detected_parts(monitor: Monitor, observations: Sequence[Observation]) -> tuple[Detectability, ...]:
+    """Find the detectability by every indicator at every sensor from records without and with the fault.
 
     Parameters
     ----------
     monitor : Monitor
-    reference : Evaluation
-        Record of the gearbox without the fault and without variation, which NA4 refers to.
-    healthy : sequence of Evaluation or Failure
-    faulty : mapping of float to sequence of Evaluation or Failure
-        Records by the size of the fault.
-    repeats : tuple of int
-        Number of noises of each record, of healthy and of faulty ones.
+    observations : sequence of Observation
     """
-    without, afflicted = list[_Sample](), list[_Sample]()
-    number = 0
-    for outcomes, size, repeat, into in (
-        (healthy, 0.0, repeats[0], without),
-        *((outcomes, size, repeats[1], afflicted) for size, outcomes in faulty.items()),
-    ):
-        for outcome in outcomes:
-            for _ in range(repeat):
-                number += 1
-                if isinstance(outcome, Evaluation):
-                    into.append(_Sample(outcome, size, number))
-    sizes = np.array([one.size for one in afflicted])
+    sizes = np.array([one.size for one in observations])
+    healthy = sizes == 0.0
     parts = list[Detectability]()
     for place, sensor in enumerate(monitor.sensors):
-        own: SynchronousAverage = watched_signal(reference, sensor).average
-        both = [[_values(monitor, one, place, own) for one in samples] for samples in (without, afflicted)]
+        rows = [_values(monitor, one, place) for one in observations]
         for column, name in enumerate(monitor.indicators):
-            values, responses = (np.array([row[0][column] for row in rows], dtype=np.float64) for rows in both)
-            reason = next((row[1][column] for row in both[0] if row[1][column]), "")
+            values = np.array([found[column] for found, _ in rows], dtype=np.float64)
+            reasons = [said[column] for (_, said), sound in zip(rows, healthy, strict=True) if sound and said[column]]
             parts.append(
-                detectability(sensor, name, values, sizes, responses, monitor.false_alarm, monitor.law, reason)
+                detectability(
+                    sensor,
+                    name,
+                    values[healthy],
+                    sizes[~healthy],
+                    values[~healthy],
+                    monitor.false_alarm,
+                    monitor.law,
+                    reasons[0] if reasons else "",
+                )
             )
     return tuple(parts)
 
 
-def _values(monitor: Monitor, one: _Sample, place: int, healthy: SynchronousAverage) -> tuple[list[float], list[str]]:
-    rng = np.random.default_rng([monitor.seed, one.noise, place])
-    watched = watched_signal(one.found, monitor.sensors[place], monitor.sensor_noise, monitor.averages, rng, healthy)
+def _values(monitor: Monitor, one: Observation, place: int) -> tuple[list[float], list[str]]:
+    sensor, noise, averages = monitor.sensors[place], monitor.sensor_noise, monitor.averages
+    now, before = (np.random.default_rng([monitor.seed, one.noise, place, record]) for record in (0, 1))
+    if monitor.has_own_baseline:
+        earlier = watched_signal(one.earlier, sensor, noise, averages, before)
+        watched = watched_signal(one.found, sensor, noise, averages, now, earlier.average)
+        return indicator_values(watched, monitor.indicators, earlier)
+    reference = watched_signal(one.earlier, sensor).average
+    watched = watched_signal(one.found, sensor, noise, averages, now, reference)
     return indicator_values(watched, monitor.indicators)

@@ -71,7 +71,19 @@ def watched_signal(
     )
 
 
-def indicator_values(watched: WatchedSignal, indicators: Sequence[str]) -> tuple[list[float], list[str]]:
-    """Return the indicators of a signal, NaN where one is undefined, and the reasons."""
-    both = [INDICATORS[name].value(watched) for name in indicators]
-    return [np.nan if value is None else value for value, _ in both], [reason for _, reason in both]
+def indicator_values(
+    watched: WatchedSignal, indicators: Sequence[str], earlier: WatchedSignal | None = None
+) -> tuple[list[float], list[str]]:
+    """Return the indicators of a signal, NaN where one is undefined, and the reasons.
+
+    With the signal of an earlier record they are compared with those of that one.
+    """
+    values, reasons = list[float](), list[str]()
+    for name in indicators:
+        value, reason = INDICATORS[name].value(watched)
+        if earlier is not None and value is not None and INDICATORS[name].growth != "itself":
+            before, reason = INDICATORS[name].value(earlier)
+            value = None if before is None else INDICATORS[name].grown(value, before)
+        values.append(np.nan if value is None else value)
+        reasons.append(reason)
+    return values, reasons

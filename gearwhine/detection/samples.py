@@ -24,8 +24,9 @@ from gearwhine.solve.machine import plan_of
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Outcome, VariedCase, outcome_of
 
-REFERENCE, HEALTHY, FAULTY = 0.0, 1.0, 2.0
-"""Kinds of samples: the case without its fault and without other changes; a healthy gearbox; a faulty one."""
+REFERENCE, HEALTHY, FAULTY, BASELINE = 0.0, 1.0, 2.0, 3.0
+"""Kinds of samples: the case without its fault and without other changes; a healthy gearbox; a faulty one; an earlier
+record of one of these without the fault."""
 SIGNAL, AVERAGE = "signal of ", "average of "
 """Beginnings of the names of a sample's curves, before that of the sensor."""
 _DIGITS = 9
@@ -117,8 +118,36 @@ def _rounded(values: FloatArray) -> FloatArray:
     return np.asarray(np.round(values, _DIGITS - int(np.ceil(np.log10(largest)))))
 
 
-def detection_points(cube: FloatArray, sizes: Sequence[float], healthy: int, faulty: int) -> FloatArray:
-    """Return the points of a study: the reference, the healthy gearboxes, those of each size, shape (n, 2 + d).
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Samples of a study: the reference first, then the gearboxes, then their earlier records.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2 + d)
+    sizes : ndarray, shape (g,)
+        Size of the fault of each gearbox; 0 of a healthy one.
+    has_baselines : bool
+        Whether each gearbox has an earlier record.
+    """
+
+    points: FloatArray
+    sizes: FloatArray
+    has_baselines: bool
+
+    def gearbox(self, number: int) -> int:
+        """Return the number of a gearbox' sample."""
+        return 1 + number
+
+    def baseline(self, number: int) -> int:
+        """Return the number of the sample that a gearbox is compared with: its earlier record, or the reference."""
+        return 1 + len(self.sizes) + number if self.has_baselines else 0
+
+
+def detection_design(
+    cube: FloatArray, sizes: Sequence[float], healthy: int, faulty: int, between: Sequence[int] | None = None
+) -> Design:
+    """Return the samples of a study.
 
     Parameters
     ----------
@@ -127,8 +156,17 @@ def detection_points(cube: FloatArray, sizes: Sequence[float], healthy: int, fau
     sizes : sequence of float
     healthy, faulty : int
         Numbers of gearboxes without the fault, and at each size.
+    between : sequence of int, optional
+        Coordinates that an earlier record of a gearbox has of its own; None where there are no earlier records.
     """
-    kinds = [HEALTHY] * healthy + [FAULTY] * (faulty * len(sizes))
-    of_each = [0.0] * healthy + [size for size in sizes for _ in range(faulty)]
-    rows = np.column_stack([kinds, of_each, cube[: len(kinds)]])
-    return np.vstack([np.concatenate([[REFERENCE, 0.0], np.full(cube.shape[1], 0.5)]), rows])
+    of_each = np.array([0.0] * healthy + [size for size in sizes for _ in range(faulty)])
+    count, dimensions = len(of_each), cube.shape[1]
+    kinds = np.where(of_each > 0.0, FAULTY, HEALTHY)
+    reference = np.concatenate([[REFERENCE, 0.0], np.full(dimensions, 0.5)])
+    rows = [reference[None], np.column_stack([kinds, of_each, cube[:count]])]
+    if between is not None:
+        earlier = cube[:count].copy()
+        # Those of the gearbox before it: of the same distribution, and of another record.
+        earlier[:, list(between)] = np.roll(cube[:count], 1, axis=0)[:, list(between)]
+        rows.append(np.column_stack([np.full(count, BASELINE), np.zeros(count), earlier]))
+    return Design(np.vstack(rows), of_each, between is not None)

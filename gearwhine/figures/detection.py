@@ -43,6 +43,7 @@ _MOST_RESPONSES = 4
 _MOST_CURVES = 4
 _MOST_SENSORS = 8
 _DETECTED = 0.9
+_LONG_NAME = 24  # letters beyond which the name of an axis is smaller
 _SPREAD = 0.006  # shift of dots beside each other, over the width of the panel
 
 
@@ -123,9 +124,11 @@ def _cell(one: Detectability, factor: float, least: float) -> str:
     return f"{text(one.a90)} ({text(one.a90_95)})"
 
 
-def _axis_of(indicator: str) -> str:
+def _axis_of(found: DetectionResult, indicator: str) -> str:
     """Return the name of an indicator's axis, with its unit."""
     one = INDICATORS[indicator]
+    if found.monitor.has_own_baseline and one.growth != "itself":
+        return f"{one.title}, {'over' if one.growth == 'ratio' else 'less'} earlier"
     return f"{one.title} [m/s²]" if one.key.endswith("_m_per_s2") else one.title
 
 
@@ -175,7 +178,8 @@ def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:
             low, high = (end if np.isfinite(end) else max(shown) for end in (one.threshold.low, one.threshold.high))
             axes.axhspan(low, high, color=RED, alpha=0.12, lw=0.0)
         axes.yaxis.set_major_locator(MaxNLocator(5))
-        axes.set_ylabel(_axis_of(indicator), size=TICK if len(_axis_of(indicator)) > 24 else LABEL)
+        name = _axis_of(found, indicator)
+        axes.set_ylabel(name, size=TICK if len(name) > _LONG_NAME else LABEL)
         seen = "not seen" if one.a90 is None else f"a90 = {_cell(one, factor, min(found.severities))}"
         panel_title(axes, f"{sensor}: {one.undefined or seen}")
     panels[-1].set_xlabel(_size_label(found))
@@ -196,8 +200,8 @@ def _probabilities(title: str, found: DetectionResult) -> Figure:
     figure, panels, sensors = _sheet(
         found,
         "Probability of detection",
-        f"{shortened(title, 40)}; dots: share found of each size; band: above the lower 95 % bound, of the sensor's best "
-        "indicator; dotted: 0.9.",
+        f"{shortened(title, 40)}; dots: share found of each size; band: down to the lower 95 % bound, of the sensor's "
+        "best indicator; dotted: 0.9.",
         foot,
     )
     handles = []

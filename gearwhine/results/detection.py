@@ -70,6 +70,7 @@ DETECTION = (
     Quantity("averages", "monitor.averages"),
     Quantity("false_alarm", "monitor.false_alarm"),
     Quantity("is_varied"),
+    Quantity("has_own_baseline", "monitor.has_own_baseline"),
     Quantity("turns"),
     Quantity("limit_hz", "limit_hz"),
     Rows("detectability", "parts", DETECTABILITY),
@@ -226,11 +227,12 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield f"Gearbox {failure['number']} failed: {failure['message']}"
     noise = document["sensor_noise_m_per_s2"]
     alike = "" if document["is_varied"] else "; no key varies: healthy records of the one gearbox differ by noise alone"
+    against = "; indicators over those of an earlier record of the same gearbox" if document["has_own_baseline"] else ""
     yield (
         f"Averages by the turns of {document['gear']!r}, {document['turns']:.0f} turns simulated, up to "
         f"{document['limit_hz']:.0f} Hz; noise of {noise:.3g} m/s² at each sensor, averaged over "
         f"{document['averages']} turns; a false-alarm rate of {document['false_alarm']:g} of each indicator "
-        f"alone{alike}"
+        f"alone{alike}{against}"
     )
     resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
     failed = f"; {len(document['failed'])} failed" if document["failed"] else ""
