@@ -44,6 +44,7 @@ LEAST_SIGNIFICANCE = 0.01
 """Probability of chance below which values do not follow a model: a normal distribution, a straight line."""
 _DETECTED = 0.9
 _GRID = 201
+_LEAST_RESPONSES = 4
 _NODES = 80
 _FAR = 9.0  # standard deviations beyond which a normal distribution has nothing
 _MOST_ROUNDS = 100
@@ -224,6 +225,8 @@ class SignalResponse:
         Probability by chance of means of equal sizes that lie farther from the line (F-test); None without repeats.
     slope_significance : float
         Probability by chance of a line that rises more steeply.
+    likelihood : float
+        Logarithm of the likelihood of the responses themselves, but for a constant.
     """
 
     coefficients: FloatArray
@@ -235,6 +238,7 @@ class SignalResponse:
     log_response: bool
     lack_of_fit: float | None
     slope_significance: float
+    likelihood: float = 0.0
 
     @property
     def is_sound(self) -> bool:
@@ -282,7 +286,7 @@ def signal_response(
         Where there are fewer than four values, or two sizes.
     """
     x, y = np.asarray(sizes, dtype=np.float64), np.asarray(responses, dtype=np.float64)
-    if len(y) < 4 or len(np.unique(x)) < 2:
+    if len(y) < _LEAST_RESPONSES or len(np.unique(x)) < 2:
         raise DetectionError(f"{len(y)} responses to {len(np.unique(x))} sizes; expected four or more, to two or more")
     positive = y > 0.0 if log_response else np.ones(len(y), dtype=bool)
     if not (np.all(x > 0.0) and np.all(positive) and np.all(np.isfinite(y)) and (limit > 0.0 or not log_response)):
@@ -311,6 +315,8 @@ def signal_response(
         log_response,
         _lack_of_fit(x, values, squares),
         float(stats.t.sf(slope, freedom)),
+        # A density of logarithms is one of the responses over these.
+        -0.5 * len(values) * math.log(squares / len(values)) - (float(values.sum()) if log_response else 0.0),
     )
 
 
@@ -439,7 +445,8 @@ class Detection:
 def detection(sizes: FloatArray, responses: FloatArray, limit: Threshold) -> Detection:
     """Find the probability of detection over the size of a fault from the responses to faults of some sizes.
 
-    By the line of the responses where they follow one that rises; else by hits and misses.
+    By the line of the responses or of their logarithms where they follow one that rises, by the more likely one; else
+    by hits and misses.
 
     Parameters
     ----------
@@ -453,9 +460,10 @@ def detection(sizes: FloatArray, responses: FloatArray, limit: Threshold) -> Det
     """
     x, y = np.asarray(sizes, dtype=np.float64), np.asarray(responses, dtype=np.float64)
     shares = tuple(Share(float(a), int(np.sum(y[x == a] > limit.value)), int(np.sum(x == a))) for a in np.unique(x))
-    log_response = limit.law == "log-normal" and bool(np.all(y > 0.0))
-    line = signal_response(x, y, limit.value, log_response=log_response) if len(y) >= 4 else None
-    if line is not None and line.is_sound:
+    forms = (False, True) if limit.value > 0.0 and np.all(y > 0.0) else (False,)
+    lines = [signal_response(x, y, limit.value, log_response=form) for form in forms if len(y) >= _LEAST_RESPONSES]
+    if sound := [line for line in lines if line.is_sound]:
+        line = max(sound, key=lambda one: one.likelihood)
         return Detection("signal response", line, shares, *_sizes(line, x))
     curves = [hit_miss(x, y > limit.value, log_size=choice) for choice in (False, True)]
     curve = max(curves, key=lambda one: one.likelihood)
