@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.motion_lines import MotionLines
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
+    from gearwhine.detection.detectability import DetectionResult
     from gearwhine.exchange.rexs.notes import Note
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing import HousingModes
@@ -283,6 +284,10 @@ class CaseStudy(Study):
             from gearwhine.variation.inputs import correlation_matrix, varied_inputs
 
             correlation_matrix(varied_inputs(self._source, self.case.variation), self.case.variation)
+        if self.case.detection is not None:
+            from gearwhine.analyses.detection_result import plan_detection
+
+            plan_detection(self.case, self._source)
         checked = check_case(self.case, self.progress, self._source.imported)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 
@@ -707,6 +712,52 @@ class CaseStudy(Study):
             indices=indices,
             widen=widen,
             seed=seed,
+            workers=workers,
+            scheduler=scheduler,
+            fresh=fresh or self.fresh,
+            progress=self.progress,
+        )
+
+    def detect(
+        self,
+        *,
+        folder: str | os.PathLike[str],
+        workers: Annotated[int | None, _AtLeastOne] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> "Result[DetectionResult]":
+        """Which sensor sees the fault of [detection] by which indicator, and from which size on, with what probability.
+
+        Healthy gearboxes give the threshold, those with the fault the probability of detection. A study in the same
+        folder is resumed, with more sizes or another noise, too.
+
+        Parameters
+        ----------
+        folder : path
+            Folder of the gearboxes; those that it holds already are not solved again.
+        workers : int, optional
+            Number of processes (default: number of cores).
+        scheduler : str, optional
+            Address of a running Dask scheduler; its workers replace the local ones.
+        fresh : bool
+            Solve again the gearboxes and modes that the folder holds.
+
+        Raises
+        ------
+        CaseError
+            Where the case has no such fault or sensor, a size is beyond what the model allows, the record holds too few
+            turns, or there are too few healthy gearboxes for the false-alarm rate.
+        gearwhine.coupling.CouplingError
+            Where the gearbox without the fault has no record.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.detection_result import solve_detection
+
+        return solve_detection(
+            self.case,
+            self._source,
+            Path(folder),
             workers=workers,
             scheduler=scheduler,
             fresh=fresh or self.fresh,

@@ -10,9 +10,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.analyses.machine_results import MachineUnderLoad, modes_of_run, motion_document
+from gearwhine.analyses.machine_results import MachineUnderLoad, condition_of, modes_of_run, motion_document
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
+from gearwhine.coupling.analyses.condition_record import bearing_tones
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
@@ -149,8 +150,9 @@ class WholeRun:
             return None
         self._keep_modes()
         motion = self.study.motion(machine, plan, system.modes, keep=self._checkpoints())
-        self.solution = self.solution.with_motion(motion)
-        return motion_document(machine, motion)
+        condition = condition_of(machine, motion)
+        self.solution = self.solution.with_motion(motion, condition, bearing_tones(machine.loaded.machine))
+        return motion_document(machine, motion, condition)
 
     def _keep_modes(self) -> None:
         """Cache the modes before the results, so that a long motion that is resumed need not solve them again."""

@@ -141,6 +141,8 @@ class TransientPlan:
     method : {"newmark", "exact", "auto"}
     modal_coordinates : int
         Number of modes of each shaft, torsional and bending, and of the housing, that are recorded.
+    indicators : bool
+        Whether the results have condition indicators of a machine without damaged teeth, too.
     """
 
     revolutions: float | None = None
@@ -151,6 +153,7 @@ class TransientPlan:
     start: Start = "equilibrium"
     method: Method = "newmark"
     modal_coordinates: int = 0
+    indicators: bool = False
 
     def __post_init__(self) -> None:
         """Require a number of revolutions or a run, a stretch to record, and numbers that can be."""

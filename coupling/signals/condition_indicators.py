@@ -69,6 +69,8 @@ class SynchronousAverage:
         Number of teeth, the order of the mesh frequency.
     harmonics : int
         Number of mesh harmonics that are taken, as far as the samples hold them.
+    others : tuple of int
+        Numbers of teeth of further gears on the shaft, whose mesh harmonics and sidebands are no residual either.
 
     Raises
     ------
@@ -78,6 +80,7 @@ class SynchronousAverage:
     samples: FloatArray
     teeth: int
     harmonics: int = 10
+    others: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the numbers, and that the samples hold the mesh frequency with its sidebands."""
@@ -93,15 +96,24 @@ class SynchronousAverage:
         refuse(findings, CouplingError)
         object.__setattr__(self, "samples", values.copy())
 
+    def _harmonics_of(self, teeth: int) -> list[int]:
+        """Orders of the mesh harmonics of a gear below half the sampling order."""
+        highest = (len(self.samples) - 1) // 2 - 1
+        return [h * teeth for h in range(1, self.harmonics + 1) if h * teeth <= highest]
+
     @cached_property
     def _mesh_orders(self) -> list[int]:
-        """Orders of the mesh harmonics below half the sampling order."""
-        highest = (len(self.samples) - 1) // 2 - 1
-        return [h * self.teeth for h in range(1, self.harmonics + 1) if h * self.teeth <= highest]
+        return self._harmonics_of(self.teeth)
 
     @cached_property
     def _sideband_orders(self) -> list[int]:
-        return [order + side for order in self._mesh_orders for side in (-1, 1)]
+        return _sidebands(self._mesh_orders)
+
+    @cached_property
+    def _left_out(self) -> list[int]:
+        """Orders without which the average is the residual signal: of the shaft, and of all meshes on it."""
+        of_others = [order for teeth in self.others for order in self._harmonics_of(teeth)]
+        return [*_SHAFT_ORDERS, *self._mesh_orders, *of_others]
 
     @cached_property
     def _spectrum(self) -> FloatArray:
@@ -119,12 +131,12 @@ class SynchronousAverage:
     @cached_property
     def residual(self) -> FloatArray:
         """Average without its mean, the mesh harmonics and the first two orders of the shaft."""
-        return self._without([*_SHAFT_ORDERS, *self._mesh_orders])
+        return self._without(self._left_out)
 
     @cached_property
     def difference(self) -> FloatArray:
         """Residual signal without the first-order sidebands of the mesh harmonics."""
-        return self._without([*_SHAFT_ORDERS, *self._mesh_orders, *self._sideband_orders])
+        return self._without([*self._left_out, *_sidebands(self._left_out[len(_SHAFT_ORDERS) :])])
 
     @cached_property
     def regular(self) -> FloatArray:
@@ -186,6 +198,11 @@ class SynchronousAverage:
         rms = float(np.std(self.samples))
         first = [self.amplitude(self.teeth + side) for side in (-1, 1)]
         return sum(first) / rms if rms > 0.0 else None
+
+
+def _sidebands(orders: Sequence[int]) -> list[int]:
+    """First-order sidebands of mesh orders."""
+    return [order + side for order in orders for side in (-1, 1)]
 
 
 def na4(averages: Sequence[SynchronousAverage]) -> float | None:

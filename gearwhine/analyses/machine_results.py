@@ -12,6 +12,8 @@ from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling import stability as coupled_stability
+from gearwhine.coupling.analyses.condition_record import bearing_tones, condition_record
+from gearwhine.coupling.analyses.gear_condition import MachineCondition, machine_condition
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine
 from gearwhine.coupling.analyses.modes_and_responses import (
@@ -42,6 +44,7 @@ from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import add_warnings, joined
+from gearwhine.results.condition import condition_document
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
@@ -232,7 +235,17 @@ def steady_result(machine: MachineUnderLoad, solved: SolvedSteady, progress: Pro
     return machine.origin.result("steady", solved, document, *arrays, figures=figures, options=options)
 
 
-def motion_document(machine: MachineUnderLoad, motion: MachineMotion) -> dict[str, Any]:
+def condition_of(machine: MachineUnderLoad, motion: MachineMotion) -> MachineCondition | None:
+    """Return the condition indicators of a machine where a tooth of it is damaged or its plan asks for them."""
+    plan, damaged = motion.transient.plan, any(gear.gear.faults for gear in machine.loaded.machine.gears)
+    if not (plan.indicators or damaged) or not motion.transient.sensor_spectra:
+        return None
+    return machine_condition(condition_record(motion.transient, bearing_tones(machine.loaded.machine)))
+
+
+def motion_document(
+    machine: MachineUnderLoad, motion: MachineMotion, condition: MachineCondition | None
+) -> dict[str, Any]:
     """Return the document of a motion over time: its numbers, warnings and error estimates."""
     transient, signature, along, loaded = motion.transient, motion.signature, motion.run_signature, machine.loaded
     document = transient_document(transient, signature, along)
@@ -248,6 +261,8 @@ def motion_document(machine: MachineUnderLoad, motion: MachineMotion) -> dict[st
     add_warnings(document, unbalanced_torque_warnings(loaded.machine, loaded.run))
     if along is not None:
         document["run_signature"] = run_signature_document(along)
+    if condition is not None:
+        document["condition"] = condition_document(condition)
     return document
 
 
@@ -266,11 +281,13 @@ def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tupl
 
 def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: CoupledModes) -> Result[RunSolution]:
     """Return the result of a motion over time; ``modes`` are those of the machine, whose instability is told."""
-    document = joined({"title": machine.origin.title}, motion_document(machine, motion))
+    condition = condition_of(machine, motion)
+    document = joined({"title": machine.origin.title}, motion_document(machine, motion, condition))
     add_warnings(document, [*unstable_modes_warnings(coupled_stability(modes)), *modes.warnings])
     machine.add_parts_to(document)
     document = joined(document, origin_document(machine.origin.housing))
-    solved = RunSolution(housing=machine.origin.housing, load=machine.load).with_motion(motion)
+    tones = bearing_tones(machine.loaded.machine)
+    solved = RunSolution(housing=machine.origin.housing, load=machine.load).with_motion(motion, condition, tones)
     return solved.result("simulate", machine.origin, document)
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
@@ -11,6 +11,7 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
 from gearwhine.numerics.progress import Progress
 from gearwhine.output.dataset import LabelledArrays, Labels, labelled
+from gearwhine.results.condition import CONDITION
 from gearwhine.results.gears import GEARS
 from gearwhine.results.housing import HOUSING
 from gearwhine.results.operating_point import LOAD
@@ -22,6 +23,7 @@ from gearwhine.results.system import SYSTEM
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.coupling.analyses.gear_condition import MachineCondition
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
     from gearwhine.coupling.analyses.motion import MachineMotion
@@ -49,12 +51,44 @@ class RunSolution:
     run_signature: RunSignature | None = None
     load: SolvedLoad | None = None
     sound: SolvedSound | None = None
+    condition: MachineCondition | None = None
+    tones_hz: Mapping[str, float] = field(default_factory=dict)
 
-    def with_motion(self, motion: MachineMotion | None) -> Self:
-        """Return the solution with a motion over time and what is read off its record."""
+    def with_motion(
+        self, motion: MachineMotion | None, condition: MachineCondition | None, tones_hz: Mapping[str, float]
+    ) -> Self:
+        """Return the solution with a motion over time, what is read off its record, and the tones of its bearings."""
         if motion is None:
             return self
-        return replace(self, transient=motion.transient, signature=motion.signature, run_signature=motion.run_signature)
+        return replace(
+            self,
+            transient=motion.transient,
+            signature=motion.signature,
+            run_signature=motion.run_signature,
+            condition=condition,
+            tones_hz=tones_hz,
+        )
+
+    def indicators(self, names: Sequence[str] = ()) -> MachineCondition:
+        """Find condition indicators of the gears and bearings by sensor.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Indicators of :data:`gearwhine.coupling.analyses.gear_condition.INDICATORS`; by default all of one record.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where there is no motion, or an indicator is none of them.
+        """
+        from gearwhine.coupling import CouplingError
+        from gearwhine.coupling.analyses.condition_record import condition_record
+        from gearwhine.coupling.analyses.gear_condition import OF_ONE_RECORD, machine_condition
+
+        if self.transient is None:
+            raise CouplingError("condition indicators: expected a motion over time, as of a case with [transient]")
+        return machine_condition(condition_record(self.transient, self.tones_hz), tuple(names) or OF_ONE_RECORD)
 
     def result(self, command: str, origin: Origin, document: dict[str, Any], **written: Any) -> Result[RunSolution]:
         """Return the result of the analyses that were made; ``written`` are further fields of it."""
@@ -83,6 +117,7 @@ class RunSolution:
             (TRANSIENT, None if self.transient is None else TracedTransient(self.transient, self.signature)),
             (RUN_SIGNATURE, self.run_signature),
             (SOUND, self.sound),
+            (CONDITION, self.condition),
             streams=streams,
         )
 

@@ -18,6 +18,7 @@ from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.bearings import Bearing
 from gearwhine.case.box import Box
+from gearwhine.case.detection import Detection
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table, wrong
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
@@ -100,6 +101,8 @@ class Case(Table):
     """Sound that the housing radiates."""
     variation: Variation | None = None
     """Distributions of keys, and limits of what follows from them."""
+    detection: Detection | None = None
+    """Fault that grows, and what is told of it at the sensors."""
     unusual: tuple[Annotated[str, Field(max_length=1000)], ...] = Field(default=(), max_length=MOST_ENTRIES)
     """Key paths, `*` for any entry, whose unlikely values are meant: at them and below them no implausible value is
     warned of. What cannot be stays an error."""
@@ -323,6 +326,7 @@ _PURPOSES = {
     "measured": "frequencies such as ['658 Hz', '1049 Hz'], or a file of them",
     "acoustics": "at least an empty table, for boundary elements in free air",
     "variation": "distributions of keys under [variation.vary]",
+    "detection": "fault = 'gear.pinion.fault.depth' and severities = ['1 mm', '2 mm']",
     "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
 }
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -459,6 +459,8 @@ class Transient(Table):
     modal_coordinates: Annotated[int, Whole(0, 1000)] = 0
     """Number of each rotor's torsional and bending modes, and of the housing's, to record and draw in time and
     frequency."""
+    indicators: StrictBool = False
+    """Condition indicators of gears and bearings at the sensors. Default: where a tooth is damaged."""
 
     @model_validator(mode="after")
     def _something_left(self) -> Transient:
@@ -490,6 +492,7 @@ class Transient(Table):
             self.start,
             self.method,
             self.modal_coordinates,
+            self.indicators,
         )
 
 

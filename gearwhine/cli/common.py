@@ -55,6 +55,7 @@ CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a b
 _LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take; the path leaves room for file names
 _LONGEST_SHOWN = 60
 _ALWAYS_WRITING = (
+    "detect",
     "mesh",
     "render",
     "run",

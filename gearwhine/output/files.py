@@ -129,6 +129,7 @@ COMMANDS = (
     "sound",
     "sweep",
     "vary",
+    "detect",
     "compare",
     "survey",
     "update",

@@ -38,6 +38,7 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
     "steady": (*_DATA, "steady-*.png"),
     "sound": (*_DATA, _SOUND),
     "sweep": (*_DATA, "sweep-*.png", "waterfall-*.png"),
+    "detect": (*_MODES, "detect.nc", "detection-*.png"),
     "vary": (*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
     "run": (
         *(*_DATA, "modes.vtu", *_SHAPES, *_COMPARED, _LOAD, *_SYSTEM, _SOUND),

@@ -23,6 +23,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
     from gearwhine.results import (
         check,
         comparison,
+        detection,
         gears,
         housing,
         modes,
@@ -62,6 +63,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (sound.report, part("sound") or if_command("total_db_a", "sound")),
         (sweep.report, if_command("points", "sweep")),
         (variation.report, if_command("quantities", "vary")),
+        (detection.report, if_command("detectability", "detect")),
         (housing.render_report, if_command("command", "render")),
         (steady_state.report, if_command("motions", "steady")),
     )

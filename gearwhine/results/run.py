@@ -15,7 +15,7 @@ from gearwhine.coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantit
 from gearwhine.housing.storage.netcdf import Variables, reserve_space
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
-from gearwhine.results import comparison, operating_point, sound
+from gearwhine.results import comparison, condition, operating_point, sound
 from gearwhine.results.housing import line_picture, modes_sentence
 from gearwhine.results.line_columns import line_frequency
 from gearwhine.results.motion import (
@@ -881,7 +881,10 @@ def report(document: Document) -> Section:
     )
     if "run_signature" in document:
         sentences.append(_LEVELS)
-    return Section("Motion", (*sentences, *tables), pictures=_PICTURES, inner=_paths(document), curves=_CURVES)
+    inner = _paths(document)
+    if "condition" in document:
+        inner = (*inner, condition.report(document["condition"]))
+    return Section("Motion", (*sentences, *tables), pictures=_PICTURES, inner=inner, curves=_CURVES)
 
 
 def _line_table(document: Document) -> tuple[Table, ...]:
@@ -965,6 +968,8 @@ def _content(document: Document) -> Iterator[str | Table]:
                 f"Orders are fitted to windows of {run['window_turns']} turns of the leading shaft: a resonance passed "
                 "within one turn is lower than it was"
             )
+    if "condition" in document:
+        yield from condition.content(document["condition"])
     if "steps" in document:
         yield (
             f"Transient: {document['steps']} {_STEPS[document['method']]}, "

@@ -14,7 +14,7 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
 from gearwhine.variation.quantities import Evaluation
-from gearwhine.variation.samples import Failure, Outcome, Record, VariedCase, solve_samples
+from gearwhine.variation.samples import FOLDER, Failure, Outcome, Record, Sampled, solve_samples
 from gearwhine.workers import await_workers, code_digest, connected, default_workers
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Solved:
 
 
 def run_samples(
-    varied: VariedCase,
+    varied: Sampled,
     points: FloatArray,
     folder: Path,
     progress: Progress,
@@ -51,12 +51,13 @@ def run_samples(
     workers: int | None = None,
     scheduler: str | None = None,
     fresh: bool = False,
+    place: str = FOLDER,
 ) -> Solved:
     """Solve every sample that the folder does not hold yet; each is on file soon after it is found.
 
     Parameters
     ----------
-    varied : VariedCase
+    varied : Sampled
     points : ndarray, shape (n, d)
         Points of the unit cube.
     folder : path
@@ -68,13 +69,15 @@ def run_samples(
         See :func:`gearwhine.workers.connected`.
     fresh : bool
         Whether to solve samples that the folder holds as well.
+    place : str
+        Folder of the record within the results folder.
 
     Raises
     ------
     CaseError, WorkersError
         Where there are no workers.
     """
-    record = Record(folder, varied.key)
+    record = Record(folder, varied.key, place)
     if fresh:
         record.file.unlink(missing_ok=True)
     # Samples that failed before are tried again.
@@ -110,7 +113,7 @@ def run_samples(
 
 
 def _solved_by_workers(
-    varied: VariedCase,
+    varied: Sampled,
     points: FloatArray,
     batches: Sequence[Sequence[int]],
     folder: Path,
@@ -129,7 +132,7 @@ def _solved_by_workers(
 
 
 def _submitted(
-    client: Client, varied: VariedCase, points: FloatArray, batches: Sequence[Sequence[int]]
+    client: Client, varied: Sampled, points: FloatArray, batches: Sequence[Sequence[int]]
 ) -> dict[Future[Any], Sequence[int]]:
     """Submit every batch."""
     code = code_digest()

@@ -13,12 +13,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 import gearwhine
 from gearwhine.case import Case, CaseError, CaseSource, case_document
+from gearwhine.coupling import Machine
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.failures import explain
 from gearwhine.from_case.given_housing import given_housing, housing_key
@@ -119,15 +120,19 @@ class VariedCase:
         """Find the quantities of a case of the study."""
         if not case.rotor or case.operation is None:
             return evaluate_pairs(solve_pairs(case, None)[0])
-        housing = self.housing
-        # Places of bearings and materials belong to the housing, too.
-        if case.housing is not None and housing_key(given_housing(case, "vary")) != self.housing_key:
-            housing = reduce_housing(case, solve_housing(case, command="vary"))
-        machine = describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+        machine = self.machine(case)
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))
         return evaluate(machine, wanted)
+
+    def machine(self, case: Case) -> Machine:
+        """Return the machine of a case of the study, in the housing of the study where that is its own, too."""
+        housing = self.housing
+        # Places of bearings and materials belong to the housing, too.
+        if case.housing is not None and housing_key(given_housing(case, "vary")) != self.housing_key:
+            housing = reduce_housing(case, solve_housing(case, command="vary"))
+        return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
 
     @cached_property
     def key(self) -> str:
@@ -145,12 +150,23 @@ class VariedCase:
         )
 
 
-def solve_samples(varied: VariedCase, points: Sequence[tuple[int, FloatArray]], code: str) -> list[tuple[int, Outcome]]:
+class Sampled(Protocol):
+    """A case whose samples are solved by their points."""
+
+    @property
+    def key(self) -> str:
+        """Key of all that the samples depend on but their points."""
+
+    def solve(self, point: FloatArray, /) -> Outcome:
+        """Find what is wanted of a sample; errors are returned as failures, not raised."""
+
+
+def solve_samples(varied: Sampled, points: Sequence[tuple[int, FloatArray]], code: str) -> list[tuple[int, Outcome]]:
     """Solve some samples on a worker, by their numbers and points.
 
     Parameters
     ----------
-    varied : VariedCase
+    varied : Sampled
     points : sequence of (int, ndarray)
     code : str
         Digest of the caller's code; other code on the worker could give other numbers.
@@ -168,10 +184,12 @@ class Record:
         Results folder.
     key : str
         Key of all that the samples depend on; a record of another key is another file.
+    place : str
+        Folder of the record within the results folder.
     """
 
-    def __init__(self, folder: Path, key: str) -> None:
-        self.file = folder / FOLDER / f"{key[:16]}.jsonl"
+    def __init__(self, folder: Path, key: str, place: str = FOLDER) -> None:
+        self.file = folder / place / f"{key[:16]}.jsonl"
         self._sound_bytes = 0
 
     def read(self, points: FloatArray) -> dict[int, Outcome]:

@@ -20,7 +20,8 @@ _READERS: dict[str, tuple[str, ...]] = {
     "rotor_analysis": ("check", "rotors", "run"),
     "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary"),
     "update": ("check", "load", "update"),
-    "variation": ("vary",),
+    "variation": ("detect", "vary"),
+    "detection": ("detect",),
 }
 """Commands that read a table of the case; other tables are read by all, but for those of :data:`_UNREAD`."""
 _UNREAD: dict[str, tuple[str, ...]] = {

@@ -1,0 +1,366 @@
+"""Result of a detection study: gearboxes with and without a fault, solved in parallel, and where the fault is seen."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearwhine.analyses.origin import Origin
+from gearwhine.analyses.result import Result
+from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, require
+from gearwhine.case.detection import MOST_GEARBOXES, Detection
+from gearwhine.case.errors import UNSAID, key_of
+from gearwhine.case.model import lacking
+from gearwhine.case.overrides import matching_places, parse_key_path
+from gearwhine.case.variation import Variation
+from gearwhine.coupling import CouplingError
+from gearwhine.coupling.analyses.condition_record import LEAST_TURNS
+from gearwhine.coupling.analyses.gear_condition import INDICATORS, OF_ONE_RECORD
+from gearwhine.coupling.gears import GearError
+from gearwhine.detection.detectability import DetectionResult, Monitor, Observation, detected_parts
+from gearwhine.detection.samples import Design, DetectionCase, detection_design
+from gearwhine.from_case.given_housing import given_housing, housing_key
+from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.distributions import correlated
+from gearwhine.numerics.names import did_you_mean
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.sampling import sobol_points
+from gearwhine.results.detection import detection_dataset, detection_document
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import plan_of, reduce_housing
+from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
+from gearwhine.variation.quantities import Evaluation, Wanted
+from gearwhine.variation.run import run_samples
+from gearwhine.variation.samples import Failure, Outcome, VariedCase
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FOLDER = "detection-samples"
+"""Folder of the record within the results folder."""
+_SPARE_TURNS = 0.5  # that the filters of a record take from its ends
+
+
+@dataclass(frozen=True)
+class PlannedDetection:
+    """A detection study of a case, checked before anything is solved.
+
+    Attributes
+    ----------
+    settings : Detection
+    source : CaseSource
+        Content of the case without the tables of the study.
+    inputs : tuple of Input
+        Varied inputs; none where all gearboxes are alike.
+    variation : Variation
+    between : tuple of int
+        Numbers of the inputs that differ between two records of one gearbox.
+    without : str
+        Change that makes a healthy gearbox.
+    gear : str
+    monitor : Monitor
+    """
+
+    settings: Detection
+    source: CaseSource
+    inputs: tuple[Input, ...]
+    variation: Variation
+    between: tuple[int, ...]
+    without: str
+    gear: str
+    monitor: Monitor
+
+
+def plan_detection(case: Case, source: CaseSource) -> PlannedDetection:
+    """Check the detection study of a case.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no fault, sensor or gear of such a name, a size is beyond what the model allows, the record
+        holds too few turns, or nothing scatters.
+    """
+    settings = case.detection
+    if settings is None:
+        raise lacking(case, "detection", command="detect")
+    require(case, "rotor", "gear_pair", "operation", "transient", command="detect")
+    variation = case.variation or Variation()
+    inputs = varied_inputs(source, variation)
+    correlation_matrix(inputs, variation)
+    if not inputs and settings.sensor_noise == 0.0:
+        expected = "noise above 0, or distributions under [variation.vary]: without scatter there is no threshold"
+        raise CaseError([Problem("detection.sensor_noise", 0.0, expected)])
+    sensors, gear = _sensors(case, settings), _gear(case, settings)
+    without = _healthy_change(case, settings)
+    plain = replace(source, written={key: table for key, table in source.written.items() if key not in _OWN})
+    plain = replace(plain, changes=tuple(text for text in source.changes if text.partition(".")[0] not in _OWN))
+    _require_severities(plain, settings, without)
+    _require_turns(case, gear)
+    monitor = Monitor(
+        sensors,
+        settings.indicators or (tuple(INDICATORS) if settings.baseline == "own" else OF_ONE_RECORD),
+        settings.sensor_noise,
+        settings.averages,
+        settings.false_alarm,
+        settings.threshold,
+        settings.seed,
+        settings.baseline == "own",
+    )
+    between = _between(source, variation, settings, inputs)
+    return PlannedDetection(settings, plain, inputs, variation, between, without, gear, monitor)
+
+
+_OWN = ("detection", "variation")
+
+
+def solve_detection(
+    case: Case,
+    source: CaseSource,
+    folder: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[DetectionResult]:
+    """Solve the gearboxes of a detection study, and find where its fault is seen.
+
+    Parameters
+    ----------
+    case : Case
+        Case with its detection study.
+    source : CaseSource
+        Content that the case is made of.
+    folder : path
+        Folder of the samples; those that it holds already are not solved again.
+    workers, scheduler
+        As of :meth:`gearwhine.case_study.CaseStudy.detect`.
+    fresh : bool
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        See :func:`plan_detection`.
+    gearwhine.coupling.CouplingError
+        Where the gearbox without the fault has no record.
+    gearwhine.failures.WorkersError
+        Where the processes do not start.
+    """
+    start = time.perf_counter()
+    planned = plan_detection(case, source)
+    settings, monitor = planned.settings, planned.monitor
+    varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
+    housing = None
+    if case.housing is not None:
+        housing = solve_housing(case, progress, command="detect", folder=folder, fresh=fresh)
+        varied = replace(
+            varied, housing=reduce_housing(case, housing), housing_key=housing_key(given_housing(case, "detect"))
+        )
+    written = {size: _text(value) for size, value in zip(settings.sizes, settings.severities, strict=True)}
+    study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear)
+    # Gearboxes that are all alike have one record, and as many noises.
+    is_varied = bool(planned.inputs)
+    healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
+    cube = _cube(planned, healthy + faulty * len(written))
+    between = planned.between if is_varied and monitor.has_own_baseline else None
+    design = detection_design(cube, settings.sizes, healthy, faulty, between)
+    points = design.points
+    progress("the gearbox without the fault")
+    first = run_samples(study, points[:1], folder, workers=1, fresh=fresh, place=FOLDER, progress=silent)
+    if isinstance(reference := first.outcomes[0], Failure):
+        raise CouplingError(f"the gearbox without the fault: {reference.message}")
+    solved = run_samples(study, points, folder, progress, workers=workers, scheduler=scheduler, place=FOLDER)
+    outcomes = solved.outcomes
+    progress("thresholds and probabilities of detection")
+    parts = detected_parts(monitor, list(_observations(design, outcomes, settings, is_varied=is_varied)))
+    result = DetectionResult(
+        fault=settings.fault,
+        gear=planned.gear,
+        severities=written,
+        monitor=monitor,
+        is_varied=is_varied,
+        turns=reference.numbers["turns"],
+        limit_hz=reference.numbers["limit_hz"],
+        parts=parts,
+        failures={number: one for number, one in enumerate(outcomes) if isinstance(one, Failure)},
+        samples=len(points),
+        resumed=solved.resumed - (0 if first.resumed else 1),
+    )
+    return _result(Origin(case.title, case=case, housing=housing), result, start)
+
+
+def _observations(
+    design: Design, outcomes: Sequence[Outcome], settings: Detection, *, is_varied: bool
+) -> Iterator[Observation]:
+    """Yield the records with those that they are compared with; of a gearbox that does not vary with many noises."""
+    noise = 0
+    for number, size in enumerate(design.sizes.tolist()):
+        found, earlier = outcomes[design.gearbox(number)], outcomes[design.baseline(number)]
+        for _ in range(1 if is_varied else settings.faulty if size else settings.healthy):
+            noise += 1
+            if isinstance(found, Evaluation) and isinstance(earlier, Evaluation):
+                yield Observation(found, earlier, size, noise)
+
+
+def _result(origin: Origin, result: DetectionResult, start: float) -> Result[DetectionResult]:
+    document = {"title": origin.title} | detection_document(result)
+    document["seconds"] = {"total": time.perf_counter() - start}
+    dataset = detection_dataset(result, origin.title)
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures.detection import draw_detection
+
+        return draw_detection(origin.title, result)
+
+    return Result(
+        "detect",
+        origin.case,
+        result,
+        document,
+        _arrays=lambda: dataset,
+        _figures=figures,
+        _data_file="detect.nc",
+        _housing=origin.housing,
+        _started=start,
+        _title=origin.title,
+    )
+
+
+def _cube(planned: PlannedDetection, count: int) -> FloatArray:
+    """Return a point of the unit cube for each gearbox, shape (n, d)."""
+    if count > MOST_GEARBOXES:
+        raise CaseError([Problem("detection.faulty", planned.settings.faulty, f"{MOST_GEARBOXES} gearboxes in all")])
+    if not planned.inputs:
+        return np.empty((count, 0))
+    correlation = correlation_matrix(planned.inputs, planned.variation)
+    points = sobol_points(count, len(planned.inputs), planned.settings.seed)
+    return points if correlation is None else correlated(points, correlation)
+
+
+def _text(written: str | float) -> str:
+    return written if isinstance(written, str) else repr(written)
+
+
+def _between(source: CaseSource, variation: Variation, settings: Detection, inputs: Sequence[Input]) -> tuple[int, ...]:
+    """Return the numbers of the inputs that differ between two records of one gearbox."""
+    problems = [
+        Problem(
+            key_of(("detection", "between", number)),
+            key,
+            f"a key of [variation.vary], as it stands there{did_you_mean(key, variation.vary)}",
+        )
+        for number, key in enumerate(settings.between)
+        if key not in variation.vary
+    ]
+    if problems:
+        raise CaseError(problems)
+    chosen = variation.model_copy(update={"vary": {key: variation.vary[key] for key in settings.between}})
+    names = {one.name for one in varied_inputs(source, chosen)}
+    return tuple(number for number, one in enumerate(inputs) if one.name in names)
+
+
+def _sensors(case: Case, settings: Detection) -> tuple[str, ...]:
+    """Return the sensors that are asked for, by default all."""
+    table = case.housing or case.reduced_housing
+    names = tuple(sensor.name for sensor in table.sensor) if table is not None else ()
+    if not names:
+        raise CaseError([Problem("housing.sensor", UNSAID, "a sensor or more, which 'detect' listens to")])
+    problems = [
+        Problem(key_of(("detection", "sensors", number)), name, f"one of {', '.join(names)}{did_you_mean(name, names)}")
+        for number, name in enumerate(settings.sensors)
+        if name not in names
+    ]
+    if problems:
+        raise CaseError(problems)
+    return tuple(dict.fromkeys(settings.sensors)) or names
+
+
+def _gear(case: Case, settings: Detection) -> str:
+    """Return the gear by whose shaft signals are averaged."""
+    names = [gear.name for gear in case.gear]
+    steps = parse_key_path(settings.fault) or ()
+    of_fault = steps[1] if len(steps) > 1 and steps[0] == "gear" else ""
+    if of_fault.isdecimal() and of_fault not in names and int(of_fault) < len(names):
+        of_fault = names[int(of_fault)]
+    chosen = settings.gear or (of_fault if of_fault in names else case.gear_pair[0].driver)
+    if chosen not in names:
+        expected = f"the name of a gear: {', '.join(names)}{did_you_mean(chosen, names)}"
+        raise CaseError([Problem("detection.gear", chosen, expected)])
+    return chosen
+
+
+def _healthy_change(case: Case, settings: Detection) -> str:
+    """Return the change that takes the fault from the case; empty where its key is of no damaged tooth."""
+    steps = parse_key_path(settings.fault) or ()
+    document = case_document(case)
+    if "*" in steps:
+        raise CaseError([Problem("detection.fault", settings.fault, "the key of one fault, without *")])
+    if "fault" not in steps:
+        if not any(True for _ in matching_places(document, steps)):
+            raise CaseError([Problem("detection.fault", settings.fault, f"a key of the case; {_KEYS}")])
+        return ""
+    place = steps.index("fault")
+    # One fault may stand as a table, which the case holds as a list.
+    inside = steps[place + 1 :]
+    listed = inside if inside and inside[0].isdecimal() else ("0", *inside)
+    if not any(True for _ in matching_places(document, (*steps[: place + 1], *listed))):
+        raise CaseError([Problem("detection.fault", settings.fault, f"the key of a fault that the case has; {_KEYS}")])
+    end = place + 2 if inside and inside[0].isdecimal() else place + 1
+    return ".".join(f'"{step}"' if "." in step else step for step in steps[:end]) + "="
+
+
+_KEYS = 'such as "gear.pinion.fault.depth" of fault = { kind = "crack", tooth = 5, depth = "1 mm" }'
+
+
+def _require_severities(source: CaseSource, settings: Detection, without: str) -> None:
+    """Refuse sizes that the case or the model of a damaged tooth does not allow.
+
+    Raises
+    ------
+    CaseError
+    """
+    problems = list[Problem]()
+    if without:
+        source.changed_case([without])
+    for number, written in enumerate(settings.severities):
+        key = key_of(("detection", "severities", number))
+        try:
+            changed = source.changed_case([f"{settings.fault}={_text(written)}"])
+            for gear in changed.parts.gears.values():
+                ends = np.array([gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)])
+                for fault in gear.faults:
+                    fault.extra_compliance(gear, ends)
+        except CaseError as error:
+            problems += [Problem(key, written, f"a size that the case takes: {one.expected}") for one in error.problems]
+        except GearError as error:
+            problems.append(Problem(key, written, f"a size that the model takes: {error}"))
+    if problems:
+        raise CaseError(problems)
+
+
+def _require_turns(case: Case, gear: str) -> None:
+    """Refuse a record at constant speed that holds too few turns of the gear's shaft.
+
+    Raises
+    ------
+    CaseError
+    """
+    plan = plan_of(case)
+    shaft = next(one.rotor for one in case.gear if one.name == gear)
+    if plan.revolutions is None or shaft is None:
+        return
+    ratio = abs(float(case.parts.train.ratios.get(shaft, 0)))
+    turns = ratio * (plan.revolutions - plan.discarded)
+    if ratio > 0.0 and turns < LEAST_TURNS + _SPARE_TURNS:
+        least = plan.discarded + (LEAST_TURNS + _SPARE_TURNS) / ratio
+        expected = (
+            f"{least:.4g} or more: beyond the {plan.discarded:g} that are discarded, {LEAST_TURNS} whole turns of "
+            f"{shaft!r} are averaged, and the filter of the record takes a part of one"
+        )
+        raise CaseError([Problem("transient.revolutions", plan.revolutions, expected)])

@@ -1,0 +1,172 @@
+"""Gearboxes with and without a fault: the case of each, and the record of its sensors' condition.
+
+A sample's point is a point of the unit cube with two numbers before it: its kind and the size of its fault. The samples
+of a size do not depend on the other sizes of a study, so that a study with a further one solves that alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gearwhine.case import Case
+from gearwhine.coupling.analyses.condition_record import condition_record
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.transient import solve_transient
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.arrays import FloatArray
+from gearwhine.solve.machine import plan_of
+from gearwhine.variation.quantities import Evaluation
+from gearwhine.variation.samples import Outcome, VariedCase, outcome_of
+
+REFERENCE, HEALTHY, FAULTY, BASELINE = 0.0, 1.0, 2.0, 3.0
+"""Kinds of samples: the case without its fault and without other changes; a healthy gearbox; a faulty one; an earlier
+record of one of these without the fault."""
+SIGNAL, AVERAGE = "signal of ", "average of "
+"""Beginnings of the names of a sample's curves, before that of the sensor."""
+_DIGITS = 9
+
+
+@dataclass(frozen=True, eq=False)
+class DetectionCase:
+    """A case with a fault of some sizes in gearboxes that vary.
+
+    Attributes
+    ----------
+    varied : VariedCase
+        The case with its varied inputs, of which there may be none.
+    fault : str
+        Key of the fault's size.
+    without : str
+        Change ``key.path=value`` that makes a healthy gearbox; empty where the case is one.
+    written : dict of float to str
+        Sizes as the case writes them, by their value in SI.
+    gear : str
+        Gear by whose shaft signals are averaged.
+    """
+
+    varied: VariedCase
+    fault: str
+    without: str
+    written: dict[float, str]
+    gear: str
+
+    def case(self, point: FloatArray) -> Case:
+        """Return the case of a sample at a point (2 + d,).
+
+        Raises
+        ------
+        CaseError
+            Where its values make no machine.
+        """
+        kind, size = point[:2].tolist()
+        changes = [] if kind == REFERENCE else self.varied.overrides(point[2:])
+        if kind == FAULTY:
+            changes.append(f"{self.fault}={self.written[size]}")
+        elif self.without:
+            changes.append(self.without)
+        return self.varied.source.changed_case(changes)
+
+    def solve(self, point: FloatArray) -> Outcome:
+        """Find the record of a sample; errors are returned as failures, not raised."""
+        return outcome_of(lambda: self.evaluation(self.case(point)))
+
+    def evaluation(self, case: Case) -> Evaluation:
+        """Find the record of a case of the study.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where the gear has no average, or the machine cannot be solved.
+        """
+        machine, plan = self.varied.machine(case), plan_of(case)
+        load = find_load(machine, is_needed=case.parts.needs_operating_point)[0] if machine.is_loaded else None
+        loaded = load_machine(machine, None if load is None else load.point, plan.run)
+        record = condition_record(solve_transient(loaded.coupled, plan))
+        gear = next(one for one in record.gears if one.gear == self.gear)
+        if gear.undefined:
+            raise CouplingError(f"no average of gear {self.gear!r}: {gear.undefined}")
+        numbers = {
+            "limit_hz": record.limit_hz,
+            "interval_s": record.interval,
+            "turn_hz": gear.turn_hz,
+            "teeth": float(gear.teeth),
+            "steady": float(record.is_steady),
+            "turns": float(gear.turns),
+        }
+        numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
+        curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}
+        curves |= {f"{AVERAGE}{name}": _rounded(record.averages[gear.shaft, name]) for name in record.sensors}
+        return Evaluation(numbers, curves)
+
+    @cached_property
+    def key(self) -> str:
+        """Key of all that the samples depend on but their points."""
+        return content_key({"varied": self.varied.key, "fault": [self.fault, self.without, self.gear]})
+
+
+def _rounded(values: FloatArray) -> FloatArray:
+    """Round a curve to nine digits of its largest value, which its file then holds in half the room."""
+    largest = float(np.abs(values).max(initial=0.0))
+    if largest == 0.0:
+        return values
+    return np.asarray(np.round(values, _DIGITS - int(np.ceil(np.log10(largest)))))
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Samples of a study: the reference first, then the gearboxes, then their earlier records.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2 + d)
+    sizes : ndarray, shape (g,)
+        Size of the fault of each gearbox; 0 of a healthy one.
+    has_baselines : bool
+        Whether each gearbox has an earlier record.
+    """
+
+    points: FloatArray
+    sizes: FloatArray
+    has_baselines: bool
+
+    def gearbox(self, number: int) -> int:
+        """Return the number of a gearbox' sample."""
+        return 1 + number
+
+    def baseline(self, number: int) -> int:
+        """Return the number of the sample that a gearbox is compared with: its earlier record, or the reference."""
+        return 1 + len(self.sizes) + number if self.has_baselines else 0
+
+
+def detection_design(
+    cube: FloatArray, sizes: Sequence[float], healthy: int, faulty: int, between: Sequence[int] | None = None
+) -> Design:
+    """Return the samples of a study.
+
+    Parameters
+    ----------
+    cube : ndarray, shape (m, d)
+        Points of the unit cube, one for each gearbox: those with a fault are other ones than the healthy ones.
+    sizes : sequence of float
+    healthy, faulty : int
+        Numbers of gearboxes without the fault, and at each size.
+    between : sequence of int, optional
+        Coordinates that an earlier record of a gearbox has of its own; None where there are no earlier records.
+    """
+    of_each = np.array([0.0] * healthy + [size for size in sizes for _ in range(faulty)])
+    count, dimensions = len(of_each), cube.shape[1]
+    kinds = np.where(of_each > 0.0, FAULTY, HEALTHY)
+    reference = np.concatenate([[REFERENCE, 0.0], np.full(dimensions, 0.5)])
+    rows = [reference[None], np.column_stack([kinds, of_each, cube[:count]])]
+    if between is not None:
+        earlier = cube[:count].copy()
+        # Those of the gearbox before it: of the same distribution, and of another record.
+        earlier[:, list(between)] = np.roll(cube[:count], 1, axis=0)[:, list(between)]
+        rows.append(np.column_stack([np.full(count, BASELINE), np.zeros(count), earlier]))
+    return Design(np.vstack(rows), of_each, between is not None)
