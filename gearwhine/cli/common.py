@@ -56,6 +56,7 @@ _LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take;
 _LONGEST_SHOWN = 60
 _ALWAYS_WRITING = (
     "mesh",
+    "optimise",
     "render",
     "run",
     "survey",

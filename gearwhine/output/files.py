@@ -129,6 +129,7 @@ COMMANDS = (
     "sound",
     "sweep",
     "vary",
+    "optimise",
     "compare",
     "survey",
     "update",

@@ -26,6 +26,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         gears,
         housing,
         operating_point,
+        optimisation,
         rotors,
         run,
         sound,
@@ -60,6 +61,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (sound.report, part("sound") or if_command("total_db_a", "sound")),
         (sweep.report, if_command("points", "sweep")),
         (variation.report, if_command("quantities", "vary")),
+        (optimisation.report, if_command("designs", "optimise")),
         (housing.render_report, if_command("command", "render")),
         (steady_state.report, if_command("motions", "steady")),
     )

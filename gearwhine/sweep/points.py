@@ -16,7 +16,9 @@ from gearwhine.output import file_stems
 from gearwhine.output.files import with_contents
 from gearwhine.workers import code_digest
 
-_WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "provenance"})
+_WITHOUT_EFFECT = frozenset(
+    {"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "optimisation", "provenance"}
+)
 """Tables that no transient depends on."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 

@@ -18,9 +18,10 @@ _READERS: dict[str, tuple[str, ...]] = {
     "acoustics": ("check", "load", "run", "simulate", "sound", "sweep"),
     "measured": ("check", "compare", "render", "run", "update"),
     "rotor_analysis": ("check", "rotors", "run"),
-    "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary"),
+    "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary", "optimise"),
     "update": ("check", "load", "update"),
-    "variation": ("vary",),
+    "variation": ("vary", "optimise"),
+    "optimisation": ("optimise",),
 }
 """Commands that read a table of the case; other tables are read by all, but for those of :data:`_UNREAD`."""
 _UNREAD: dict[str, tuple[str, ...]] = {
