@@ -124,11 +124,11 @@ def solve_optimisation(
     goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)
     _require_library(goals, settings)
     coordinates = start_point(plain, inputs)
-    kept = Evaluations(proposed, folder, workers, scheduler, fresh=fresh, progress=progress)
+    evaluated = Evaluations(proposed, folder, workers, scheduler, fresh=fresh, progress=progress)
 
     def tried(points: FloatArray, to_come: int) -> list[Design]:
         rows = np.vstack([_with_scatter(point, scatter) for point in points])
-        outcomes = kept.of(rows, to_come * len(scatter))
+        outcomes = evaluated.of(rows, to_come * len(scatter))
         groups = [outcomes[place : place + len(scatter)] for place in range(0, len(rows), len(scatter))]
         found = [[one.numbers for one in group if isinstance(one, Evaluation)] for group in groups]
         return [
@@ -136,7 +136,7 @@ def solve_optimisation(
             for point, numbers, group in zip(points, found, groups, strict=True)
         ]
 
-    with kept.opened():
+    with evaluated.opened():
         (start,) = tried(np.full((1, len(inputs)), AS_WRITTEN), 0)
         designs, ended = _searched(inputs, goals, settings, coordinates, tried, progress)
     document = case_document(plain.changed_case())
@@ -149,7 +149,7 @@ def solve_optimisation(
         designs=tuple(designs),
         ended=ended,
         gearboxes=len(scatter),
-        resumed=kept.resumed,
+        resumed=evaluated.resumed,
     )
     if optimisation.verify and case.transient is not None and case.transient.run is None:
         optimised = replace(optimised, verification=_verification(proposed, optimised, case, progress))
@@ -160,7 +160,9 @@ def solve_optimisation(
         for stem, number in _written_designs(optimised).items():
             made = proposed.case(_as_designed(optimised.designs[number], proposed))
             title = f"{origin.title}: design {number}".strip(": ")
-            text = dump_case(made.model_copy(update={"title": title}))
+            # With its scatter and its aims, so that it can be varied, and searched from.
+            kept = {"title": title, "variation": case.variation, "optimisation": case.optimisation}
+            text = dump_case(made.model_copy(update=kept))
             (place / f"{stem}.toml").write_text(text, encoding="utf-8")
         return {}
 
