@@ -49,7 +49,7 @@ def draw_optimisation(title: str, optimised: Optimised) -> Iterator[tuple[str, F
     yield "optimise-convergence", _convergence(begins, optimised)
     if optimised.goals.count > 1:
         yield "optimise-front", _fronts(begins, optimised)
-    yield "optimise-keys", _over_keys(begins, optimised)
+    yield "optimise-keys", _over_keys(optimised)
 
 
 def _masks(optimised: Optimised) -> tuple[Mask, Mask]:
@@ -78,7 +78,7 @@ def _set_label(axes: Axes, text: str, *, across: bool) -> None:
 def _convergence(begins: str, optimised: Optimised) -> Figure:
     aims = list(range(len(optimised.goals.aims)))[:_MOST_PANELS]
     figure = sheet(
-        HEAD + FOOT + len(aims) * _HEIGHT + (len(aims) - 1) * _GAP,
+        HEAD + _TITLES + FOOT + len(aims) * _HEIGHT + (len(aims) - 1) * _GAP,
         "Convergence",
         f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start.",
     )
@@ -102,7 +102,7 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
         axes.axhline(factor * float(optimised.start.aims[place]), color=GREY, lw=0.9, ls="--")
         axes.set_xlabel("design")
         axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-        _set_label(axes, _label(optimised, place), across=False)
+        panel_title(axes, _label(optimised, place))
     return figure
 
 
@@ -132,7 +132,7 @@ def _fronts(begins: str, optimised: Optimised) -> Figure:
     return figure
 
 
-def _over_keys(begins: str, optimised: Optimised) -> Figure:
+def _over_keys(optimised: Optimised) -> Figure:
     """Draw the first aim over each designed key."""
     inputs = optimised.inputs[:_MOST_PANELS]
     columns = min(len(inputs), 2)
@@ -140,7 +140,7 @@ def _over_keys(begins: str, optimised: Optimised) -> Figure:
     figure = sheet(
         HEAD + _TITLES + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
         "Designs by their keys",
-        f"{begins}{_label(optimised, 0)}; blue: within the limits, red: beyond, ring: best.",
+        f"{_label(optimised, 0)}; blue: within the limits, red: beyond, ring: best.",
     )
     within, beyond = _masks(optimised)
     values, points = _values(optimised, 0), optimised.values()
@@ -153,8 +153,7 @@ def _over_keys(begins: str, optimised: Optimised) -> Figure:
         else:
             pair = panel_pair(figure, bottom, _HEIGHT)
             axes = pair[column]
-            if number == len(inputs) - 1 and column == 0:
-                pair[1].remove()
+            pair[1 - column].remove()
         unit, scale = shown_unit(one.unit)
         at = scale * points[:, number]
         axes.plot(at[beyond], values[beyond], ".", color=RED, ms=2.5, alpha=0.6)

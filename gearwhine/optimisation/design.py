@@ -263,11 +263,10 @@ def require_scatter(inputs: Sequence[DesignInput], source: CaseSource, variation
         Of a variation that cannot be, too.
     """
     varied_inputs(source, variation)
-    words = {path: one.name for one in inputs for part in (one, *one.along) if part.words for path, _ in part.keys}
+    words = {path for one in inputs for part in (one, *one.along) if part.words for path, _ in part.keys}
+    expected = "no scatter of {}, which [optimisation.design] takes from a list of words or whole numbers"
     problems = [
-        Problem(
-            key_of(("variation", "vary", one.name)), UNSAID, f"none of {path}, whose values are chosen by {words[path]}"
-        )
+        Problem(key_of(("variation", "vary", one.name)), UNSAID, expected.format(path))
         for one, _ in scatter_inputs(source, variation)
         for path, _ in one.keys
         if path in words

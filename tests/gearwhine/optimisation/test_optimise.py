@@ -141,6 +141,47 @@ def test_a_quantile_takes_the_side_that_is_worse(tmp_path: Path) -> None:
     assert found.document["aims"][0]["designs"][0] == pytest.approx(240.0 + 0.8 * (second + high), rel=5e-3)
 
 
+def test_a_designed_key_scatters_about_its_designed_value(tmp_path: Path) -> None:
+    """F1 is designed and scatters with 20 N about the design, whatever the mean of its distribution in the case is."""
+    scatter = SCATTER.replace("deviations = 2", "deviations = 3").replace(KEYS[1], KEYS[0])
+    text = (SHAFT + scatter).replace('["500 N", "50 N"]', '["0.9 kN", "20 N"]')
+    found = _optimised(tmp_path, text, evaluations=20)
+    drawn = Normal(0.0, 20.0).quantile(_points(64, 1)[:, 0])
+    forces = found.dataset["input_value"].values
+    mean = forces @ [0.8, 0.2] + 0.8 * drawn.mean()
+    reach = 3.0 * 0.8 * drawn.std(ddof=1)
+    values = found.dataset["value"].sel(quantity=LEFT).values
+    assert values == pytest.approx(np.stack([mean - reach, mean + reach], axis=1), rel=1e-9)
+    # The start scatters as the case says, about 900 N.
+    start = found.solved.start.sides[LEFT]
+    assert np.mean(start) == pytest.approx(0.8 * (900.0 + drawn.mean()) + 0.2 * 500.0, rel=1e-9)
+
+
+def test_designs_with_words_have_no_scatter(tmp_path: Path) -> None:
+    text = (SHAFT + SCATTER).replace('range = ["100 N", "900 N"]', "values = [100, 900]")
+    with pytest.raises(CaseError, match="no scatter of"):
+        _optimised(tmp_path, text)
+
+
+def test_a_tolerance_zone_lies_about_the_designed_length(tmp_path: Path) -> None:
+    """k6 of ISO 286-2 is 2 to 15 µm above 20 and 30 mm: the mass ρ π d² l / 4 tells the diameters that were drawn."""
+    key = "rotor.shaft.segments[0].diameter"
+    text = SHAFT[: SHAFT.index("[optimisation]")] + (
+        "[optimisation]\n[optimisation.robust]\nsamples = 32\nquantile = 0.9\n"
+        f'[optimisation.design]\n"{key}" = {{ values = ["30 mm", "20 mm"] }}\n'
+        '[optimisation.aim]\n"rotor.shaft.mass_kg" = { sense = "least" }\n'
+        f'[variation.vary]\n"{key}" = {{ fit = "k6" }}\n'
+    )
+    found = _optimised(tmp_path, text)
+    masses = found.dataset["value"].sel(quantity="rotor.shaft.mass_kg").values
+    deviations = np.sqrt(4.0 * masses / (np.pi * 7850.0 * 0.5)) - np.array([[0.030], [0.020]])
+    assert np.all(deviations > 2e-6)
+    assert np.all(deviations < 15e-6)
+    assert deviations.mean(axis=1) == pytest.approx(8.5e-6, abs=1e-6)
+    assert np.all(np.diff(deviations, axis=1) > 2e-6)
+    assert found.document["keys"][0]["designs"] == ["20 mm"]
+
+
 def test_limits_that_nothing_meets_are_named_with_what_is_missing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -380,3 +421,71 @@ def test_the_command_writes_designs_that_give_their_values_again(
     assert forces[1] == pytest.approx(document["aims"][0]["designs"][0], rel=1e-9)
     assert run_command(["report", str(out)]) == 0
     assert "Optimised design" in (out / "report.html").read_text()
+
+
+SMALL = """
+[optimisation]
+method = "grid"
+speed = ["2500 rpm", "5500 rpm"]
+[optimisation.design]
+"housing.box.wall" = { values = ["8 mm", "12 mm"] }
+"gear.pinion.helix_angle" = { values = ["0 deg", "10 deg"], with = { "gear.wheel.helix_angle" = ["0 deg", "-10 deg"], \
+"gear.*.module" = ["3.175 mm", "3.12676460 mm"] } }
+"gear.*.tip_relief.amount" = { range = ["10 um", "30 um"], levels = 2 }
+[optimisation.aim]
+"sensor.*.level_db" = { sense = "least" }
+[optimisation.limit]
+"housing.mass_kg" = { at_most = 50 }
+""".replace("\\\n", "")
+
+
+def test_designs_of_walls_and_gears_equal_the_single_calculations_and_the_transient_is_that_of_simulate(
+    tmp_path: Path,
+) -> None:
+    bundled = bundled_case("small-gearbox")
+    assert bundled is not None
+    thrust = "[[0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, '1e8 N/m', 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0]]"
+    plain = 'stiffness = { xx = "1.2e8 N/m", yy = "1.2e8 N/m" }\ndamping = { xx = "500 N*s/m", yy = "500 N*s/m" }'
+    held = f"stiffness = {{ matrix = {thrust} }}".replace("[[0,", "[['1.2e8 N/m',").replace(
+        "], [0, 0, 0, 0, 0], [0, 0, '1e8", "], [0, '1.2e8 N/m', 0, 0, 0], [0, 0, '1e8"
+    )
+    text = bundled.read_text().replace(plain, held)
+    short = ["housing.box.mesh_size=60 mm", "transient.revolutions=2", "transient.discard=1"]
+    study = _study(tmp_path, text + SMALL, short)
+    found = study.optimise(folder=tmp_path / "out", workers=1)
+    assert found.document["designs"] == 8
+    assert found.document["failed"] == []
+    levels = found.dataset["value"].sel(side="high")
+    # The last one: a thick wall, oblique teeth with their module, much relief.
+    last = [
+        "housing.box.wall=12 mm",
+        "gear.pinion.helix_angle=10 deg",
+        "gear.wheel.helix_angle=-10 deg",
+        "gear.*.module=3.12676460 mm",
+        "gear.*.tip_relief.amount=30 um",
+    ]
+    single = study.changed(last)
+    housing = single.modes().document
+    assert float(levels.sel(quantity="housing.mass_kg")[7]) == pytest.approx(housing["mass_kg"], rel=1e-9)
+    for sensor in ("top", "right wall"):
+        at_speeds = []
+        for speed in (2500, 5500):
+            lines = single.changed([f"operation.speed={speed} rpm"]).system().document["mesh_lines"]
+            sizes = np.array([line["sensor_acceleration_m_per_s2"]["together"][sensor] for line in lines])
+            at_speeds.append(20.0 * np.log10(np.sqrt(0.5 * np.sum(sizes**2)) / 1e-6))
+        assert float(levels.sel(quantity=f"sensor.{sensor}.level_db")[7]) == pytest.approx(max(at_speeds), abs=1e-6)
+    aims = found.dataset["aim_value"].values[:, 0]
+    both = [levels.sel(quantity=f"sensor.{sensor}.level_db").values for sensor in ("top", "right wall")]
+    assert np.array_equal(aims, np.max(both, axis=0))
+    assert found.document["aims"][0]["designs"][0] == aims.min()
+    # Start and best in motion.
+    checked = found.document["verification"]
+    assert checked["speeds_rpm"] == pytest.approx([2500.0, 5500.0])
+    motion = {"top": [], "right wall": []}
+    for speed in (2500, 5500):
+        for sensor in study.changed([f"operation.speed={speed} rpm"]).simulate().document["sensors"]:
+            motion[sensor["name"]].append(20.0 * np.log10(sensor["rms_m_per_s2"] / 1e-6))
+    for sensor, of_speeds in motion.items():
+        assert checked["start"]["motion_level_db"][sensor] == pytest.approx(max(of_speeds), abs=1e-6)
+        start = found.solved.start.sides[f"sensor.{sensor}.level_db"][1]
+        assert checked["start"]["linear_level_db"][sensor] == pytest.approx(start, abs=1e-6)
