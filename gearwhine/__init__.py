@@ -26,6 +26,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from gearwhine.analyses.optimisation_result import optimise as optimise
     from gearwhine.analyses.result import Result as Result
     from gearwhine.analyses.variation_result import vary as vary
     from gearwhine.case import Case as Case
@@ -114,6 +115,7 @@ _HOMES = {
     ),
     "gearwhine.housing.modal_test": ("ModalTest",),
     "gearwhine.housing_study": ("HousingStudy",),
+    "gearwhine.analyses.optimisation_result": ("optimise",),
     "gearwhine.analyses.variation_result": ("vary",),
     "gearwhine.meshes": ("GeometryError",),
     "gearwhine.rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.housing.reduced import ReducedHousing
     from gearwhine.meshes import Mesh
+    from gearwhine.optimisation.optimised import Optimised
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
@@ -288,6 +289,10 @@ class CaseStudy(Study):
             from gearwhine.analyses.detection_result import plan_detection
 
             plan_detection(self.case, self._source)
+        if self.case.optimisation is not None:
+            from gearwhine.optimisation.design import design_inputs
+
+            design_inputs(self._source, self.case.optimisation)
         checked = check_case(self.case, self.progress, self._source.imported)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 
@@ -758,6 +763,62 @@ class CaseStudy(Study):
             self.case,
             self._source,
             Path(folder),
+            workers=workers,
+            scheduler=scheduler,
+            fresh=fresh or self.fresh,
+            progress=self.progress,
+        )
+
+    def optimise(
+        self,
+        evaluations: Annotated[int | None, _AtLeastOne] = None,
+        *,
+        method: Literal["search", "grid"] | None = None,
+        seed: Annotated[int | None, _NotNegative] = None,
+        folder: str | os.PathLike[str],
+        workers: Annotated[int | None, _AtLeastOne] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> "Result[Optimised]":
+        """Which design is best, by the keys, aims and limits of [optimisation]; several aims have a Pareto front.
+
+        A search in the same folder takes the designs that it holds already. The best one is checked by the transient.
+
+        Parameters
+        ----------
+        evaluations : int, optional
+            Largest number of designs that a search tries (default: that of [optimisation]).
+        method : {"search", "grid"}, optional
+            Search, or every combination of values and levels (default: that of [optimisation]).
+        seed : int, optional
+            Seed of the search (default: that of [optimisation]).
+        folder : path
+            Folder of the designs; those that it holds already are not solved again.
+        workers : int, optional
+            Number of processes (default: number of cores).
+        scheduler : str, optional
+            Address of a running Dask scheduler; its workers replace the local ones.
+        fresh : bool
+            Solve again the designs and modes that the folder holds.
+
+        Raises
+        ------
+        CaseError
+            Where a key cannot be designed, or an aim, a limit or a range cannot be.
+        gearwhine.failures.MissingExtraError
+            Where several aims need a package that is not installed.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.optimisation_result import solve_optimisation
+
+        return solve_optimisation(
+            self.case,
+            self._source,
+            Path(folder),
+            evaluations=evaluations,
+            method=method,
+            seed=seed,
             workers=workers,
             scheduler=scheduler,
             fresh=fresh or self.fresh,

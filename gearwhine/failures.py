@@ -17,6 +17,10 @@ class WorkersError(RuntimeError):
     """The workers of a sweep did not start, or are gone for good."""
 
 
+class MissingExtraError(RuntimeError):
+    """A package of an extra is not installed; the message names both."""
+
+
 def explain(error: Exception) -> tuple[int, str | None]:
     """Return exit code and message of a failure; an unexpected one has no message and needs a traceback.
 
@@ -64,6 +68,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
         IncompleteModesError,
         IncompleteRotorModesError,
         MesherUnavailableError,
+        MissingExtraError,
         PartlyFailedError,
         ModesError,
         PeriodicError,

@@ -148,6 +148,8 @@ class HousingComponent(Component):
     ring_motions : mapping of str to ndarray, shape (n, 2 + 4 orders)
         Deformation of each bore with a ring gear by the coordinates: a₀, c₀, and a_n, b_n, c_n, d_n of each order, see
         :func:`gearwhine.housing.model.patches.ring_matrix`.
+    mass : float or None
+        Mass of the housing [kg], where it is known.
 
     Raises
     ------
@@ -168,6 +170,7 @@ class HousingComponent(Component):
     seat_reach: Mapping[str, float] = field(default_factory=dict)
     displacement_field: HousingField | None = None
     ring_motions: Mapping[str, FloatArray] = field(default_factory=dict)
+    mass: float | None = None
 
     def __post_init__(self) -> None:
         """Check that the matrices and motions are those of a housing."""
@@ -566,6 +569,7 @@ def component_of_housing(
         coarser=coarser,
         warnings=tuple(modes.warnings),
         displacement_field=modes.displacement_field,
+        mass=modes.mass,
     )
 
 

@@ -38,10 +38,11 @@ from gearwhine.variation.statistics import VariedResult, require_known_limits
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_NEEDS = {
+NEEDS = {
     "gears": ("gear_pair",),
     "load": ("rotor", "bearing", "operation"),
     "rotors": ("rotor",),
+    "mass": ("rotor", "operation"),
     "lines": ("rotor", "operation", "gear_pair"),
     "motion": ("rotor", "operation", "transient"),
 }
@@ -296,14 +297,14 @@ def _wanted(case: Case, variation: Variation) -> Wanted:
     analyses: tuple[str, ...]
     if variation.analyses is not None:
         for name in variation.analyses:
-            require(case, *_NEEDS[name], command=f"vary, analyses = ['{name}']")
+            require(case, *NEEDS[name], command=f"vary, analyses = ['{name}']")
         analyses = variation.analyses
     else:
         listens = case.housing is not None and bool(case.housing.sensor)
         listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
         allowed = {"gears": True, "load": case.parts.is_loaded, "lines": listens and case.parts.is_loaded}
         analyses = tuple(
-            name for name, held in allowed.items() if held and all(getattr(case, table) for table in _NEEDS[name])
+            name for name, held in allowed.items() if held and all(getattr(case, table) for table in NEEDS[name])
         )
         if not analyses and case.rotor:
             analyses = ("rotors",)

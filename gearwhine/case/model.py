@@ -27,6 +27,7 @@ from gearwhine.case.housing import Housing, Material, Seat, Sensor, Support
 from gearwhine.case.input_files import InputFiles, files_of, paths_in
 from gearwhine.case.measured import Measured, Update
 from gearwhine.case.operation import Operation, Sweep, Transient
+from gearwhine.case.optimisation import Optimisation
 from gearwhine.case.planetary import Planetary, train_members
 from gearwhine.case.reduced_housing import ReducedHousing
 from gearwhine.case.rotors import Rotor, RotorAnalysis
@@ -103,6 +104,8 @@ class Case(Table):
     """Distributions of keys, and limits of what follows from them."""
     detection: Detection | None = None
     """Fault that grows, and what is told of it at the sensors."""
+    optimisation: Optimisation | None = None
+    """Keys that are designed, with aims and limits."""
     unusual: tuple[Annotated[str, Field(max_length=1000)], ...] = Field(default=(), max_length=MOST_ENTRIES)
     """Key paths, `*` for any entry, whose unlikely values are meant: at them and below them no implausible value is
     warned of. What cannot be stays an error."""
@@ -327,6 +330,7 @@ _PURPOSES = {
     "acoustics": "at least an empty table, for boundary elements in free air",
     "variation": "distributions of keys under [variation.vary]",
     "detection": "fault = 'gear.pinion.fault.depth' and severities = ['1 mm', '2 mm']",
+    "optimisation": "values of keys under [optimisation.design] and what is best under [optimisation.aim]",
     "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
 }
 

@@ -113,7 +113,7 @@ class Limit(Table):
         return low <= value <= high
 
 
-AnalysisName = Literal["gears", "load", "rotors", "lines", "motion"]
+AnalysisName = Literal["gears", "load", "rotors", "mass", "lines", "motion"]
 MOST_SAMPLES = 10_000_000
 MOST_KEYS = 500
 
@@ -127,8 +127,8 @@ class Variation(Table):
     """Seed of the samples. The same seed gives the same samples, the first ones whatever their number."""
     analyses: tuple[AnalysisName, ...] | None = None
     """What is found of each gearbox: "gears" (transmission error, mesh stiffness), "load" (operating point), "rotors"
-    (critical speeds), "lines" (levels at sensors by the linear machine under load) and "motion" (levels at sensors by
-    the transient). Default: gears, load and lines, as far as the case has them."""
+    (critical speeds), "mass" (gears, shafts, housing), "lines" (levels at sensors by the linear machine under load) and
+    "motion" (levels at sensors by the transient). Default: gears, load and lines, as far as the case has them."""
     speed: Speeds | None = None
     """Speeds of "lines", a range or a list. Default: those of `[sweep]`, else that of operation."""
     vary: dict[KeyPath, Varied] = Field(default={}, max_length=MOST_KEYS)

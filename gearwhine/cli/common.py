@@ -57,6 +57,7 @@ _LONGEST_SHOWN = 60
 _ALWAYS_WRITING = (
     "detect",
     "mesh",
+    "optimise",
     "render",
     "run",
     "survey",

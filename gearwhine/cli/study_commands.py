@@ -27,6 +27,7 @@ _FRESH_MODES = "Solve the housing's modes again, even if OUT holds them."
 _FRESH_RUN = "Start again, even if OUT holds the housing's modes or an interrupted transient."
 _FRESH_POINTS = "Solve again the points and modes that OUT holds."
 _FRESH_SAMPLES = "Solve again the gearboxes and modes that OUT holds."
+_FRESH_DESIGNS = "Solve again the designs and modes that OUT holds."
 _OUT = "Results go to OUT (default: ./<case>-results)."
 
 
@@ -117,6 +118,15 @@ STUDY_COMMANDS = (
         always_writes=True,
         without=("folder", "fresh"),
         fresh=_FRESH_SAMPLES,
+        timed=True,
+    ),
+    StudyCommand(
+        "optimise",
+        "optimisation.sections",
+        always_writes=True,
+        without=("folder", "fresh"),
+        names={"evaluations": "n"},
+        fresh=_FRESH_DESIGNS,
         timed=True,
     ),
     StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
@@ -250,3 +260,19 @@ def _require_whole(document: Mapping[str, Any]) -> None:
         raise PartlyFailedError(f"{failed} of {total} points failed; they are tried again on the next run")
     if "quantities" in document and len(document["failed"]) == document["samples"]:
         raise PartlyFailedError(f"no gearbox can be solved: {document['failed'][0]['message']}")
+    if "designs" in document and len(document["failed"]) == document["designs"]:
+        raise PartlyFailedError(f"no design can be solved: {document['failed'][0]['message']}")
+    if missed := document.get("missed"):
+        # The nearest design is shown and written; what is asked for cannot be had.
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.case.errors import UNSAID, key_of
+
+        count = document["designs"]
+        raise CaseError(
+            Problem(
+                key_of(("optimisation", "limit", one["limit"])),
+                UNSAID,
+                f"limits that one of the {count} designs meets; the nearest misses {one['text']}",
+            )
+            for one in missed
+        )

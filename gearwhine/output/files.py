@@ -130,6 +130,7 @@ COMMANDS = (
     "sweep",
     "vary",
     "detect",
+    "optimise",
     "compare",
     "survey",
     "update",

@@ -11,7 +11,7 @@ _SYMBOLS = {"k_h_beta": "K_Hβ", "mesh_load_factor": "mesh load factor K_γ"}
 def part_of(name: str) -> str:
     """Return what a quantity is of: ``sensor top`` of ``sensor.top.level_db``."""
     kind, _, rest = name.rpartition(".")[0].partition(".")
-    return rest if kind == "gear_pair" else f"{kind} {rest}"
+    return rest if kind == "gear_pair" else f"{kind} {rest}".strip()
 
 
 def shown_quantity(name: str) -> tuple[str, float]:

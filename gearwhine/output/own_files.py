@@ -40,6 +40,7 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
     "sweep": (*_DATA, "sweep-*.png", "waterfall-*.png"),
     "detect": (*_MODES, "detect.nc", "detection-*.png"),
     "vary": (*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
+    "optimise": (*_CASE, "optimise.nc", "optimise-*.png", "best.toml", "nearest.toml", "front-*.toml"),
     "run": (
         *(*_DATA, "modes.vtu", *_SHAPES, *_COMPARED, _LOAD, *_SYSTEM, _SOUND),
         *("gears-*.png", "rotor-*.png", "run-up-*.png", "spectrum.png", "contributions.png", "mesh-force.png"),

@@ -28,6 +28,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         housing,
         modes,
         operating_point,
+        optimisation,
         rotors,
         run,
         sound,
@@ -64,6 +65,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (sweep.report, if_command("points", "sweep")),
         (variation.report, if_command("quantities", "vary")),
         (detection.report, if_command("detectability", "detect")),
+        (optimisation.report, if_command("designs", "optimise")),
         (housing.render_report, if_command("command", "render")),
         (steady_state.report, if_command("motions", "steady")),
     )

@@ -17,7 +17,17 @@ from gearwhine.output.files import with_contents
 from gearwhine.workers import code_digest
 
 _WITHOUT_EFFECT = frozenset(
-    {"title", "notes", "sweep", "rotor_analysis", "measured", "variation", "detection", "provenance"}
+    {
+        "title",
+        "notes",
+        "sweep",
+        "rotor_analysis",
+        "measured",
+        "variation",
+        "detection",
+        "optimisation",
+        "provenance",
+    }
 )
 """Tables that no transient depends on."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")

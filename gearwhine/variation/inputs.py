@@ -149,12 +149,17 @@ def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]
     CaseError
         With every key that leads nowhere, and every distribution that cannot be.
     """
+    return inputs_of(source, variation.vary, ("variation", "vary"))
+
+
+def inputs_of(source: CaseSource, vary: Mapping[str, Varied], table: Location) -> tuple[Input, ...]:
+    """Return the inputs of the distributions of a table of the case, by key path; see :func:`varied_inputs`."""
     inputs, problems, keys = list[Input](), list[Problem](), _Keys(source)
-    for key, varied in variation.vary.items():
+    for key, varied in vary.items():
         try:
             inputs += keys.inputs(key, varied)
         except _CannotVaryError as error:
-            problems.append(Problem(key_of(("variation", "vary", key, *error.at)), error.value, error.expected))
+            problems.append(Problem(key_of((*table, key, *error.at)), error.value, error.expected))
     if problems:
         raise CaseError(problems)
     taken: dict[str, str] = {}
@@ -162,7 +167,7 @@ def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]
         for path, _ in one.keys:
             if path in taken:
                 expected = f"each key once: {path} is varied by {taken[path]!r}, too"
-                problems.append(Problem(key_of(("variation", "vary", one.name)), UNSAID, expected))
+                problems.append(Problem(key_of((*table, one.name)), UNSAID, expected))
             taken[path] = one.name
     if problems:
         raise CaseError(problems)

@@ -12,6 +12,7 @@ from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machi
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.shafts_alone import bearings_on_rigid_seats
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
+from gearwhine.coupling.description.parts import gear_disc
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.transmission_error import transmission_error_phasors
@@ -169,6 +170,20 @@ def _of_rotors(gearbox: _Gearbox) -> Named:
             yield f"rotor.{name}.critical_speed_{number}_rpm", _RPM * float(speed)
 
 
+def _of_mass(gearbox: _Gearbox) -> Named:
+    machine, housing = gearbox.machine, gearbox.machine.housing_component
+    for mounted in machine.gears:
+        yield f"gear.{mounted.gear.name}.mass_kg", gear_disc(mounted, machine.shaft(mounted.shaft).rotor).mass
+    rotors = {shaft.name: machine.rotor(shaft.name).mass for shaft in machine.shafts}
+    for name, mass in rotors.items():
+        yield f"rotor.{name}.mass_kg", mass
+    if housing is None:
+        yield "machine.mass_kg", sum(rotors.values())
+    elif housing.mass is not None:
+        yield "housing.mass_kg", housing.mass
+        yield "machine.mass_kg", housing.mass + sum(rotors.values())
+
+
 def _of_lines(gearbox: _Gearbox) -> Named:
     machine, coupled = gearbox.machine, gearbox.loaded.coupled
     housing = machine.housing_component
@@ -184,7 +199,7 @@ def _of_lines(gearbox: _Gearbox) -> Named:
         over_speed = np.array([sensor_rms(one, limit) for one in at]).T
     else:
         over_speed = lines_over_speed(coupled, speeds, limit).rms
-    for sensor, levels in zip(coupled.sensor_rows, _level(over_speed), strict=True):
+    for sensor, levels in zip(coupled.sensor_rows, level_of(over_speed), strict=True):
         place = int(np.argmax(levels))
         yield f"sensor.{sensor}.level_db", float(levels[place])
         if len(levels) > 1:
@@ -192,7 +207,7 @@ def _of_lines(gearbox: _Gearbox) -> Named:
         yield f"sensor.{sensor}.level_db", levels
 
 
-def _level(rms: FloatArray) -> FloatArray:
+def level_of(rms: FloatArray) -> FloatArray:
     """Level of an acceleration by its root mean square [dB re 1 µm/s²]."""
     return np.asarray(20.0 * np.log10(np.maximum(rms, _SILENCE) / ACCELERATION_REFERENCE))
 
@@ -206,16 +221,38 @@ def _of_motion(gearbox: _Gearbox) -> Named:
         loaded = load_machine(gearbox.machine, None if gearbox.load is None else gearbox.load.point, plan.run)
     solved: SolvedTransient = solve_transient(loaded.coupled, plan)
     for sensor in solved.sensor_spectra:
-        yield f"sensor.{sensor}.motion_level_db", float(_level(np.array(solved.sensor_rms(sensor))))
+        yield f"sensor.{sensor}.motion_level_db", float(level_of(np.array(solved.sensor_rms(sensor))))
 
 
 _ANALYSES: Mapping[str, Callable[[_Gearbox], Named]] = {
     "gears": _of_gears,
     "load": _of_load,
     "rotors": _of_rotors,
+    "mass": _of_mass,
     "lines": _of_lines,
     "motion": _of_motion,
 }
 
 ANALYSES = tuple(_ANALYSES)
 """Names of the analyses, in the order of their quantities."""
+
+_ANALYSIS_BY_END = {
+    "motion_level_db": "motion",
+    "level_db": "lines",
+    "loudest_speed_rpm": "lines",
+    "mass_kg": "mass",
+    "_rpm": "rotors",
+    "k_h_beta": "load",
+    "misalignment_rad": "load",
+    "contact_pressure_pa": "load",
+    "force_n": "load",
+    "life_h": "load",
+    "mesh_load_factor": "load",
+    "mesh_stiffness_n_per_m": "gears",
+    "_m": "gears",
+}
+
+
+def analysis_of(name: str) -> str | None:
+    """Return the analysis that finds a quantity, by its name; None where no analysis has such quantities."""
+    return next((analysis for end, analysis in _ANALYSIS_BY_END.items() if name.endswith(end)), None)

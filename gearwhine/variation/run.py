@@ -128,7 +128,7 @@ def _solved_by_workers(
         if scheduler is None:
             await_workers(client, workers)
         futures = in_thread(lambda: _submitted(client, varied, points, batches))
-        yield from each_from_thread(_as_they_end(client, futures))
+        yield from each_from_thread(outcomes_as_they_end(client, futures))
 
 
 def _submitted(
@@ -145,7 +145,9 @@ def _submitted(
     }
 
 
-def _as_they_end(client: Client, futures: dict[Future[Any], Sequence[int]]) -> Iterator[list[tuple[int, Outcome]]]:
+def outcomes_as_they_end(
+    client: Client, futures: dict[Future[Any], Sequence[int]]
+) -> Iterator[list[tuple[int, Outcome]]]:
     """Yield the outcomes of each batch as it comes."""
     from distributed import KilledWorker, as_completed
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 import json
 import os
 import traceback
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
@@ -37,6 +37,7 @@ from gearwhine.workers import code_digest, require_same_code
 
 _REMARKS = frozenset({"title", "notes", "provenance"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
+_KEPT_HOUSINGS = 50  # kilobytes each
 FOLDER = "samples"
 """Folder of the record within the results folder."""
 
@@ -89,6 +90,8 @@ class VariedCase:
         Key of all that a machine takes of this housing; samples of another key have a housing of their own.
     wider : sequence of (Input or None)
         See :func:`gearwhine.variation.inputs.inputs_at`.
+    housings : dict of str to HousingComponent
+        Last housings of other samples by their key, so that samples with the same walls share one.
     """
 
     source: CaseSource
@@ -97,6 +100,7 @@ class VariedCase:
     housing: HousingComponent | None = None
     housing_key: str = ""
     wider: Wider = ()
+    housings: dict[str, HousingComponent] = field(default_factory=dict, repr=False)
 
     def overrides(self, point: FloatArray) -> list[str]:
         """Return the ``key.path=value`` of a sample at a point of the unit cube."""
@@ -120,19 +124,30 @@ class VariedCase:
         """Find the quantities of a case of the study."""
         if not case.rotor or case.operation is None:
             return evaluate_pairs(solve_pairs(case, None)[0])
-        machine = self.machine(case)
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))
-        return evaluate(machine, wanted)
+        return evaluate(self.machine(case), wanted)
 
     def machine(self, case: Case) -> Machine:
-        """Return the machine of a case of the study, in the housing of the study where that is its own, too."""
-        housing = self.housing
+        """Return the machine of a case of the study, in its housing."""
+        return describe_machine(
+            case, self._housing_of(case) or reduced_component(case.reduced_housing, case.input_files)
+        )
+
+    def _housing_of(self, case: Case) -> HousingComponent | None:
+        """Return the solved housing of a case; None where it has no mesh."""
+        if case.housing is None:
+            return self.housing
         # Places of bearings and materials belong to the housing, too.
-        if case.housing is not None and housing_key(given_housing(case, "vary")) != self.housing_key:
-            housing = reduce_housing(case, solve_housing(case, command="vary"))
-        return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+        key = housing_key(given_housing(case, "vary"))
+        if key == self.housing_key:
+            return self.housing
+        if key not in self.housings:
+            if len(self.housings) >= _KEPT_HOUSINGS:
+                self.housings.pop(next(iter(self.housings)))
+            self.housings[key] = reduce_housing(case, solve_housing(case, command="vary"))
+        return self.housings[key]
 
     @cached_property
     def key(self) -> str:
@@ -197,10 +212,17 @@ class Record:
 
         A sample of another point, as of another seed, is none of these.
         """
-        outcomes: dict[int, Outcome] = {}
+        return {
+            number: outcome
+            for number, point, outcome in self.entries()
+            if number < len(points) and point == points[number].tolist()
+        }
+
+    def entries(self) -> Iterator[tuple[int, list[float], Outcome]]:
+        """Yield number, point and outcome of each sample on file, in the order in which they were found."""
         self._sound_bytes = 0
         if not self.file.is_file():
-            return outcomes
+            return
         with self.file.open("rb") as stream:
             for line in stream:
                 if not line.endswith(b"\n"):
@@ -208,14 +230,13 @@ class Record:
                 try:
                     entry = json.loads(line)
                     number, outcome = _of_line(entry)
-                    if number < len(points) and entry["point"] == points[number].tolist():
-                        outcomes[number] = outcome
+                    point = [float(at) for at in entry["point"]]
                 except (ValueError, KeyError, TypeError):
                     break
                 self._sound_bytes += len(line)
-        return outcomes
+                yield number, point, outcome
 
-    def append(self, solved: Iterable[tuple[int, Outcome]], points: FloatArray) -> None:
+    def append(self, solved: Iterable[tuple[int, Outcome]], points: FloatArray | Mapping[int, FloatArray]) -> None:
         """Add samples at points (n, d) behind those that :meth:`read` has found, on the disk when this returns."""
         self.file.parent.mkdir(parents=True, exist_ok=True)
         lines = b"".join(

@@ -28,7 +28,7 @@ READ = [
 _SHORT = ("transient.revolutions=2", "transient.discard=1", "transient.tolerance=5e-3")
 LESS_EFFORT = {
     "nasa-gear-noise-rig": _SHORT,
-    "small-gearbox": _SHORT,
+    "small-gearbox": (*_SHORT, "optimisation.evaluations=4"),
     "two-stage-reducer": ("housing.cad.mesh_size=18 mm", "housing.frequency_limit=600 Hz", *_SHORT),
     "helical-pair": ("variation.samples=8",),
     "planetary-stage": (

@@ -18,10 +18,11 @@ _READERS: dict[str, tuple[str, ...]] = {
     "acoustics": ("check", "load", "run", "simulate", "sound", "sweep"),
     "measured": ("check", "compare", "render", "run", "update"),
     "rotor_analysis": ("check", "rotors", "run"),
-    "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary"),
+    "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary", "optimise"),
     "update": ("check", "load", "update"),
-    "variation": ("detect", "vary"),
+    "variation": ("detect", "vary", "optimise"),
     "detection": ("detect",),
+    "optimisation": ("optimise",),
 }
 """Commands that read a table of the case; other tables are read by all, but for those of :data:`_UNREAD`."""
 _UNREAD: dict[str, tuple[str, ...]] = {

@@ -1,0 +1,561 @@
+"""Result of an optimisation: designs tried in parallel, the best of them beside the start, and its check in motion."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.analyses.origin import Origin
+from gearwhine.analyses.result import Result, no_files
+from gearwhine.analyses.variation_result import NEEDS
+from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, dump_case, require
+from gearwhine.case.analysis_speeds import with_sense_of
+from gearwhine.case.errors import NOTHING, UNSAID
+from gearwhine.case.model import lacking
+from gearwhine.case.optimisation import Aim, Method, Optimisation
+from gearwhine.case.units import si_amount
+from gearwhine.case.variation import Limit, Variation
+from gearwhine.coupling import CouplingError, Machine
+from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.failures import explain
+from gearwhine.from_case.given_housing import given_housing, housing_key
+from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.distributions import Discrete, Uniform, correlated
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.sampling import sobol_points
+from gearwhine.optimisation.design import (
+    AS_WRITTEN,
+    DesignInput,
+    ProposedCase,
+    design_inputs,
+    require_scatter,
+    require_values,
+    space_of,
+    start_point,
+    written_value,
+)
+from gearwhine.optimisation.evaluations import Evaluations, failure_of
+from gearwhine.optimisation.goals import Goals, goals_of
+from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
+from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
+from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
+from gearwhine.results.optimisation import optimised_dataset, optimised_document
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import plan_of, reduce_housing
+from gearwhine.variation.inputs import correlation_matrix, varied_inputs
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
+from gearwhine.variation.samples import Failure, outcome_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_TOLD_EACH = 2.0  # least time between two lines of progress [s]
+MOST_GRID = 100_000
+"""Most designs of a grid."""
+
+
+def solve_optimisation(
+    case: Case,
+    source: CaseSource,
+    folder: Path,
+    *,
+    evaluations: int | None = None,
+    method: Method | None = None,
+    seed: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[Optimised]:
+    """Find the best designs of a case, with the designs of a generation in parallel.
+
+    Parameters
+    ----------
+    case : Case
+        Case with its optimisation.
+    source : CaseSource
+        Content that the case is made of, from which the designs are made, too.
+    folder : path
+        Folder of the evaluations; those that it holds already are not solved again.
+    evaluations, method, seed, workers, scheduler
+        As of :meth:`gearwhine.case_study.CaseStudy.optimise`.
+    fresh : bool
+        Whether to solve all anew.
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        Where a key cannot be designed, or an aim, a limit or a range cannot be.
+    gearwhine.failures.MissingExtraError
+        Where several aims need a package that is not installed.
+    gearwhine.failures.WorkersError
+        Where the processes do not start.
+    """
+    begin = time.perf_counter()
+    optimisation = case.optimisation
+    if optimisation is None:
+        raise lacking(case, "optimisation", command="optimise")
+    if not optimisation.design:
+        raise CaseError([Problem("optimisation.design", UNSAID, "the values of one key or more")])
+    settings = _Settings(
+        optimisation.method if method is None else method,
+        optimisation.evaluations if evaluations is None else evaluations,
+        optimisation.seed if seed is None else seed,
+    )
+    inputs = design_inputs(source, optimisation)
+    plain = replace(source, written=_without(source.written), changes=tuple(filter(_is_kept, source.changes)))
+    scatter, variation = _scatter(case, plain, inputs)
+    proposed = ProposedCase(plain, inputs, _wanted(case, optimisation), variation=variation)
+    housing = None
+    if case.housing is not None and case.rotor:
+        housing = solve_housing(case, progress, command="optimise", folder=folder, fresh=fresh)
+        key = housing_key(given_housing(case, "optimise"))
+        proposed = replace(proposed, housing=reduce_housing(case, housing), housing_key=key)
+    require_values(plain, inputs)
+    progress("the case as it is written")
+    nominal = proposed.evaluation(proposed.case(None))
+    goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)
+    _require_library(goals, settings)
+    coordinates = start_point(plain, inputs)
+    evaluated = Evaluations(proposed, folder, workers, scheduler, fresh=fresh, progress=progress)
+
+    def tried(points: FloatArray, to_come: int) -> list[Design]:
+        rows = np.vstack([_with_scatter(point, scatter) for point in points])
+        outcomes = evaluated.of(rows, to_come * len(scatter))
+        groups = [outcomes[place : place + len(scatter)] for place in range(0, len(rows), len(scatter))]
+        found = [[one.numbers for one in group if isinstance(one, Evaluation)] for group in groups]
+        return [
+            design_of(point, numbers, failure_of(group), goals)
+            for point, numbers, group in zip(points, found, groups, strict=True)
+        ]
+
+    with evaluated.opened():
+        (start,) = tried(np.full((1, len(inputs)), AS_WRITTEN), 0)
+        designs, ended = _searched(inputs, goals, settings, coordinates, tried, progress)
+    document = case_document(plain.changed_case())
+    optimised = Optimised(
+        inputs=inputs,
+        goals=goals,
+        method=settings.words(goals, inputs),
+        start=start,
+        written=tuple(_shown(one, written_value(document, one)) for one in inputs),
+        designs=tuple(designs),
+        ended=ended,
+        gearboxes=len(scatter),
+        resumed=evaluated.resumed,
+    )
+    if optimisation.verify and case.transient is not None and case.transient.run is None:
+        optimised = replace(optimised, verification=_verification(proposed, optimised, case, progress))
+    origin = Origin(case.title, case=case, housing=housing)
+
+    def design_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
+        """Write the best design and those of the front as cases."""
+        for stem, number in _written_designs(optimised).items():
+            made = proposed.case(_as_designed(optimised.designs[number], proposed))
+            title = f"{origin.title}: design {number}".strip(": ")
+            # With its scatter and its aims, so that it can be varied, and searched from.
+            kept = {"title": title, "variation": case.variation, "optimisation": case.optimisation}
+            text = dump_case(made.model_copy(update=kept))
+            (place / f"{stem}.toml").write_text(text, encoding="utf-8")
+        return {}
+
+    return _result(origin, optimised, begin, design_cases)
+
+
+def optimise(
+    make: Callable[[Mapping[str, float]], Machine | Mapping[str, float]],
+    laws: Mapping[str, Uniform | Discrete],
+    aims: Mapping[str, str | Aim],
+    *,
+    evaluations: int = 100,
+    limits: Mapping[str, tuple[float | None, float | None]] | None = None,
+    start: Mapping[str, float] | None = None,
+    analyses: Sequence[str] | None = None,
+    speeds: Sequence[float] = (),
+    plan: TransientPlan | None = None,
+    method: Method = "search",
+    levels: int = 5,
+    seed: int = 1,
+    title: str = "",
+    progress: Progress = silent,
+) -> Result[Optimised]:
+    """Find the best of the machines that a function makes of designed values, one after the other in this process.
+
+    Parameters
+    ----------
+    make : callable
+        Makes a machine of the values by name, or returns quantities of your own by name, which are taken as they are.
+        What it cannot make raises `ValueError`, and the design fails by itself.
+    laws : mapping of str to Uniform or Discrete
+        Range of each value, or the list of those that it may have, of :mod:`gearwhine.numerics.distributions`.
+    aims : mapping of str to str or Aim
+        "least" or "most" by the name of a quantity; an `Aim` of :mod:`gearwhine.case.optimisation` may have a weight.
+    evaluations : int
+        Largest number of machines.
+    limits : mapping of str to tuple, optional
+        Least and largest value of a quantity, None where there is none: ``{"bearing.left.life_h": (5000.0, None)}``.
+    start : mapping of str to float, optional
+        Values to begin with and to compare with; by default the middle of each range, the first value of each list.
+    analyses : sequence of str, optional
+        What is found of each machine; by default what aims and limits name.
+    speeds : sequence of float
+        Signed speeds of "lines" [rad/s]; by default that of each machine.
+    plan : TransientPlan, optional
+        Stretch of the motion; with it the transient of the start and of the best machine is solved at the end.
+    method : {"search", "grid"}
+        "grid" tries every combination of the values, of each range a number of levels.
+    levels : int
+        Number of levels of a range in a grid.
+    seed : int
+    title : str
+    progress : callable
+
+    Raises
+    ------
+    CouplingError
+        Where an analysis is none of these, nothing is designed, or a range or an aim cannot be.
+    CaseError
+        Where an aim or a limit is of a quantity that the machines do not have.
+    gearwhine.failures.MissingExtraError
+        Where several aims need a package that is not installed.
+    Exception
+        What `make` or an analysis raises of the start.
+
+    Examples
+    --------
+    >>> import gearwhine as gw
+    >>> from gearwhine.numerics.distributions import Uniform
+    >>> def bar(values):
+    ...     width, height = values["width"], values["height"]
+    ...     return {"area_m2": width * height, "stiffness": width * height**3}
+    >>> ranges = {"width": Uniform(0.1, 1.0), "height": Uniform(0.1, 1.0)}
+    >>> best = gw.optimise(bar, ranges, {"area_m2": "least"}, limits={"stiffness": (0.2, None)}).solved.best
+    >>> round(best.sides["area_m2"][0], 3)
+    0.2
+    """
+    begin = time.perf_counter()
+    _require_values(laws, levels)
+    named = tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
+    senses = _senses(aims)
+    try:
+        ranges = {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
+    except (TypeError, ValueError) as error:
+        raise CouplingError(
+            f"optimise: limits of {limits}; expected a least and a largest value, or None, each"
+        ) from error
+    if analyses is None:
+        analyses = tuple(dict.fromkeys(filter(None, map(analysis_of, [*senses, *ranges]))))
+    if unknown := [name for name in analyses if name not in ANALYSES]:
+        raise CouplingError(f"optimise: analyses {unknown}; expected some of {', '.join(ANALYSES)}")
+    wanted = Wanted(tuple(analyses), tuple(speeds), plan)
+    first = start or {
+        name: law.values[0] if isinstance(law, Discrete) else 0.5 * (law.low + law.high) for name, law in laws.items()
+    }
+    if set(first) != set(laws):
+        raise CouplingError(f"optimise: a start with {', '.join(first)}; expected a value of each of {', '.join(laws)}")
+
+    def made(values: Mapping[str, float]) -> Machine | Mapping[str, float]:
+        try:
+            return make(values)
+        except ValueError as error:
+            raise CouplingError(str(error)) from error
+
+    def found(values: Mapping[str, float]) -> Evaluation:
+        machine = made(values)
+        if isinstance(machine, Machine):
+            return evaluate(machine, wanted)
+        if not isinstance(machine, Mapping):
+            raise CouplingError(
+                f"optimise: {make!r} returned {machine!r}; expected a gearwhine.Machine or numbers by name"
+            )
+        return Evaluation({name: float(value) for name, value in machine.items()})
+
+    def values_of(point: FloatArray) -> Mapping[str, float]:
+        if point[0] == AS_WRITTEN:
+            return first
+        return {one.name: one.value(float(at)) for one, at in zip(named, point, strict=True)}
+
+    progress("the start")
+    nominal = found(first)
+    goals = goals_of(senses, ranges, list(nominal.numbers))
+    settings = _Settings(method, evaluations, seed)
+    _require_library(goals, settings)
+
+    def tried(points: FloatArray, to_come: int) -> list[Design]:
+        outcomes = [outcome_of(partial(found, values_of(point))) for point in points]
+        return [
+            design_of(
+                point,
+                [one.numbers] if isinstance(one, Evaluation) else [],
+                one if isinstance(one, Failure) else None,
+                goals,
+            )
+            for point, one in zip(points, outcomes, strict=True)
+        ]
+
+    begun = design_of(np.full(len(named), AS_WRITTEN), [nominal.numbers], None, goals)
+    coordinates = [one.coordinate_of(float(first[one.name])) for one in named]
+    designs, ended = _searched(named, goals, settings, coordinates, tried, progress)
+    written = tuple(f"{float(first[one.name]):.6g}" for one in named)
+    optimised = Optimised(named, goals, settings.words(goals, named), begun, written, tuple(designs), ended)
+    if plan is not None and plan.run is None and isinstance(machine := made(first), Machine):
+        best = optimised.best
+        at = tuple(wanted.speeds or (machine.speed,))
+
+        def motion(values: Mapping[str, float]) -> Motion | Failure:
+            one = made(values)
+            return _motion_or_failure(lambda: motion_of(_as_machine(one), plan, at, needs_load=False))
+
+        if best is not None:
+            checked = Verification(at, motion(first), motion(values_of(best.point)))
+            optimised = replace(optimised, verification=checked)
+    return _result(Origin(title), optimised, begin)
+
+
+def _as_machine(made: Machine | Mapping[str, float]) -> Machine:
+    if not isinstance(made, Machine):
+        raise CouplingError("optimise: expected a machine of the best values, as of the start")
+    return made
+
+
+@dataclass(frozen=True)
+class _Settings:
+    """How designs are searched for."""
+
+    method: Method
+    evaluations: int
+    seed: int
+
+    def words(self, goals: Goals, inputs: Sequence[DesignInput]) -> str:
+        """Return the method in words."""
+        if self.method == "grid":
+            return "grid"
+        if goals.count > 1:
+            return "NSGA-II"
+        if all(one.count for one in inputs):
+            return "differential evolution"
+        return "differential evolution, then trust region"
+
+
+def _searched(
+    inputs: Sequence[DesignInput],
+    goals: Goals,
+    settings: _Settings,
+    coordinates: Sequence[float | None],
+    tried: Callable[[FloatArray, int], list[Design]],
+    progress: Progress,
+) -> tuple[list[Design], Ended]:
+    """Try designs as the method says."""
+    designs, space = list[Design](), space_of(inputs)
+    budget, levels = settings.evaluations, [one.levels for one in inputs]
+    if settings.method == "grid":
+        budget = int(np.prod([one.count or one.levels for one in inputs], dtype=np.float64))
+        if budget > MOST_GRID:
+            raise CaseError([Problem("the number of designs of the grid", budget, f"at most {MOST_GRID}")])
+    told = _Teller(budget, progress)
+
+    def find(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        found = tried(points, budget - len(designs) - len(points))
+        designs.extend(found)
+        told.took(designs)
+        return np.array([one.minimised for one in found]), np.array([one.excesses for one in found])
+
+    trials = Trials(space, find, budget)
+    if settings.method == "grid":
+        return designs, tried_whole(trials, levels)
+    start = None if None in coordinates else np.array(coordinates, dtype=np.float64)
+    return designs, search(trials, start, settings.seed, goals.count)
+
+
+class _Teller:
+    """Tells how many designs are tried, and the best of them by one aim."""
+
+    def __init__(self, total: int, progress: Progress) -> None:
+        self._total, self._progress, self._last = total, progress, time.perf_counter()
+
+    def took(self, designs: Sequence[Design]) -> None:
+        """Count designs that are tried."""
+        now = time.perf_counter()
+        if now - self._last >= _TOLD_EACH:
+            self._last = now
+            within = sum(one.excess == 0.0 for one in designs)
+            self._progress(f"design {len(designs)} of at most {self._total}, {within} within the limits")
+
+
+def _with_scatter(point: FloatArray, scatter: FloatArray) -> FloatArray:
+    """Return the points of all gearboxes about a design, shape (n, d + v)."""
+    return np.hstack([np.repeat(point[None], len(scatter), axis=0), scatter])
+
+
+def _scatter(case: Case, source: CaseSource, inputs: Sequence[DesignInput]) -> tuple[FloatArray, Variation | None]:
+    """Return the points of the scatter about each design, shape (n, v), and its variation; one without coordinates."""
+    robust = None if case.optimisation is None else case.optimisation.robust
+    if robust is None:
+        return np.zeros((1, 0)), None
+    variation = case.variation
+    if variation is None or not variation.vary:
+        expected = "distributions of keys under [variation.vary], by which gearboxes scatter about each design"
+        raise CaseError([Problem("variation", NOTHING, expected)])
+    require_scatter(inputs, source, variation)
+    varied = varied_inputs(source, variation)
+    points = sobol_points(robust.samples, len(varied), variation.seed)
+    correlation = correlation_matrix(varied, variation)
+    return (points if correlation is None else correlated(points, correlation)), variation
+
+
+def _without(written: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of a case without those that a design does not have."""
+    return {key: table for key, table in written.items() if key not in ("variation", "optimisation")}
+
+
+def _is_kept(change: str) -> bool:
+    return not change.startswith(("variation.", "optimisation."))
+
+
+def _shown(one: DesignInput, value: object) -> str:
+    """Return a value of the case in the unit of the design; empty where it has none."""
+    amount, scale = si_amount(value), si_amount(f"1 {one.unit}") if one.unit else 1.0
+    if one.words or amount is None or scale is None:
+        return "" if value is NOTHING else str(value)
+    return f"{amount / one.keys[0][1] / scale:.6g} {one.unit}".strip()
+
+
+def _wanted(case: Case, optimisation: Optimisation) -> Wanted:
+    """Return what is found of each design: as asked for, else what aims and limits name."""
+    analyses: tuple[str, ...]
+    if optimisation.analyses is not None:
+        analyses = optimisation.analyses
+    else:
+        names = [*optimisation.aim, *optimisation.limit]
+        found = {analysis_of(name) for name in names}
+        if None in found:
+            # Names that no analysis has are refused with those that there are.
+            found |= {"gears", "load"} if case.operation is not None and case.parts.is_loaded else {"gears"}
+        analyses = tuple(name for name in ANALYSES if name in found and (None not in found or _has(case, name)))
+    for name in analyses:
+        require(case, *NEEDS[name], command=f"optimise with quantities of {name!r}")
+    speeds = optimisation.speeds or (() if case.sweep is None else case.sweep.speeds)
+    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else ())
+
+
+def _has(case: Case, analysis: str) -> bool:
+    return all(getattr(case, table) for table in NEEDS[analysis])
+
+
+def _require_library(goals: Goals, settings: _Settings) -> None:
+    if settings.method == "search" and goals.count > 1:
+        require_pareto_library()
+
+
+def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None:
+    if not laws:
+        raise CouplingError("optimise: no laws; expected the range of one value or more")
+    for name, law in laws.items():
+        if not isinstance(law, Uniform | Discrete):
+            raise CouplingError(f"optimise: {name} has {law!r}; expected Uniform(low, high) or Discrete(values)")
+    if levels < 2:
+        raise CouplingError(f"optimise: {levels} levels; expected 2 or more")
+
+
+def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:
+    senses = dict[str, Aim]()
+    for name, sense in aims.items():
+        if isinstance(sense, Aim):
+            senses[name] = sense
+        elif sense in ("least", "most"):
+            senses[name] = Aim.model_validate({"sense": sense})
+        else:
+            raise CouplingError(f'optimise: the aim {name} is {sense!r}; expected "least" or "most"')
+    weighted = sum(aim.weight is not None for aim in senses.values())
+    if weighted not in (0, len(senses)):
+        raise CouplingError("optimise: some aims have a weight; expected one on all of them, or on none")
+    return senses
+
+
+def _verification(proposed: ProposedCase, optimised: Optimised, case: Case, progress: Progress) -> Verification | None:
+    """Solve the transient of the case and of the best design; None where there is no best one."""
+    best = optimised.best
+    if best is None or not case.rotor or case.operation is None:
+        return None
+    loudest = [
+        value / (30.0 / np.pi)
+        for design in (optimised.start, best)
+        for name, (value, _) in design.sides.items()
+        if name.endswith("loudest_speed_rpm")
+    ]
+    speeds = checked_speeds(proposed.wanted.speeds or (case.operation.speed,), loudest)
+
+    def motion(point: FloatArray | None) -> Motion | Failure:
+        def solved() -> Motion:
+            made = proposed.case(point)
+            return motion_of(proposed.machine(made), plan_of(made), speeds, needs_load=made.parts.needs_operating_point)
+
+        return _motion_or_failure(solved)
+
+    progress(f"the transient of the start at {len(speeds)} speeds")
+    start = motion(None)
+    progress(f"the transient of the best design at {len(speeds)} speeds")
+    return Verification(speeds, start, motion(_as_designed(best, proposed)))
+
+
+def _as_designed(design: Design, proposed: ProposedCase) -> FloatArray:
+    """Return the point of a design without scatter."""
+    count = 0 if proposed.variation is None else len(varied_inputs(proposed.source, proposed.variation))
+    return np.concatenate([design.point, np.full(count, AS_WRITTEN)])
+
+
+def _motion_or_failure(solved: Callable[[], Motion]) -> Motion | Failure:
+    try:
+        return solved()
+    except Exception as error:
+        message = explain(error)[1]
+        if message is None:
+            raise
+        return Failure(message)
+
+
+def _written_designs(optimised: Optimised) -> dict[str, int]:
+    """Return the designs that are written as cases, by the name of the file."""
+    if not optimised.chosen:
+        return {}
+    best = next(iter(optimised.chosen))
+    stem = "best" if optimised.front else "nearest"
+    if optimised.goals.count == 1:
+        return {stem: best}
+    places = np.unique(np.linspace(0, len(optimised.front) - 1, min(len(optimised.front), MOST_SHOWN)).astype(int))
+    front = {f"front-{rank}": optimised.front[place] for rank, place in enumerate(places.tolist(), start=1)}
+    return {stem: best} | (front if optimised.front else {})
+
+
+def _result(
+    origin: Origin, optimised: Optimised, begin: float, files: Callable[..., Mapping[str, Any]] = no_files
+) -> Result[Optimised]:
+    document = {"title": origin.title} | optimised_document(optimised)
+    document["seconds"] = {"total": time.perf_counter() - begin}
+    dataset = optimised_dataset(optimised, origin.title)
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures.optimisation import draw_optimisation
+
+        return draw_optimisation(origin.title, optimised)
+
+    return Result(
+        "optimise",
+        origin.case,
+        optimised,
+        document,
+        _arrays=lambda: dataset,
+        _figures=figures,
+        _files=files,
+        _data_file="optimise.nc",
+        _housing=origin.housing,
+        _started=begin,
+        _title=origin.title,
+    )

@@ -1,0 +1,130 @@
+"""Check of designs by the full machine: the transient of start and best, beside the lines of the linear machine.
+
+An optimisation ranks by linear lines, by operating points or by gears alone. In the transient teeth part, runout and
+unbalance act, and the record holds every frequency up to where the housing's modes are complete.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.analyses.transient import solve_transient
+from gearwhine.coupling.linear.lines_over_speed import sensor_rms
+from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.machine_description import Machine
+from gearwhine.variation.quantities import level_of
+from gearwhine.variation.samples import Failure
+
+Levels = Mapping[str, float]
+DOUBT = 1.0
+"""Change of a level below which a design is neither louder nor quieter [dB]."""
+MOST_SPEEDS = 6
+"""Largest number of speeds of a transient."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A design by linear machine and transient, at the speeds of the check.
+
+    Attributes
+    ----------
+    linear, motion : dict of str to float
+        Highest level of each sensor over the speeds, of the mesh harmonics of the linear machine and of the transient
+        [dB re 1 µm/s²].
+    peak_force_ratio : dict of str to float
+        Largest tooth force of each pair over its mean.
+    contact_loss : dict of str to float
+        Largest part of the time in which the flanks of a pair are apart.
+    """
+
+    linear: Levels
+    motion: Levels
+    peak_force_ratio: Levels
+    contact_loss: Levels
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """Start and best design by the full machine.
+
+    Attributes
+    ----------
+    speeds : tuple of float
+        Signed speeds [rad/s].
+    start, best : Motion or Failure
+    """
+
+    speeds: tuple[float, ...]
+    start: Motion | Failure
+    best: Motion | Failure
+
+    @property
+    def contradicted(self) -> list[str]:
+        """Sensors at which linear machine and transient disagree on whether the best is quieter than the start."""
+        if isinstance(self.start, Failure) or isinstance(self.best, Failure):
+            return []
+        changes = {
+            sensor: (self.best.linear[sensor] - self.start.linear[sensor], self.best.motion[sensor] - level)
+            for sensor, level in self.start.motion.items()
+            if sensor in self.best.linear and sensor in self.start.linear
+        }
+        return [
+            sensor
+            for sensor, (linear, motion) in changes.items()
+            if (linear < -DOUBT and motion > -0.25 * abs(linear)) or (linear > DOUBT and motion < 0.25 * linear)
+        ]
+
+
+def motion_of(machine: Machine, plan: TransientPlan, speeds: Sequence[float], *, needs_load: bool) -> Motion:
+    """Solve the transient of a machine at some speeds, and its lines there.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError, gearwhine.coupling.TransientError, ...
+        Where the machine cannot be solved.
+    """
+    load = find_load(machine, is_needed=needs_load)[0] if machine.is_loaded else None
+    housing = machine.housing_component
+    limit = None if housing is None else housing.complete_below
+    linear, motion = dict[str, float](), dict[str, float]()
+    force, loss = dict[str, float](), dict[str, float]()
+    for speed in speeds:
+        loaded = load_machine(replace(machine, speed=speed), None if load is None else load.point)
+        solved = solve_transient(loaded.coupled, plan)
+        if limit is not None:
+            levels = level_of(sensor_rms(loaded.coupled, limit))
+            for sensor, level in zip(loaded.coupled.sensor_rows, levels.tolist(), strict=True):
+                linear[sensor] = max(level, linear.get(sensor, -math.inf))
+        for sensor in solved.sensor_spectra:
+            level = float(level_of(np.array(solved.sensor_rms(sensor))))
+            motion[sensor] = max(level, motion.get(sensor, -math.inf))
+        figures = solved.result
+        for number, pair in enumerate(loaded.pairs):
+            name = f"{pair.geometry.driver.name}-{pair.geometry.driven.name}"
+            mean = float(figures.mean_force[number])
+            ratio = float(figures.peak_force[number]) / mean if mean else math.nan
+            force[name] = max(ratio, force.get(name, 0.0))
+            loss[name] = max(float(figures.contact_loss[number]), loss.get(name, 0.0))
+    return Motion(linear, motion, force, loss)
+
+
+def checked_speeds(wanted: Sequence[float], loudest: Sequence[float]) -> tuple[float, ...]:
+    """Return the speeds of the check: all, where they are few, else those at which a sensor is loudest.
+
+    Parameters
+    ----------
+    wanted : sequence of float
+        Signed speeds of the lines [rad/s].
+    loudest : sequence of float
+        Speeds at which sensors of start or best are loudest [rad/s], of any sign.
+    """
+    if len(wanted) <= MOST_SPEEDS:
+        return tuple(wanted)
+    near = [min(wanted, key=lambda speed: abs(abs(speed) - abs(one))) for one in loudest]
+    return tuple(dict.fromkeys(near or wanted[-1:]))[:MOST_SPEEDS]

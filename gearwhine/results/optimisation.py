@@ -1,0 +1,400 @@
+"""Optimised designs: the best beside the start by keys, aims and limits, the Pareto front, and the check in motion."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.numerics.result_warnings import ResultWarning, warning
+from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.quantity import unit_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearwhine.optimisation.goals import LimitEnd
+    from gearwhine.optimisation.optimised import Optimised
+    from gearwhine.optimisation.verification import Motion, Verification
+    from gearwhine.variation.samples import Failure
+
+_MOST_FAILURES = 3  # told one by one
+_MOST_FRONT = 12  # rows of the front on the page
+_RPM = 30.0 / np.pi
+_ENDED = {
+    "budget": "all evaluations are spent",
+    "converged": "the search has converged",
+    "complete": "every combination has been tried",
+}
+
+
+def optimised_document(optimised: "Optimised") -> dict[str, Any]:
+    """Return an optimisation as the command's JSON."""
+    chosen = [(number, label, optimised.designs[number]) for number, label in optimised.chosen.items()]
+    at_bounds = optimised.at_bounds
+    document: dict[str, Any] = {
+        "method": optimised.method,
+        "designs": len(optimised.designs),
+        "within_limits": len(optimised.within),
+        "gearboxes_about_each": optimised.gearboxes,
+        "ended": optimised.ended,
+        "resumed": optimised.resumed,
+        "chosen": [{"number": number, "design": label} for number, label, _ in chosen],
+        "keys": [
+            {
+                "key": one.name,
+                "with": [path for part in one.along for path, _ in part.keys],
+                "start": optimised.written[place],
+                "designs": [optimised.shown_value(place, design) for _, _, design in chosen],
+                "allowed": _allowed(one),
+                "at_bound": at_bounds.get(one.name, ""),
+            }
+            for place, one in enumerate(optimised.inputs)
+        ],
+        "aims": [
+            {
+                "name": goal.name,
+                "unit": unit_of(goal.name),
+                "sense": "least" if goal.sign > 0.0 else "most",
+                "weight": goal.weight,
+                "start": _finite(float(optimised.start.aims[place])),
+                "designs": [_finite(float(design.aims[place])) for _, _, design in chosen],
+            }
+            for place, goal in enumerate(optimised.goals.aims)
+        ],
+        "limits": [
+            {
+                "name": limit.name,
+                "unit": unit_of(limit.name),
+                "at_most" if limit.sign > 0.0 else "at_least": limit.end,
+                "start": _finite(limit.value(optimised.start.sides)),
+                "designs": [_finite(limit.value(design.sides)) for _, _, design in chosen],
+                "margin": None if not chosen else _finite(-limit.excess(chosen[0][2].sides)),
+                "active": limit in optimised.active_limits,
+            }
+            for limit in optimised.goals.limits
+        ],
+        "front": [
+            {
+                "number": number,
+                "keys": [
+                    optimised.shown_value(place, optimised.designs[number]) for place in range(len(optimised.inputs))
+                ],
+                "aims": optimised.designs[number].aims.tolist(),
+            }
+            for number in (optimised.front if optimised.goals.count > 1 else [])
+        ],
+        "failed": [
+            {"number": number, "message": failure.message}
+            | ({"traceback": failure.traceback} if failure.traceback else {})
+            for number, failure in optimised.failures.items()
+        ],
+    }
+    if not optimised.front and chosen:
+        document["missed"] = [_missed(limit, value) for limit, value in optimised.missed]
+    if optimised.verification is not None:
+        document["verification"] = _verification(optimised.verification)
+    return document | {"warnings": list(_warnings(optimised))}
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _allowed(one: Any) -> str:
+    """Return the values that a key may have, in words."""
+    if one.words:
+        return ", ".join(one.words)
+    if one.count:
+        return f"{', '.join(f'{value:g}' for value in one.law.values)} {one.unit}".strip()
+    return f"{one.law.low:g} to {one.law.high:g} {one.unit}".strip()
+
+
+def _missed(limit: "LimitEnd", value: float) -> dict[str, Any]:
+    name, factor = shown_quantity(limit.name)
+    word = "at most" if limit.sign > 0.0 else "at least"
+    by = limit.sign * (value - limit.end)
+    text = f"{part_of(limit.name)}, {name}: {factor * value:.4g}, {word} {factor * limit.end:.4g} is asked for"
+    return {
+        "name": limit.name,
+        "limit": limit.key,
+        "value": value,
+        "by": by,
+        "text": f"{text}: missed by {factor * by:.3g}",
+    }
+
+
+def _verification(checked: "Verification") -> dict[str, Any]:
+    return {
+        "speeds_rpm": [_RPM * abs(speed) for speed in checked.speeds],
+        "start": _motion(checked.start),
+        "best": _motion(checked.best),
+        "contradicted": checked.contradicted,
+    }
+
+
+def _motion(motion: "Motion | Failure") -> dict[str, Any]:
+    from gearwhine.variation.samples import Failure
+
+    if isinstance(motion, Failure):
+        return {"failure": motion.message}
+    return {
+        "linear_level_db": dict(motion.linear),
+        "motion_level_db": dict(motion.motion),
+        "peak_force_ratio": {name: _finite(value) for name, value in motion.peak_force_ratio.items()},
+        "contact_loss": dict(motion.contact_loss),
+    }
+
+
+def _warnings(optimised: "Optimised") -> Iterator[ResultWarning]:
+    if optimised.failures:
+        first = next(iter(optimised.failures.values()))
+        message = f"{len(optimised.failures)} of {len(optimised.designs)} designs cannot be solved: {first.message}"
+        yield warning("failed designs", message, failed=len(optimised.failures))
+    if optimised.best is not None and not optimised.front:
+        missed = "; ".join(_missed(limit, value)["text"] for limit, value in optimised.missed)
+        yield warning("missed limits", f"no design meets all limits; the nearest one misses {missed}")
+    checked = optimised.verification
+    if checked is not None and checked.contradicted:
+        names = ", ".join(checked.contradicted)
+        message = (
+            f"the transient does not confirm the linear ranking at {names}: its level does not change as that of the "
+            "mesh harmonics; parting teeth, unbalance or runout may decide there"
+        )
+        yield warning("transient disagrees", message)
+
+
+def optimised_dataset(optimised: "Optimised", title: str) -> "xr.Dataset":
+    """Return every design with its values, aims and limits as one labelled dataset."""
+    import xarray as xr
+
+    from gearwhine import __version__
+
+    designs, goals = optimised.designs, optimised.goals
+    names = list(dict.fromkeys(name for one in (optimised.start, *designs) for name in one.sides))
+    shape = (len(designs), len(names), 2)
+    none = (np.nan, np.nan)
+    sides = np.array([[one.sides.get(name, none) for name in names] for one in designs], dtype=np.float64).reshape(
+        shape
+    )
+    failures = optimised.failures
+    return xr.Dataset(
+        {
+            "input_value": (
+                ("design", "input"),
+                optimised.values(),
+                {"units": "see input_unit", "long_name": "value of the designed key, the number of a word from 0"},
+            ),
+            "aim_value": (
+                ("design", "aim"),
+                np.array([one.aims for one in designs]).reshape(len(designs), len(goals.aims)),
+                {"units": "see aim_unit", "long_name": "value of the aim"},
+            ),
+            "excess": (
+                "design",
+                [one.excess for one in designs],
+                {"units": "1", "long_name": "sum of the excesses over the limits, each over its limit"},
+            ),
+            "value": (
+                ("design", "quantity", "side"),
+                sides,
+                {"units": "see quantity_unit", "long_name": "value of the quantity, low and high side of its scatter"},
+            ),
+            "on_front": (
+                "design",
+                np.isin(np.arange(len(designs)), optimised.front),
+                {"long_name": "whether on the front"},
+            ),
+            "failure": (
+                "design",
+                [failures[number].message if number in failures else "" for number in range(len(designs))],
+                {"long_name": "why there is no result"},
+            ),
+        },
+        {
+            "design": ("design", np.arange(len(designs)), {"long_name": "number of the design, in the order of trial"}),
+            "input": ("input", [one.name for one in optimised.inputs], {"long_name": "designed key of the case"}),
+            "input_unit": ("input", [one.unit or "1" for one in optimised.inputs], {}),
+            "aim": ("aim", [goal.name for goal in goals.aims], {"long_name": "name of the aim"}),
+            "aim_unit": ("aim", [unit_of(goal.name) or "1" for goal in goals.aims], {}),
+            "quantity": ("quantity", names, {"long_name": "name of the quantity, with its unit at the end"}),
+            "quantity_unit": ("quantity", [unit_of(name) or "1" for name in names], {}),
+            "side": ("side", ["low", "high"], {"long_name": "side of the scatter; both are the value without scatter"}),
+        },
+        {"title": title, "source": f"gearwhine {__version__}"},
+    )
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Return the best design beside the start, the front, and the check in motion."""
+    return (Section("", tuple(_content(document))),)
+
+
+def report(document: Document) -> Section:
+    """Return the chapter of the report."""
+    pictures = (
+        Picture("optimise-convergence", "Every design in the order of its trial, and the best so far."),
+        Picture("optimise-front", "Designs by their aims: the Pareto front, the start, and the chosen ones."),
+        Picture("optimise-keys", "The aim over each designed key."),
+    )
+    return Section("Optimised design", tuple(_content(document)), pictures=pictures)
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    labels = [one["design"] for one in document["chosen"]]
+    keys = [{**row, "along": ", ".join(row["with"])} for row in document["keys"]]
+    yield from table_of(
+        (
+            Column("key", "key"),
+            Column("start", "start"),
+            *_designs(labels, lambda row, value: str(value)),
+            Column("allowed", "allowed"),
+            Column("at its bound", "at_bound"),
+            Column("in step", "along"),
+        ),
+        keys,
+        "Designed keys",
+    )
+    shown = (
+        Column("start", lambda row: _text(row, row["start"])),
+        *_designs(labels, _text),
+    )
+    named = (
+        Column("of", lambda row: part_of(row["name"])),
+        Column("quantity", lambda row: shown_quantity(row["name"])[0]),
+    )
+    yield from table_of(
+        (*named, Column("aim", "sense"), Column("weight", "weight"), *shown, Column("change", _change)),
+        document["aims"],
+        "Aims",
+    )
+    yield from table_of(
+        (*named, Column("limit", _limit), *shown, Column("margin", _margin)), document["limits"], "Limits"
+    )
+    yield from _front(document)
+    yield from _checked(document.get("verification"))
+    yield from _sentences(document)
+
+
+def _designs(labels: Sequence[str], text: Callable[[Document, Any], str]) -> Iterator[Column]:
+    """Yield a column for each chosen design."""
+    for place, label in enumerate(labels):
+        yield Column(label, lambda row, place=place: text(row, row["designs"][place]))  # type: ignore[misc]
+
+
+def _text(row: Document, value: float | None) -> str:
+    return "" if value is None else format(shown_quantity(row["name"])[1] * value, ".5g")
+
+
+def _change(row: Document) -> str:
+    """Return the change of the first design against the start."""
+    start, best = row["start"], next(iter(row["designs"]), None)
+    if start is None or best is None:
+        return ""
+    if row["unit"] == "dB":
+        return f"{best - start:+.1f} dB"
+    return f"{100.0 * (best - start) / abs(start):+.1f} %" if start else ""
+
+
+def _limit(row: Document) -> str:
+    factor = shown_quantity(row["name"])[1]
+    return next(f"{sign} {factor * row[key]:.5g}" for key, sign in (("at_most", "≤"), ("at_least", "≥")) if key in row)
+
+
+def _margin(row: Document) -> str:
+    margin = row["margin"]
+    if margin is None:
+        return ""
+    if margin < 0.0:
+        return f"missed by {-100.0 * margin:.2g} %"
+    return "reached" if row["active"] else f"{100.0 * margin:.2g} %"
+
+
+def _front(document: Document) -> Iterator[Table]:
+    front = document["front"]
+    places = sorted({round(at) for at in np.linspace(0, len(front) - 1, min(len(front), _MOST_FRONT)).tolist()})
+    aims, keys = document["aims"], document["keys"]
+
+    def aim(place: int) -> Callable[[Document], str]:
+        return lambda row: format(shown_quantity(aims[place]["name"])[1] * row["aims"][place], ".5g")
+
+    columns = [Column("design", "number", "d")]
+    for place, one in enumerate(aims):
+        columns.append(Column(f"{part_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
+    columns += [Column(one["key"], lambda row, place=place: row["keys"][place]) for place, one in enumerate(keys)]  # type: ignore[misc]
+    part = f", {len(places)} of {len(front)} designs" if len(places) < len(front) else ""
+    yield from table_of(tuple(columns), [front[place] for place in places], f"Pareto front{part}")
+
+
+def _checked(checked: Document | None) -> Iterator[str | Table]:
+    """Yield start and best by the transient."""
+    if checked is None:
+        return
+    for which in ("start", "best"):
+        if "failure" in checked[which]:
+            yield f"The transient of the {which} cannot be solved: {checked[which]['failure']}"
+    start, best = checked["start"], checked["best"]
+    if "failure" in start or "failure" in best:
+        return
+    speeds = ", ".join(f"{speed:.5g}" for speed in checked["speeds_rpm"])
+    rows = [
+        {
+            "of": f"sensor {sensor}",
+            "quantity": "highest level [dB re 1 µm/s²]",
+            "linear start": _level(start["linear_level_db"].get(sensor)),
+            "linear best": _level(best["linear_level_db"].get(sensor)),
+            "start": _level(level),
+            "best": _level(best["motion_level_db"].get(sensor)),
+        }
+        for sensor, level in start["motion_level_db"].items()
+    ]
+    for key, name, form in (
+        ("peak_force_ratio", "largest tooth force / mean", ".3f"),
+        ("contact_loss", "part of the time apart", ".3f"),
+    ):
+        rows += [
+            {"of": pair, "quantity": name, "start": _as_text(value, form), "best": _as_text(best[key].get(pair), form)}
+            for pair, value in start[key].items()
+        ]
+    columns = (
+        Column("of", "of"),
+        Column("quantity", "quantity"),
+        Column("start, mesh harmonics", "linear start"),
+        Column("best, mesh harmonics", "linear best"),
+        Column("start, transient", "start"),
+        Column("best, transient", "best"),
+    )
+    yield from table_of(columns, rows, f"Start and best design by the full machine at {speeds} rpm")
+    if rows and not checked["contradicted"] and start["linear_level_db"]:
+        yield "The transient confirms the ranking by the linear machine."
+
+
+def _level(value: float | None) -> str:
+    return _as_text(value, ".1f")
+
+
+def _as_text(value: float | None, form: str) -> str:
+    return "" if value is None else format(value, form)
+
+
+def _sentences(document: Document) -> Iterator[str]:
+    for row in document["keys"]:
+        if row["at_bound"]:
+            yield f"{row['key']} is at its {row['at_bound']} value: a wider range may be better."
+    for row in document.get("missed", ()):
+        yield f"Missed: {row['text']}."
+    for failure in document["failed"][:_MOST_FAILURES]:
+        yield f"Design {failure['number']} failed: {failure['message']}"
+    if len(document["failed"]) > _MOST_FAILURES:
+        yield f"and {len(document['failed']) - _MOST_FAILURES} more"
+    about = document["gearboxes_about_each"]
+    scatter = f", {about} gearboxes about each" if about > 1 else ""
+    resumed = f"; {document['resumed']} evaluations by an earlier run" if document["resumed"] else ""
+    within = f", {document['within_limits']} within all limits" if document["limits"] else ""
+    tried = f"{document['designs']} designs{scatter}{within}, by {document['method']}"
+    yield f"{tried}: {_ENDED[document['ended']]}{resumed}"
+
+
+def missed_limits(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return the limits that no design meets together, as the nearest one misses them."""
+    return list(document.get("missed", ()))
