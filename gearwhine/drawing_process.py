@@ -22,6 +22,7 @@ import numpy as np
 import gearwhine
 from gearwhine.housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
+from gearwhine.interruption import cleared_at_the_end
 from gearwhine.numerics.progress import Progress
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
@@ -37,7 +38,7 @@ def one_process() -> Iterator["_DrawingProcess"]:
     if (kept := _kept.get()) is not None:
         yield kept
         return
-    with _DrawingProcess() as process:
+    with _DrawingProcess() as process, cleared_at_the_end(process.kill):
         token = _kept.set(process)
         try:
             yield process
@@ -105,6 +106,11 @@ class _DrawingProcess:
     def __exit__(self, *_: object) -> None:
         """End the process: its pictures are on file, or no longer wanted."""
         self._end()
+
+    def kill(self) -> None:
+        """Kill the process, whatever it draws."""
+        if self._running is not None:
+            self._running.process.kill()
 
     def answer(self, folder: str, progress: Progress) -> dict[str, Any]:
         """Have the process draw the task in a folder.
