@@ -107,6 +107,8 @@ _HIGHEST_MULTIPLE = 32
 """Highest multiple of the mesh frequency with a weight."""
 _LONGEST_RELIEF = 0.95
 """Longest relief from the tip, over half of the path of contact."""
+_SETTLED_PLACE, _SETTLED_VALUE, _MOST_REFINED = 1e-4, 1e-6, 200
+"""End of the refinement: moves as parts of the largest relief, changes as parts of the value, number of trials."""
 _DEEPEST = 3.0
 """Largest amount of relief, in mean deflections at the largest load."""
 
@@ -294,7 +296,8 @@ def optimal_tip_relief(
         return worst(float(x[0]) * deepest, float(x[1]) * longest)
 
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
-    optimum = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
+    settled = {"xatol": _SETTLED_PLACE, "fatol": _SETTLED_VALUE * float(tried.min()), "maxfev": _MOST_REFINED}
+    optimum = minimize(scaled, start, method="Nelder-Mead", options=settled)
     relief: TipRelief | None = TipRelief(
         float(optimum.x[0] * deepest), length=float(optimum.x[1] * longest), shape=shape
     )
