@@ -51,7 +51,7 @@ from gearwhine.coupling.machine.connectors import (
     SpeedTable,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
-from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
+from gearwhine.coupling.machine.coupled_system import CoupledSystem, embed
 from gearwhine.coupling.machine.frames import Frames, in_frame, stiffness_in_frame
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
@@ -193,20 +193,6 @@ class CoupledMachine:
         place, back = self.flanks(number)
         sense = _senses(self.meshes, self.speeds, self.speed_ratios)[place] * (-1 if back else 1)
         return _face(MachineCoordinates(self.system.components, self.speeds), self.meshes[place], sense, contact)
-
-    def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
-        """Moments of load shuttling of flanks with another tooth contact, as a constant load and harmonics.
-
-        Parameters
-        ----------
-        number : int
-            Number of the contact in the system.
-        contact : ToothContact
-        force : float
-            Mean mesh force, above 0 [N].
-        """
-        standing = self.system.contacts[number]
-        return self.face(number, contact).shuttling(force, standing.phase, standing.mesh_frequency)
 
     def at_speed(self, speed: float) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.

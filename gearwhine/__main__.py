@@ -19,7 +19,7 @@ def main() -> None:
     gc.set_threshold(20_000, 20, 20)
     from gearwhine.cli import run_command
 
-    sys.exit(run_command(sys.argv[1:]))
+    sys.exit(run_command(sys.argv[1:], is_process=True))
 
 
 if __name__ == "__main__":

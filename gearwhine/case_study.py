@@ -15,7 +15,7 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.studied_machine import Settings
 from gearwhine.study import Study, require_either
-from gearwhine.view_names import View
+from gearwhine.view_names import GearPart, View
 
 if TYPE_CHECKING:
     from gearwhine.analyses.machine_results import MachineUnderLoad
@@ -517,7 +517,9 @@ class CaseStudy(Study):
         result = rotors_result(solved, self.origin, assemblies, carriers)
         return replace(result, _files=ross_files) if write_ross else result
 
-    def gears(self, aims: "Sequence[ReliefAim]" = ()) -> "Result[tuple[PairAnalysis, ...]]":
+    def gears(
+        self, aims: "Sequence[ReliefAim]" = (), *, without: Sequence[GearPart] = ()
+    ) -> "Result[tuple[PairAnalysis, ...]]":
         """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief.
 
         The housing is solved for a tip relief whose aim names a sensor. Else it takes part where it is solved already,
@@ -528,6 +530,9 @@ class CaseStudy(Study):
         ----------
         aims : sequence of ReliefAim, optional
             Objective of the best relief of each pair, in place of those of the case.
+        without : sequence of {"harris-map", "relief", "pictures"}
+            What to leave out: the Harris maps, the search for the best tip relief, which takes most of the time, or the
+            pictures.
 
         Raises
         ------
@@ -535,38 +540,38 @@ class CaseStudy(Study):
             Where the case has no gear pairs, or one cannot be solved as it stands, or in the machine where a tip relief
             aims at a sensor.
         """
-        from gearwhine.analyses.machine_results import gears_result, require_aims
-        from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
+        from gearwhine.analyses.machine_results import gears_result, require_aims, require_parts
         from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
         from gearwhine.solve.machine import solve_pairs
 
         case, progress = self.case, self.progress
         self.require("gears")
-        housing = self._housing_of_gears()
+        require_parts(without, aims)
+        housing = self._housing_of_gears(for_relief="relief" not in without and not aims)
         loaded, point = solve_pairs(case, housing or self._reduced, progress)
         analysed = analyse_pairs(case, loaded, point)
         if aims:
             require_aims(aims, len(analysed))
             analysed = tuple(replace(pair, aim_given=True) for pair in analysed)
-        else:
+        elif "relief" not in without:
             aims = relief_aims(case, loaded, progress, point=point, housing=housing)
-        pairs = solve_over_torques(analysed, progress, aims)
         is_housed = housing is not None or self._reduced is not None
         has_seats = case.housing is not None or case.reduced_housing is not None
         seats = None if point is None or not has_seats else "housing" if is_housed else "rigid"
-        return gears_result(pairs, self.origin, seats)
+        return gears_result(analysed, aims, without, self.origin, seats, progress)
 
-    def _housing_of_gears(self) -> "HousingModes | None":
-        """Return the housing where it takes part in the analysis of gear pairs."""
+    def _housing_of_gears(self, *, for_relief: bool) -> "HousingModes | None":
+        """Return the housing where it takes part in the analysis of gear pairs or in the aims of their reliefs."""
         from gearwhine.solve.gear_pairs import aims_at_sensor
         from gearwhine.solve.housing_modes import kept_housing
 
         case = self.case
         if case.housing is None or not case.rotor or case.operation is None:
             return None
-        if aims_at_sensor(case.gear_pair):
+        if for_relief and aims_at_sensor(case.gear_pair):
             return self.housing
-        takes_part = case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair)
+        finds_misalignment = any(case.parts.finds_misalignment(pair) for pair in case.gear_pair)
+        takes_part = finds_misalignment or (for_relief and bool(case.housing.sensor))
         with self._kept.lock:
             if self._kept.solved is None and takes_part and not self.fresh:
                 self._kept.solved = kept_housing(case, self.folder, self.progress)

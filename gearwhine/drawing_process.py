@@ -22,6 +22,7 @@ import numpy as np
 import gearwhine
 from gearwhine.housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
+from gearwhine.interruption import cleared_at_the_end
 from gearwhine.numerics.progress import Progress
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
@@ -37,7 +38,7 @@ def one_process() -> Iterator["_DrawingProcess"]:
     if (kept := _kept.get()) is not None:
         yield kept
         return
-    with _DrawingProcess() as process:
+    with _DrawingProcess() as process, cleared_at_the_end(process.stop):
         token = _kept.set(process)
         try:
             yield process
@@ -97,6 +98,7 @@ class _DrawingProcess:
 
     def __init__(self) -> None:
         self._running: _Running | None = None
+        self._is_stopped = False
 
     def __enter__(self) -> Self:
         """Return the process itself, which need not run yet."""
@@ -106,14 +108,22 @@ class _DrawingProcess:
         """End the process: its pictures are on file, or no longer wanted."""
         self._end()
 
+    def stop(self) -> None:
+        """Kill the process, whatever it draws, and start no other; from any thread."""
+        self._is_stopped = True
+        if (running := self._running) is not None:
+            running.process.kill()
+
     def answer(self, folder: str, progress: Progress) -> dict[str, Any]:
         """Have the process draw the task in a folder.
 
         Raises
         ------
         RendererUnavailableError
-            Where the process dies of it.
+            Where the process dies of it, or is stopped.
         """
+        if self._is_stopped:
+            raise RendererUnavailableError("the renderer was stopped")
         if self._running is None:
             self._running = _start()
         running = self._running

@@ -1,10 +1,18 @@
-"""Interruption by Ctrl-C or SIGTERM: both raise KeyboardInterrupt where that is safe."""
+"""Interruption by Ctrl-C or SIGTERM: both raise KeyboardInterrupt where that is safe.
 
+Python runs a signal's handler between two steps of the main thread. Compiled code, such as a factorisation, a product
+of large matrices or the compiler of the kernels, may last for a minute without one. A command therefore has a thread
+that the system itself wakes at a signal (:func:`ended_when_deaf`): where the exception has not unwound the command
+within two seconds, that thread clears away what is half-written and ends the process.
+"""
+
+import multiprocessing
+import os
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from queue import SimpleQueue
 from types import FrameType
 from typing import TypeVar
@@ -12,6 +20,12 @@ from typing import TypeVar
 T = TypeVar("T")
 
 _NUMBERS = (signal.SIGINT, signal.SIGTERM)
+
+INTERRUPTED = 130
+"""Exit code of an interrupted command."""
+
+_PATIENCE = 2.0
+"""Time in which an interruption is to unwind a command, before its process is ended [s]."""
 
 _AGAIN = 0.05
 """Delay after which a deferred interruption is raised again [s]."""
@@ -41,6 +55,69 @@ def interruptible() -> Iterator[None]:
         sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def ended_when_deaf(say: Callable[[list[str]], None]) -> Iterator[None]:
+    """End the process with exit code 130 where an interruption does not unwind this block within two seconds.
+
+    Whatever :func:`cleared_at_the_end` names is cleared away first, and further processes are killed. For a command
+    that is a process of its own: the code that the main thread is in never returns.
+
+    Parameters
+    ----------
+    say : callable
+        Says that the command was interrupted; called with the notes of what was cleared away.
+    """
+    heard, wake = os.pipe()
+    os.set_blocking(wake, False)
+    before = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
+    left = threading.Event()
+    watch = threading.Thread(target=_end_when_deaf, args=(heard, left, say), name="interruption", daemon=True)
+    watch.start()
+    try:
+        yield
+    finally:
+        left.set()
+        signal.set_wakeup_fd(before)
+        os.close(wake)
+        watch.join()
+        os.close(heard)
+
+
+def _end_when_deaf(heard: int, left: threading.Event, say: Callable[[list[str]], None]) -> None:
+    while numbers := os.read(heard, 1):
+        if numbers[0] not in _NUMBERS:
+            continue
+        if not left.wait(_PATIENCE):
+            notes = []
+            for clear in reversed(_clearances):
+                with suppress(Exception):
+                    notes.append(clear())
+            for process in multiprocessing.active_children():
+                process.kill()
+            say([note for note in notes if note])
+            os._exit(INTERRUPTED)
+
+
+_clearances: list[Callable[[], str | None]] = []
+
+
+@contextmanager
+def cleared_at_the_end(clear: Callable[[], str | None]) -> Iterator[None]:
+    """Call a function where the process is ended within this block; the block itself clears away in all other cases.
+
+    Parameters
+    ----------
+    clear : callable
+        Clears away what is half-written, or ends a process; called without arguments from another thread. The text that
+        it returns is said to the user.
+    """
+    _clearances.append(clear)
+    try:
+        yield
+    finally:
+        _clearances.remove(clear)
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from gearwhine.numerics.findings import Finding, Number, refuse
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.studied_machine import StudiedMachine
+from gearwhine.view_names import GearPart
 
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
@@ -85,7 +86,9 @@ class Study(StudiedMachine):
         carriers = {shaft.name: shaft.carrier for shaft in self.machine.shafts if shaft.carrier is not None}
         return rotors_result(solved, self.origin, assemblies, carriers)
 
-    def gears(self, aims: "Sequence[ReliefAim]" = ()) -> "Result[tuple[PairAnalysis, ...]]":
+    def gears(
+        self, aims: "Sequence[ReliefAim]" = (), *, without: Sequence[GearPart] = ()
+    ) -> "Result[tuple[PairAnalysis, ...]]":
         """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief.
 
         Parameters
@@ -93,27 +96,33 @@ class Study(StudiedMachine):
         aims : sequence of ReliefAim, optional
             Objective of the best relief of each pair; by default those of
             :func:`gearwhine.coupling.analyses.gear_pairs.default_aims`.
+        without : sequence of {"harris-map", "relief", "pictures"}
+            What to leave out: the Harris maps, the search for the best tip relief, which takes most of the time, or the
+            pictures.
 
         Raises
         ------
         gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
             Where the machine has no gear pairs, there are more or fewer aims than pairs, or a pair cannot be solved.
         """
-        from gearwhine.analyses.machine_results import gears_result, require_aims
+        from gearwhine.analyses.machine_results import gears_result, require_aims, require_parts
         from gearwhine.coupling import CouplingError
-        from gearwhine.coupling.analyses.gear_pairs import analyse_machine, default_aims, solve_over_torques
+        from gearwhine.coupling.analyses.gear_pairs import analyse_machine, default_aims
         from gearwhine.coupling.analyses.loaded_machine import point_of_flanks
 
         machine = self.machine
         if not machine.gear_pairs:
             raise CouplingError("gears: expected a machine with a gear pair")
         require_aims(aims, len(machine.gear_pairs))
+        require_parts(without, aims)
         point = point_of_flanks(machine, self.progress)
         analysed = analyse_machine(machine, point, self.progress)
-        chosen = aims or default_aims(machine, point, [pair.solved for pair in analysed], self.progress)
+        chosen = aims
+        if not aims and "relief" not in without:
+            chosen = default_aims(machine, point, [pair.solved for pair in analysed], self.progress)
         analysed = tuple(replace(pair, aim_given=bool(aims)) for pair in analysed)
         seats = None if point is None or machine.housing is None else "housing"
-        return gears_result(solve_over_torques(analysed, self.progress, chosen), self.origin, seats)
+        return gears_result(analysed, chosen, without, self.origin, seats, self.progress)
 
     def operating_point(
         self,

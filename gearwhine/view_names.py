@@ -1,4 +1,4 @@
-"""Names of the directions of view of pictures, which the command line reads without loading a renderer."""
+"""Names that options take, which the command line reads without loading a renderer or the gears."""
 
 from typing import Literal
 
@@ -19,3 +19,6 @@ View = Literal[
     "iso-opposite",
 ]
 """Directions of view, see :mod:`gearwhine.housing.pictures.views`."""
+
+GearPart = Literal["harris-map", "relief", "pictures"]
+"""What the analysis of gear pairs may be without: Harris maps, the search for the best tip relief, its pictures."""

@@ -4,9 +4,9 @@ Analyses over a range of torques give Harris maps and the optimal tip relief, wh
 harmonics, or the level at a sensor.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -262,9 +262,9 @@ class PairAnalysis:
 
     @property
     def as_given(self) -> float | None:
-        """Peak to peak at the mean torque with all teeth alike [m]; None without a Harris map."""
+        """Peak to peak at the mean torque with all teeth alike [m]; None without a Harris map or a best relief."""
         if self.harris is None:
-            return None
+            return None if self.optimum is None else _mesh_as_given(self.solved)[0].peak_to_peak_transmission_error
         return float(self.harris.peak_to_peak[np.abs(self.harris.forces - self.solved.static.force).argmin()])
 
     @property
@@ -343,20 +343,26 @@ _LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # range of a Harris map as parts of the 
 
 
 def solve_over_torques(
-    pairs: Sequence[PairAnalysis], progress: Progress = silent, aims: Sequence[ReliefAim] = ()
+    pairs: Sequence[PairAnalysis],
+    progress: Progress = silent,
+    aims: Sequence[ReliefAim] = (),
+    *,
+    harris_map: bool = True,
+    relief: bool = True,
 ) -> tuple[PairAnalysis, ...]:
     """Add Harris maps and optimal reliefs to analysed pairs, where they carry a torque.
 
-    ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given.
+    ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given. Either may be left out.
     """
     analysed = []
     for pair, aim in zip(pairs, aims or [PeakToPeak()] * len(pairs), strict=True):
-        if pair.solved.static.force > 0.0:
+        if pair.solved.static.force > 0.0 and harris_map:
             progress(f"Harris map of {pair.label}")
             pair = replace(pair, harris=_harris_map(pair.solved))
-            if pair.solved.has_single_pairs:
-                progress(f"best tip relief of {pair.label}")
-                pair = replace(pair, optimum=_best_relief(pair.solved, aim), aim=aim)
+        if pair.solved.static.force > 0.0 and pair.solved.has_single_pairs and relief:
+            work = f"best tip relief of {pair.label}"
+            progress(work)
+            pair = replace(pair, optimum=_best_relief(pair.solved, aim, partial(progress, work)), aim=aim)
         analysed.append(pair)
     return tuple(analysed)
 
@@ -370,7 +376,7 @@ def _harris_map(pair: LoadedGearPair) -> HarrisMap:
     return harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
 
 
-def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
+def _best_relief(pair: LoadedGearPair, aim: ReliefAim, tried: Callable[[float], None]) -> ReliefOptimum:
     relief = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
     geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.carrying_flanks.faces
     corners = pair.contact.has_corner_contact
@@ -383,6 +389,7 @@ def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
         faces=faces,
         searched_faces=None if faces is None else with_coarser_slices(faces, _SEARCHED_SLICES),
         aim=aim,
+        tried=tried,
     )
 
 

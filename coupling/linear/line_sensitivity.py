@@ -307,6 +307,7 @@ class LineModel(MeshHarmonicModel):
         rate, force = abs(system.contacts[number].mesh_frequency), float(self.contact.force[number])
         compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
+        standing, face = system.contacts[number], self.machine.face(number, law)
         stiffness = np.zeros((FACE_STATIONS, 3, 3))
         error = np.zeros((FACE_STATIONS, HARMONICS), dtype=np.complex128)
         shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
@@ -320,11 +321,12 @@ class LineModel(MeshHarmonicModel):
                 step = way * _STIFFNESS_STEP * compression
                 far = moved(station, step)
                 mean = self._mesh(number, far, _STIFFNESS_POINTS).mean_mesh_stiffness
-                stiffness[station] += self.machine.face(number, far).law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
+                stiffness[station] += face.with_contact(far).law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
                 step = way * _GAP_STEP * compression
                 near = moved(station, step)
                 error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
-                for load in self.machine.shuttling(number, near, force)[1]:
+                moments = face.with_contact(near).shuttling(force, standing.phase, standing.mesh_frequency)
+                for load in moments[1]:
                     order = round(load.frequency / (2.0 * np.pi * rate))
                     if order <= HARMONICS:
                         shuttling[station, order - 1] += load.amplitude / (2.0 * step)

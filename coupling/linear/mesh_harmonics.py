@@ -35,6 +35,7 @@ from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands, Sideba
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
 from gearwhine.coupling.linear.turning_response import Order
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
@@ -340,10 +341,11 @@ class MeshHarmonicModel:
         orders = np.arange(1, count + 1)
         return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * orders * contact.phase))
 
-    def shuttling_loads(self, number: int, law: ToothContact, force: float) -> dict[int, ComplexArray]:
-        """Moments of load shuttling by harmonic, of the flanks ``law`` under a force [N], shape (n,) each."""
-        rate = abs(self.machine.system.contacts[number].mesh_frequency)
-        loads = self.machine.shuttling(number, law, force)[1]
+    def shuttling_loads(self, number: int, face: MeshFace, force: float) -> dict[int, ComplexArray]:
+        """Moments of load shuttling by harmonic, of the flanks of a face under a force [N], shape (n,) each."""
+        standing = self.machine.system.contacts[number]
+        rate = abs(standing.mesh_frequency)
+        loads = face.shuttling(force, standing.phase, standing.mesh_frequency)[1]
         return {round(load.frequency / (2.0 * np.pi * rate)): load.amplitude for load in loads}
 
     def _dynamic(self, w: float) -> ComplexArray:
@@ -402,8 +404,8 @@ class MeshHarmonicModel:
     def _shuttling(self) -> dict[int, dict[int, ComplexArray]]:
         """Return the moments of every loaded contact by harmonic."""
         assert self.contact.force is not None
-        contacts, force = self.machine.system.contacts, self.contact.force
-        return {n: self.shuttling_loads(n, contacts[n].contact, float(force[n])) for n in self.loaded}
+        contacts, force, face = self.machine.system.contacts, self.contact.force, self.machine.face
+        return {n: self.shuttling_loads(n, face(n, contacts[n].contact), float(force[n])) for n in self.loaded}
 
     def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
         """Mesh of the contact law ``law`` under the mean force of a contact."""

@@ -29,6 +29,7 @@ from gearwhine.coupling.gears import LoadedMesh, ToothContact
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
 from gearwhine.coupling.linear.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 
@@ -97,10 +98,11 @@ class SensorLevel:
         behind = model.machine.meshes[self.mesh].behind_rims
         stiffness, contact = mesh.mean_stiffness_without(behind), law_between_rims(contact, behind)
         error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
-        shuttling = model.shuttling_loads(number, contact, force)
+        face = self._face(contact)
+        shuttling = model.shuttling_loads(number, face, force)
         before, damping = float(model.contact.stiffness[number]), float(model.contact.damping[number])
         after = damping * math.sqrt(stiffness / before) if self.damping_follows else damping
-        law, law_before = model.machine.face(number, contact).law(force, stiffness), self._law
+        law, law_before = face.law(force, stiffness), self._law
         accelerations = {}
         for n, (w, by_sensor, by_rows) in self._adjoints.items():
             load = error[n - 1] * law[0] @ self._rows
@@ -112,19 +114,33 @@ class SensorLevel:
             accelerations[n] = complex(-(w**2) * moved)
         return accelerations
 
+    def _face(self, contact: ToothContact) -> MeshFace:
+        """Face of the flanks with another contact: its rows are found once for each division into slices."""
+        division = b"" if contact.faces is None else contact.faces.z.tobytes()
+        if division not in self._faces:
+            self._faces[division] = self.model.machine.face(self._loaded[0], contact)
+        return self._faces[division].with_contact(contact)
+
+    @cached_property
+    def _faces(self) -> dict[bytes, MeshFace]:
+        return {}
+
+    @cached_property
+    def _own_face(self) -> MeshFace:
+        """Face of the flanks in the model."""
+        return self._face(self.model.machine.system.contacts[self._loaded[0]].contact)
+
     @cached_property
     def _rows(self) -> FloatArray:
         """Mean approach over the face of the mesh, its slope and the tilt by the coordinates, shape (3, n)."""
-        number = self._loaded[0]
-        return self.model.machine.face(number, self.model.machine.system.contacts[number].contact).rows
+        return self._own_face.rows
 
     @cached_property
     def _law(self) -> FloatArray:
         """Linear law of the mesh in the model over `_rows`, (3, 3)."""
         number, contact = self._loaded[0], self.model.contact
         assert contact.force is not None
-        face = self.model.machine.face(number, self.model.machine.system.contacts[number].contact)
-        return face.law(float(contact.force[number]), float(contact.stiffness[number]))
+        return self._own_face.law(float(contact.force[number]), float(contact.stiffness[number]))
 
     @cached_property
     def _loaded(self) -> tuple[int, ...]:

@@ -194,13 +194,16 @@ def solve_lines(
     loaded = bearing_ports(housing.housing, machine)
     if not loaded or not (housing.sensors or acoustics):
         return None
-    progress("residual modes of the sensors")
+    work = "residual modes of the sensors"
+    progress(f"{work}: factorisation at the limit of the modes")
     matrices = housing.housing.matrices()
     extension = ModeSetExtension(matrices, housing.modes)
     modes = housing.modes
     if housing.sensors:
         ports = [sensor.matrix for sensor in housing.sensors.values()]
-        modes = extension.with_ports(modes, ports, orders=RESPONSE_ORDERS)
+        modes = extension.with_ports(
+            modes, ports, orders=RESPONSE_ORDERS, progress=lambda step: progress(f"{work}: {step}")
+        )
     about = machine.at_operating_point(point)
     # Flanks that nearly carry evenly keep their gap here, whose derivative is sought.
     gaps = {pair.names: pair.station_gap for pair in point.pairs}
@@ -230,7 +233,9 @@ def solve_lines(
     if not first.lines:
         return None
     progress("responses of the housing at the lines")
-    exact = extension.with_harmonic_responses(modes, _housing_loads(first, loaded))
+    exact = extension.with_harmonic_responses(
+        modes, _housing_loads(first, loaded), lambda step: progress(f"responses of the housing at the lines: {step}")
+    )
     lines = solved(exact, [sound.line.frequency for sound in first.sound])
     return replace(lines, sidebands=_sidebands(acoustics, lines, radiation, progress))
 

@@ -172,6 +172,16 @@ class MeshFace:
         """Moments of load shuttling, see `gearwhine.coupling.machine.load_shuttling.shuttling_loads`."""
         return shuttling_loads(self.contact, self.geometry, force, self.line.axial, self.tilting, phase, mesh_frequency)
 
+    def with_contact(self, contact: ToothContact) -> "MeshFace":
+        """Return the face of the same flanks with another tooth contact, whose slices lie where this one's do."""
+        if self.flanks is None:
+            return replace(self, contact=contact)
+        sound = contact.teeth_alike
+        if contact.faces is None:
+            sound = replace(sound, faces=self.flanks.tooth_contact.faces)
+        flanks = FaceContact(sound, self.geometry, self.flanks.stations, self.line.axial)
+        return replace(self, contact=contact, flanks=flanks)
+
 
 def mesh_face(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, contact: ToothContact, middle: FloatArray

@@ -336,7 +336,8 @@ def build_radiation(acoustics: Acoustics, housing: HousingField, progress: Progr
         return HousingRadiation.of_faces(housing.mesh, housing.shapes, faces, medium=acoustics.medium)
     limit = acoustics.limit_hz(housing)
     edge = acoustics.edge(limit)
-    progress(f"wrapping the housing in triangles of {1e3 * edge:.3g} mm")
+    work = f"wrapping the housing in triangles of {1e3 * edge:.3g} mm"
+    progress(work)
     try:
         return HousingRadiation.of_surface(
             housing.mesh,
@@ -350,6 +351,7 @@ def build_radiation(acoustics: Acoustics, housing: HousingField, progress: Progr
             still=acoustics.still,
             natural_modes=len(housing.modes.shapes),
             highest_frequency=limit,
+            progress=lambda step: progress(f"{work}: {step}"),
         )
     except HousingError as error:
         refuse([unwrapped(acoustics, edge, error)], AcousticsError)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from gearwhine.analyses.origin import Origin
-from gearwhine.analyses.result import Result
+from gearwhine.analyses.result import Result, no_figures
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.condition_record import bearing_tones, condition_record
 from gearwhine.coupling.analyses.gear_condition import MachineCondition, machine_condition
-from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine
 from gearwhine.coupling.analyses.modes_and_responses import (
     SolvedSystem,
@@ -58,6 +58,7 @@ from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.damping import damping_document, damping_warnings, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
+from gearwhine.view_names import GearPart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -152,10 +153,44 @@ def require_aims(aims: Sequence[ReliefAim], pairs: int) -> None:
         raise CouplingError(f"gears: expected an aim for each of the {pairs} gear pairs, got {len(aims)}")
 
 
+def require_parts(without: Sequence[str], aims: Sequence[ReliefAim]) -> None:
+    """Refuse to leave out what is no part of the analysis of gear pairs, or a relief whose aim is given.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError
+    """
+    known = get_args(GearPart)
+    if unknown := [name for name in without if name not in known]:
+        raise CouplingError(f"gears: without {unknown[0]!r}; expected any of {', '.join(map(repr, known))}")
+    if aims and "relief" in without:
+        raise CouplingError("gears: expected aims of the best tip relief, or to be without it, got both")
+
+
 def gears_result(
-    pairs: tuple[PairAnalysis, ...], origin: Origin, seats: str | None
+    pairs: tuple[PairAnalysis, ...],
+    aims: Sequence[ReliefAim],
+    without: Sequence[str],
+    origin: Origin,
+    seats: str | None,
+    progress: Progress = silent,
 ) -> Result[tuple[PairAnalysis, ...]]:
-    """Return the result of analysed gear pairs; ``seats`` says what holds the bearings where misalignment is found."""
+    """Return the result of gear pairs that are analysed under their mean torque, and over torque here.
+
+    Parameters
+    ----------
+    pairs : tuple of PairAnalysis
+    aims : sequence of ReliefAim
+        Objective of the best relief of each pair.
+    without : sequence of {"harris-map", "relief", "pictures"}
+        Parts that are left out.
+    origin : Origin
+    seats : str or None
+        What holds the bearings where misalignment is found.
+    progress : callable
+    """
+    parts = {"harris_map": "harris-map" not in without, "relief": "relief" not in without}
+    pairs = solve_over_torques(pairs, progress, aims, **parts)
     document = gears_document(pairs)
     if seats is not None:
         for pair in document["pairs"]:
@@ -175,7 +210,9 @@ def gears_result(
 
         return draw_gear_pairs(pairs, progress)
 
-    return origin.result("gears", pairs, document, (GEARS, pairs), figures=figures)
+    return origin.result(
+        "gears", pairs, document, (GEARS, pairs), figures=no_figures if "pictures" in without else figures
+    )
 
 
 def load_result(solved: SolvedLoad, origin: Origin, progress: Progress = silent) -> Result[SolvedLoad]:

@@ -6,6 +6,8 @@ import copy
 import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -229,12 +231,7 @@ class Result(Generic[Solved]):
             self._write_data(place, kept.variables)
             for file in kept.files:
                 shutil.copyfile(file, place / file.name)
-            for name, figure in self.figures(progress) if pictures else ():
-                # Loaded where there is a figure: matplotlib takes as long as the modes of a small housing.
-                from gearwhine.figures.style import save
-
-                save(figure, place / f"{name}.png")
-            added = dict(self._files(place, pictures=pictures))
+            added = self._draw(place, progress) if pictures else dict(self._files(place, pictures=False))
             add_warnings(document, added.pop("warnings", ()))
             document.update(added)
             if self._started is not None:
@@ -257,6 +254,30 @@ class Result(Generic[Solved]):
                 files = sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file())
             document.update(folder=str(folder), files=files)
         return replace(self, document=document)
+
+    def _draw(self, place: Path, progress: Progress) -> dict[str, Any]:
+        """Draw the figures, while a process of its own draws the shapes among the further files; what these add."""
+        if self._files is no_files:
+            self._draw_figures(place, progress)
+            return {}
+        from gearwhine.drawing_process import one_process
+
+        with one_process() as drawing, ThreadPoolExecutor(1) as beside:
+            # The thread waits for that process most of the time.
+            files = beside.submit(copy_context().run, partial(self._files, place, pictures=True))
+            try:
+                self._draw_figures(place, progress)
+                return dict(files.result())
+            except BaseException:
+                drawing.stop()
+                raise
+
+    def _draw_figures(self, place: Path, progress: Progress) -> None:
+        for name, figure in self.figures(progress):
+            # Loaded where there is a figure: matplotlib takes as long as the modes of a small housing.
+            from gearwhine.figures.style import save
+
+            save(figure, place / f"{name}.png")
 
     def _write_data(self, place: Path, kept_arrays: Variables) -> None:
         if self._arrays is None:

@@ -3,6 +3,8 @@
 import io
 import sys
 import warnings
+from collections.abc import Sequence
+from contextlib import ExitStack
 
 from cyclopts import App, CycloptsError
 
@@ -10,7 +12,7 @@ from gearwhine import __version__
 from gearwhine.cli import folder_commands, import_command
 from gearwhine.cli.study_commands import STUDY_COMMANDS, made_command
 from gearwhine.failures import explain
-from gearwhine.interruption import interruptible, was_interrupted
+from gearwhine.interruption import INTERRUPTED, ended_when_deaf, interruptible, was_interrupted
 
 app = App(
     name="gearwhine",
@@ -28,12 +30,22 @@ for _command in (folder_commands.examples, folder_commands.report, folder_comman
 app.command(import_command.import_, name="import")
 
 
-def run_command(arguments: list[str]) -> int:
-    """Run the command line; 0 when done, 2 where the user's input is wrong, 1 for anything else.
+def run_command(arguments: list[str], *, is_process: bool = False) -> int:
+    """Run the command line; 0 when done, 2 where the user's input is wrong, 1 for anything else, 130 if interrupted.
 
     Only an unexpected exception leaves a traceback.
+
+    Parameters
+    ----------
+    arguments : list of str
+    is_process : bool
+        Whether the process is that of the command alone: it is then ended where compiled code delays an interruption.
     """
-    with interruptible(), warnings.catch_warnings():
+    with ExitStack() as stack:
+        if is_process:
+            stack.enter_context(ended_when_deaf(_say_interrupted))
+        stack.enter_context(interruptible())
+        stack.enter_context(warnings.catch_warnings())
         warnings.showwarning = _show_warning
         return _run_command(arguments)
 
@@ -76,7 +88,11 @@ def _run_command(arguments: list[str]) -> int:
 
 def _interrupted(error: BaseException) -> int:
     """Say that the command was interrupted, with the notes of the error that ended it; return the exit code."""
-    sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
-    for note in getattr(error, "__notes__", ()):
-        sys.stderr.write(f"gearwhine: {note}\n")
-    return 130
+    _say_interrupted(getattr(error, "__notes__", ()))
+    return INTERRUPTED
+
+
+def _say_interrupted(notes: Sequence[str]) -> None:
+    lines = ("interrupted; the output folder holds no half-written file", *notes)
+    sys.stderr.write("".join(f"gearwhine: {line}\n" for line in lines))
+    sys.stderr.flush()

@@ -234,10 +234,14 @@ def missing_glyphs_as_boxes() -> Iterator[None]:
         yield
 
 
+_COMPRESSION = 4
+"""Level of the compression of a PNG: by the default of 6 a fifth more time gives files that are 1 % smaller."""
+
+
 def save(figure: Figure, path: Path) -> str:
     """Write a figure as PNG and return the file's name; sheets for print are finer than figures for a monitor."""
     with missing_glyphs_as_boxes():
-        figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)))
+        figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)), pil_kwargs={"compress_level": _COMPRESSION})
     return path.name
 
 

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwhine.coupling.analyses.recording import Arrays
+from gearwhine.interruption import cleared_at_the_end
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"
@@ -103,15 +104,22 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
             place = _place(folder, f"{_FOLDER_PREFIX}{key[:_KEY_DIGITS]}", fresh=fresh)
             stack.enter_context(held_lock(place))
         blocks = BlockFiles(place)
+
+        def leave() -> str | None:
+            """Clear away a folder without blocks; return where those of others are kept."""
+            if not blocks.is_empty:
+                kept = f"what was marched so far is kept in {place}"
+                return f"{kept}: the same command goes on from there, --fresh does not"
+            _clear(place, folder if is_new else None)
+            return None
+
+        stack.enter_context(cleared_at_the_end(leave))
         try:
             yield blocks
         except BaseException as error:
-            if blocks.is_empty:
-                _clear(place, folder if is_new else None)
-            elif isinstance(error, KeyboardInterrupt | OSError):
-                error.add_note(
-                    f"what was marched so far is kept in {place}: the same command goes on from there, --fresh does not"
-                )
+            note = leave()
+            if note is not None and isinstance(error, KeyboardInterrupt | OSError):
+                error.add_note(note)
             raise
         _clear(place, None)
 

@@ -12,11 +12,12 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from gearwhine.failures import DamagedResultsError
-from gearwhine.interruption import uninterrupted
+from gearwhine.interruption import cleared_at_the_end, uninterrupted
 from gearwhine.output.manifest import MANIFEST, file_digest, listed_digests, manifest_text
 from gearwhine.output.own_files import require_own
 
@@ -178,6 +179,7 @@ def staging(folder: Path, settle: Callable[[Path], None] | None = None, *, liste
                     shutil.rmtree(stale, ignore_errors=True)
             place = Path(tempfile.mkdtemp(prefix=_STAGING, dir=folder))
             stack.enter_context(held_lock(place))
+        stack.enter_context(cleared_at_the_end(partial(_clear_stage, place, folder if is_new else None)))
         try:
             yield place
             with exclusive_lock(folder), uninterrupted():
@@ -191,10 +193,15 @@ def staging(folder: Path, settle: Callable[[Path], None] | None = None, *, liste
                 place.rename(complete)
                 _move_out(complete, folder)
         finally:
-            shutil.rmtree(place, ignore_errors=True)
-            if is_new:
-                with suppress(OSError):  # it holds results, or another run is at work in it
-                    folder.rmdir()
+            _clear_stage(place, folder if is_new else None)
+
+
+def _clear_stage(place: Path, created: Path | None) -> None:
+    """Remove staged files, and the output folder where these made it."""
+    shutil.rmtree(place, ignore_errors=True)
+    if created is not None:
+        with suppress(OSError):  # it holds results, or another run is at work in it
+            created.rmdir()
 
 
 @contextmanager

@@ -614,7 +614,8 @@ def _best_relief(pair: Document) -> list[str]:
             f"The relief of {_reliefs(pair)} leaves {as_given:.2f} µm peak to peak {at}{alike}, none {without:.2f} µm",
         ]
         # Every pair is quiet at the lowest torque.
-        if (quietest := pair["harris_map"]["quietest_torque_n_m"]) > pair["harris_map"]["torque_n_m"][0]:
+        harris = pair["harris_map"]
+        if harris is not None and (quietest := harris["quietest_torque_n_m"]) > harris["torque_n_m"][0]:
             lines.append(f"  it is quietest near {quietest:.3g} N·m")
     else:
         lines = [f"Without relief {as_given:.2f} µm peak to peak {at}{alike}"]

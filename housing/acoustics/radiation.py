@@ -8,7 +8,7 @@ turns it into a pressure on the surface:
 - *ERP*, the equivalent radiated power: ρ c v at every point, a radiation efficiency of 1. It is an estimate.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol, TypeVar
@@ -397,7 +397,13 @@ def coarsest_edge(mesh: Mesh) -> float:
     return float(np.ptp(mesh.bounds, axis=0).min()) / _TRIANGLES_ALONG
 
 
-def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None = None) -> RadiatingSurface:
+def wrapped(
+    mesh: Mesh,
+    edge: float,
+    close_holes: float,
+    floor: HardPlane | None = None,
+    progress: Callable[[str], None] = lambda step: None,
+) -> RadiatingSurface:
     """Wrap a housing in triangles, and set it down on a floor where its vertices are within 2 % of an edge of it.
 
     Parameters
@@ -408,6 +414,8 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     close_holes : float
         Diameter of the largest hole that is capped [m].
     floor : HardPlane, optional
+    progress : callable
+        Called with a line of text before each step.
 
     Raises
     ------
@@ -415,7 +423,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
         As :func:`gearwhine.housing.acoustics.wrapping.wrap`.
     """
     edge = min(edge, coarsest_edge(mesh))
-    surface = wrap(mesh, edge, close_holes)
+    surface = wrap(mesh, edge, close_holes, progress)
     return surface if floor is None else set_down(surface, floor, edge)
 
 
@@ -464,6 +472,7 @@ class HousingRadiation:
         still: Sequence[str] = (),
         natural_modes: int | None = None,
         highest_frequency: float | None = None,
+        progress: Callable[[str], None] = lambda step: None,
     ) -> "HousingRadiation":
         """Wrap the whole housing, by boundary elements or as an estimate.
 
@@ -488,6 +497,8 @@ class HousingRadiation:
             the skin. Others, such as residual modes, are local and need not. Default: all.
         highest_frequency : float, optional
             Highest frequency that boundary elements are to solve [Hz].
+        progress : callable
+            Called with a line of text before each step.
 
         Raises
         ------
@@ -496,12 +507,13 @@ class HousingRadiation:
         HousingError
             Where the housing cannot be wrapped, or does not stand on or above the floor.
         """
-        surface = wrapped(mesh, edge, close_holes, floor)
+        surface = wrapped(mesh, edge, close_holes, floor, progress)
         elements = BoundaryElements(surface, medium, floor)
         if method == "boundary-elements":
             elements.require_few()
             if highest_frequency is not None:
                 elements.require_resolved(highest_frequency)
+        progress("motion of the triangles with the housing")
         carried = surface_velocity(mesh, surface, resting_caps=resting_caps)
         error = transfer_error(carried, shapes[:natural_modes])
         error.require()

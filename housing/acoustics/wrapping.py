@@ -12,6 +12,7 @@ MICCAI 1998, Lecture Notes in Computer Science 1496, 888-898 (the mesh); T. Ju, 
 "Dual contouring of Hermite data", ACM Transactions on Graphics 21 (2002), 339-346 (the squared distances from planes).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
@@ -48,7 +49,9 @@ _HALVED_EDGE = 1.7  # cells above which an edge is halved in the end
 _LARGEST_MENDING_MOVE = 0.1  # cells that mending may move the surface; shape below which a triangle has no plane
 
 
-def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
+def wrap(
+    mesh: Mesh, edge: float, close_holes: float, progress: Callable[[str], None] = lambda step: None
+) -> RadiatingSurface:
     """Wrap a housing in a closed surface of triangles of about the same size.
 
     Parameters
@@ -59,6 +62,8 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
         Mean edge of the triangles [m].
     close_holes : float
         Diameter of the largest bore or opening of the cavity that is capped [m].
+    progress : callable
+        Called with a line of text before each step.
 
     Returns
     -------
@@ -89,6 +94,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
             f"a wrap with an edge of {1e3 * edge:.4g} mm takes {np.prod(shape.astype(np.float64)):.3g} cells; expected "
             f"at most {_MOST_CELLS:.3g}: give a longer edge"
         )
+    progress("cells of the housing")
     origin = low - around * fine
     hit = np.zeros(shape, dtype=bool)
     hit[tuple(np.floor((skin.samples(0.6 * fine)[0] - origin) / fine).astype(np.int64).T)] = True
@@ -102,6 +108,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
         _FINE_CELLS_PER_CELL,
     )
     coarse = _manifold(_large_bodies(~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED)))
+    progress("openings")
     _require_tight(coarse, origin, cell, close_holes)
     points, quads = _surface_net(coarse)
     places, owners = skin.samples(cell / 3.0)
@@ -109,7 +116,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     ahead = np.floor((places + 1.5 * fine * skin.normals[owners] - origin) / fine).astype(np.int64)
     outer = ~solid[tuple(ahead.T)]
     surface = RadiatingSurface(
-        *_on_skin(origin + cell * points, quads, _OuterSkin(places[outer], skin.normals[owners[outer]], cell))
+        *_on_skin(origin + cell * points, quads, _OuterSkin(places[outer], skin.normals[owners[outer]], cell), progress)
     )
     surface.require_closed()
     return surface
@@ -297,12 +304,16 @@ class _OuterSkin:
         return self.places[sample_numbers], self.normals[sample_numbers]
 
 
-def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[FloatArray, IntArray]:
+def _on_skin(
+    points: FloatArray, quads: IntArray, skin: _OuterSkin, progress: Callable[[str], None]
+) -> tuple[FloatArray, IntArray]:
     """Move the vertices of a net onto the skin and split its quadrilaterals."""
     for number in range(_ROUNDS):
+        progress(f"vertices onto the skin, round {number + 1} of {_ROUNDS}")
         points = _moved(points, quads, skin, (_FIRST_REACH if number < _ROUNDS // 3 else _REACH) * skin.cell)
     triangles = _split(points, quads)
-    for _ in range(_MENDINGS):
+    for number in range(_MENDINGS):
+        progress(f"badly shaped triangles, round {number + 1} of {_MENDINGS}")
         points, triangles = _mended(points, triangles, skin.cell)
         for _ in range(3):
             points = _moved(points, triangles, skin, _REACH * skin.cell)

@@ -85,10 +85,18 @@ class ModeSet:
     def displacement(self, coordinates: FloatArray, nodes: npt.NDArray[np.int64]) -> FloatArray:
         """Displacement of nodes by coordinates of the modes, then of the residual modes [m], shape (n_nodes, 3)."""
         count = len(self.shapes)
-        moved = np.tensordot(coordinates[:count], self.shapes[:, nodes], axes=1)
+        moved = _superposed(coordinates[:count], self.shapes, nodes)
         if self.residual_modes is not None:
-            moved = moved + np.tensordot(coordinates[count:], self.residual_modes.shapes[:, nodes], axes=1)
-        return np.asarray(moved)
+            moved = moved + _superposed(coordinates[count:], self.residual_modes.shapes, nodes)
+        return moved
+
+
+def _superposed(coordinates: FloatArray, shapes: FloatArray, nodes: npt.NDArray[np.int64]) -> FloatArray:
+    """Sum of shapes (k, n_nodes, 3) by coordinates (k,) at some nodes; of all nodes no shape is copied."""
+    if len(nodes) < shapes.shape[1]:
+        shapes, nodes = shapes[:, nodes], np.arange(len(nodes))
+    every = coordinates @ shapes.reshape(len(shapes), -1)
+    return np.asarray(every.reshape(-1, 3)[nodes])
 
 
 def solve_modes(
@@ -241,7 +249,12 @@ class ModeSetExtension:
         self._vectors = modes.shapes.reshape(len(modes.shapes), -1).T[self._system.free]
 
     def with_ports(
-        self, modes: ModeSet, ports: Sequence[sparse.csr_array] | sparse.csr_array, *, orders: int
+        self,
+        modes: ModeSet,
+        ports: Sequence[sparse.csr_array] | sparse.csr_array,
+        *,
+        orders: int,
+        progress: Callable[[str], None] = lambda message: None,
     ) -> ModeSet:
         """Add residual modes of further ports, such as sensors.
 
@@ -252,6 +265,8 @@ class ModeSetExtension:
         ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
         orders : int
             Number of orders, as `port_orders` of :func:`solve_modes`.
+        progress : callable
+            Called with a line of text before each step.
 
         Raises
         ------
@@ -271,12 +286,18 @@ class ModeSetExtension:
             free=system.free,
             n_nodes=system.n_nodes,
             orders=orders,
+            progress=progress,
         )
         if modes.residual_modes is None:
             return replace(modes, residual_modes=further)
         return self._joined(modes, further.shapes.reshape(len(further.shapes), -1).T[system.free])
 
-    def with_harmonic_responses(self, modes: ModeSet, loads: Sequence[tuple[float, FloatArray]]) -> ModeSet:
+    def with_harmonic_responses(
+        self,
+        modes: ModeSet,
+        loads: Sequence[tuple[float, FloatArray]],
+        progress: Callable[[str], None] = lambda message: None,
+    ) -> ModeSet:
         """Add to the residual modes what they lack of the responses to some harmonic loads, so that these are exact.
 
         Parameters
@@ -285,6 +306,8 @@ class ModeSetExtension:
             The modes of this extension, with residual modes.
         loads : sequence of (float, ndarray of shape (3 n_nodes, m))
             Frequencies ω below the limit [rad/s], and amplitudes of loads [N].
+        progress : callable
+            Called with a line of text before each sweep.
 
         Raises
         ------
@@ -298,22 +321,21 @@ class ModeSetExtension:
         beyond = [frequency for frequency, _ in loads if frequency**2 >= self._shift]
         if beyond:
             raise HousingError(f"a harmonic load at {beyond[0]:g} rad/s; expected one below the limit of the modes")
+        if not loads:
+            return modes
         system, residual = self._system, modes.residual_modes
-        residual_vectors = residual.shapes.reshape(len(residual.shapes), -1).T[system.free]
-        inertia = np.asarray(system.mass @ self._vectors)
-        vectors = [
-            missing_harmonic_responses(
-                system.shifted(frequency**2),
-                self._factor.solve,
-                load[system.free],
-                self._vectors,
-                inertia,
-                residual_vectors,
-                residual.frequencies**2 - frequency**2,
-            )
-            for frequency, load in loads
-        ]
-        return self._joined(modes, np.hstack(vectors)) if vectors else modes
+        missing = missing_harmonic_responses(
+            system.stiffness,
+            system.mass,
+            self._factor.solve,
+            [(frequency, load[system.free]) for frequency, load in loads],
+            self._vectors,
+            np.asarray(system.mass @ self._vectors),
+            residual.shapes.reshape(len(residual.shapes), -1).T[system.free],
+            residual.frequencies,
+            progress,
+        )
+        return self._joined(modes, np.hstack(missing))
 
     def _joined(self, modes: ModeSet, columns: FloatArray) -> ModeSet:
         assert modes.residual_modes is not None

@@ -64,7 +64,7 @@ p / (ω² - σ)^j its derivatives there. These span the set of fewer orders; the
 the further orders contribute.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -224,10 +224,10 @@ def residual_attachment_modes(
     elastic = values > floor
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
 
-    residual, sweeps = _static_response(
-        stiffness, solve, loads, vectors, inertia, _SETTLED_RESPONSE_SHARE, modal.diagonal()
-    )
-    span = _independent(stiffness, residual, modal.diagonal())
+    static = _ConjugateGradients(loads - inertia @ motions, 0.0, _SETTLED_RESPONSE_SHARE, modal.diagonal())
+    sweeps = _sweep_until_settled(stiffness, mass, solve, [static], vectors, inertia, progress)
+    residual = static.x - vectors @ (inertia.T @ static.x)
+    span = _independent(np.asarray(stiffness @ residual), residual, modal.diagonal())
     response = loads
     for order in range(1, orders):
         progress(f"response {order} of {orders - 1} at the limit")
@@ -294,103 +294,156 @@ def extended_residual_modes(
     ResidualModes
         Extended modes, with the proof of the given ones, whose static compliance at their ports they keep.
     """
-    shapes, frequencies = residual_modes.shapes, residual_modes.frequencies
-    span = _extended(stiffness, shapes.reshape(len(shapes), -1).T[free] / frequencies, further)
-    squared, vectors_found = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
-    full = np.zeros((len(squared), shapes[0].size))
-    full[:, free] = vectors_found.T
-    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), *shapes.shape[1:]), residual_modes.proof)
+    frequencies, count = residual_modes.frequencies, len(residual_modes.frequencies)
+    shapes = residual_modes.shapes.reshape(count, -1).T[free]
+    added = _extended(stiffness, shapes / frequencies, further)[:, count:]
+    # The given modes are orthonormal to the kept ones already, so that only what is added is made so.
+    inertia = np.asarray(mass @ vectors)
+    for _ in range(2):
+        added = added - vectors @ (inertia.T @ added)
+    force, weight = np.asarray(stiffness @ added), np.asarray(mass @ added)
+    energy, inert = np.diag(np.append(frequencies**2, np.zeros(added.shape[1]))), np.eye(count + added.shape[1])
+    energy[:count, count:], inert[:count, count:] = shapes.T @ force, shapes.T @ weight
+    energy[count:, count:], inert[count:, count:] = added.T @ force, added.T @ weight
+    squared, mixture = linalg.eigh(energy, inert, lower=False)
+    joined = shapes @ mixture[:count]
+    joined += added @ mixture[count:]
+    full = np.zeros((len(squared), residual_modes.shapes[0].size))
+    full[:, free] = _upright(joined).T
+    return ResidualModes(
+        np.sqrt(squared), full.reshape(len(squared), *residual_modes.shapes.shape[1:]), residual_modes.proof
+    )
 
 
 def missing_harmonic_responses(
-    dynamic: Operator,
+    stiffness: Operator,
+    mass: Operator,
     solve: Solve,
-    loads: FloatArray,
+    loads: Sequence[tuple[float, FloatArray]],
     vectors: FloatArray,
     inertia: FloatArray,
     shapes: FloatArray,
-    apart: FloatArray,
-) -> FloatArray:
+    frequencies: FloatArray,
+    progress: Callable[[str], None] = lambda message: None,
+) -> list[FloatArray]:
     """Compute what residual modes lack of the undamped responses of the discarded modes to harmonic loads.
 
     The response X of (K - ω²M) X = (I - M Φ Φᵀ) F in the complement of the kept modes, where K - ω²M is positive
-    definite with ω below the limit, less that by the residual modes. Conjugate gradients as at rest find it.
+    definite with ω below the limit, less that by the residual modes. Conjugate gradients as at rest find it, those of
+    all frequencies side by side: a solve reads the whole factor, for few columns or many.
 
     Parameters
     ----------
-    dynamic : matrix or operator, shape (n, n)
-        K - ω²M on the free degrees of freedom [N/m].
+    stiffness, mass : matrix or operator, shape (n, n)
+        Matrices on the free degrees of freedom.
     solve : callable
         X = A⁻¹ B with A = K - σM, σ between the kept and the discarded modes.
-    loads : ndarray, shape (n, m)
-        F [N].
+    loads : sequence of (float, ndarray of shape (n, m))
+        ω below the limit [rad/s], and F [N].
     vectors, inertia : ndarray, shape (n, p)
         Φ and M Φ.
     shapes : ndarray, shape (n, k)
         Residual modes.
-    apart : ndarray, shape (k,)
-        ω_k² - ω² of the modes [rad²/s²].
+    frequencies : ndarray, shape (k,)
+        Their frequencies [rad/s].
+    progress : callable
+        Called with a line of text before each sweep.
 
     Returns
     -------
-    ndarray, shape (n, <= m)
-        Displacements that span the missing ones to a part of 1e-6 of the whole responses, in the norm of strain energy.
+    list of ndarray, shape (n, <= m)
+        For each frequency displacements that span the missing ones to a part of 1e-6 of the whole responses, in the
+        norm of strain energy.
 
     Raises
     ------
     ReductionError
         Where the sweeps do not converge.
     """
-    static = shapes @ ((shapes.T @ loads) / apart[:, None])
-    energy = np.einsum("ij,ij->j", loads, static)
-    left = loads - np.asarray(dynamic @ static)
-    missing, _ = _static_response(dynamic, solve, left, vectors, inertia, _HARMONIC_SETTLED, energy)
-    return _independent(dynamic, missing, energy)
+    searches, energies = [], []
+    for w, load in loads:
+        static = shapes @ ((shapes.T @ load) / (frequencies**2 - w**2)[:, None])
+        energy = np.einsum("ij,ij->j", load, static)
+        left = load - (np.asarray(stiffness @ static) - w**2 * np.asarray(mass @ static))
+        searches.append(_ConjugateGradients(left - inertia @ (vectors.T @ left), w**2, _HARMONIC_SETTLED, energy))
+        energies.append(energy)
+    _sweep_until_settled(stiffness, mass, solve, searches, vectors, inertia, progress)
+    missing = []
+    for search, energy in zip(searches, energies, strict=True):
+        x = search.x - vectors @ (inertia.T @ search.x)
+        product = np.asarray(stiffness @ x) - search.squared * np.asarray(mass @ x)
+        missing.append(_independent(product, x, energy))
+    return missing
 
 
-def _static_response(
-    stiffness: Operator,
-    solve: Solve,
-    loads: FloatArray,
-    vectors: FloatArray,
-    inertia: FloatArray,
-    settled: float,
-    covered: FloatArray | float = 0.0,
-) -> tuple[FloatArray, int]:
-    """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took; K or K - ω²M alike.
+class _ConjugateGradients:
+    """Block conjugate gradients for loads F at one ω² in the M-orthogonal complement of some modes V.
 
-    Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep minimises the
-    energy of every column over all columns' directions D, with Dᵀ K D = I. The iteration ends where a sweep moves no
-    column by more than a part ``settled`` in the norm of the strain energy. ``covered`` [m/N] is the compliance held
-    already, added to the columns' own as the measure where little is left.
+    Each sweep minimises the energy of every column over all columns' directions D, with Dᵀ (K - ω²M) D = I. The
+    iteration has settled where a sweep moves no column by more than a part ``settled`` in the norm of the strain
+    energy. ``covered`` [m/N] is the compliance held already, added to the columns' own as the measure where little is
+    left.
     """
-    x = np.zeros_like(loads)
-    left = loads - inertia @ (vectors.T @ loads)
-    directions = products = np.zeros((len(loads), 0))
-    scale = np.ones(0)
-    for sweep in range(1, _MOST_SWEEPS + 1):
-        step = solve(left)
-        step -= vectors @ (inertia.T @ step)
-        product = np.asarray(stiffness @ step)
-        if sweep > 1:
-            before = products.T @ step
-            step -= directions @ before
-            product -= products @ before
+
+    def __init__(self, loads: FloatArray, squared: float, settled: float, covered: FloatArray | float) -> None:
+        self.x = np.zeros_like(loads)
+        self.squared, self.left = squared, loads
+        self._loads, self._settled, self._covered = loads.copy(), settled, covered
+        self._directions = self._products = np.zeros((len(loads), 0))
+        self._scale: FloatArray | None = None
+
+    def take(self, step: FloatArray, product: FloatArray) -> bool:
+        """Take a sweep from the preconditioned loads left, and their product; whether it has settled."""
+        if self._directions.shape[1]:
+            before = self._products.T @ step
+            step -= self._directions @ before
+            product -= self._products @ before
         energy = step.T @ product
-        if sweep == 1:
+        if self._scale is None:
             # Loads are scaled by their response, so that forces and moments count alike.
-            scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
+            self._scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
+        scale = self._scale
         shares, mixture = np.linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
         # A direction that the others have already waits until it is no longer rounding beside them.
         new = shares > _ROUNDING_ENERGY_SHARE * max(shares.max(initial=0.0), 0.0)
         mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
-        directions, products = step @ mixture, product @ mixture
-        length = directions.T @ left
-        x += directions @ length
-        left -= products @ length
+        self._directions, self._products = step @ mixture, product @ mixture
+        length = self._directions.T @ self.left
+        self.x += self._directions @ length
+        self.left -= self._products @ length
         moved = np.einsum("ij,ij->j", length, length)
-        if np.all(moved <= settled**2 * (covered + np.einsum("ij,ij->j", loads, x))):
-            return x - vectors @ (inertia.T @ x), sweep
+        own = np.einsum("ij,ij->j", self._loads, self.x)
+        return bool(np.all(moved <= self._settled**2 * (self._covered + own)))
+
+
+def _sweep_until_settled(
+    stiffness: Operator,
+    mass: Operator,
+    solve: Solve,
+    searches: Sequence[_ConjugateGradients],
+    vectors: FloatArray,
+    inertia: FloatArray,
+    progress: Callable[[str], None],
+) -> int:
+    """Sweep several searches side by side, preconditioned by A⁻¹, until each has settled; the number of sweeps."""
+    unsettled = list(searches)
+    for sweep in range(1, _MOST_SWEEPS + 1):
+        progress(f"sweep {sweep}")
+        steps = solve(np.hstack([search.left for search in unsettled]))
+        steps -= vectors @ (inertia.T @ steps)
+        products = np.asarray(stiffness @ steps)
+        weighted = np.asarray(mass @ steps) if any(search.squared for search in unsettled) else steps
+        remaining, first = [], 0
+        for search in unsettled:
+            columns = slice(first, first := first + search.left.shape[1])
+            product = products[:, columns].copy()
+            if search.squared:
+                product -= search.squared * weighted[:, columns]
+            if not search.take(steps[:, columns].copy(), product):
+                remaining.append(search)
+        unsettled = remaining
+        if not unsettled:
+            return sweep
     raise ReductionError(
         f"the static response to the ports' loads has not settled after {_MOST_SWEEPS} sweeps: the stiffness is not "
         "positive semidefinite, or the modes are not its own"
@@ -403,13 +456,13 @@ def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, iner
     return np.asarray(solution - vectors @ (inertia.T @ solution))
 
 
-def _independent(stiffness: Operator, residual: FloatArray, known_energy: FloatArray) -> FloatArray:
-    """Residual vectors orthonormal in K that span the given ones.
+def _independent(product: FloatArray, residual: FloatArray, known_energy: FloatArray) -> FloatArray:
+    """Residual vectors orthonormal in K, whose ``product`` with them is given, that span the given ones.
 
     Loads are measured by the response that they find, so that a port of rotations counts like one of translations;
     combinations of them whose response adds less than a part of 1e-12 to the ports' compliance are dropped.
     """
-    energy = residual.T @ (stiffness @ residual)
+    energy = residual.T @ product
     whole = known_energy + energy.diagonal()
     scale = 1.0 / np.sqrt(np.where(whole > 0.0, whole, 1.0))
     shares, mixture = linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
@@ -446,8 +499,13 @@ def _orthonormal(
         shapes = shapes - vectors @ (inertia.T @ shapes)
         squared, mixture = linalg.eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
         shapes = shapes @ mixture
+    return squared, _upright(shapes)
+
+
+def _upright(shapes: FloatArray) -> FloatArray:
+    """Shapes (n, k) with their largest entries positive."""
     largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
-    return squared, np.asarray(shapes * np.sign(largest))
+    return np.asarray(shapes * np.sign(largest))
 
 
 def _turn(

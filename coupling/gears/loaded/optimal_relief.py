@@ -9,8 +9,9 @@ up. The curve is flat near the design load of the modification, and rises below 
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -107,6 +108,8 @@ _HIGHEST_MULTIPLE = 32
 """Highest multiple of the mesh frequency with a weight."""
 _LONGEST_RELIEF = 0.95
 """Longest relief from the tip, over half of the path of contact."""
+_SETTLED_PLACE, _SETTLED_VALUE, _MOST_REFINED = 1e-4, 1e-6, 200
+"""End of the refinement: moves as parts of the largest relief, changes as parts of the value, number of trials."""
 _DEEPEST = 3.0
 """Largest amount of relief, in mean deflections at the largest load."""
 
@@ -220,6 +223,7 @@ def optimal_tip_relief(
     faces: FaceSlices | None = None,
     searched_faces: FaceSlices | None = None,
     aim: ReliefAim | None = None,
+    tried: Callable[[float], None] = lambda fraction: None,
 ) -> ReliefOptimum:
     """Tip relief of both gears that minimises an objective, its largest value over the given loads.
 
@@ -240,6 +244,8 @@ def optimal_tip_relief(
         Coarser slices of the same face for the search alone; the result is that of `faces`.
     aim : ReliefAim or None
         `PeakToPeak` where not given.
+    tried : callable
+        Called with the completed part of the search, from 0 to 1, before each trial.
 
     Raises
     ------
@@ -287,14 +293,21 @@ def optimal_tip_relief(
     longest = _LONGEST_RELIEF * 0.5 * geometry.path_length
     shortest, deepest = 0.05 * longest, _DEEPEST * deflection
     amounts, lengths = np.linspace(0.0, deepest, _GRID + 1)[1:], np.linspace(shortest, longest, _GRID)
-    tried = np.array([[worst(float(amount), float(length)) for length in lengths] for amount in amounts])
-    row, column = np.unravel_index(int(tried.argmin()), tried.shape)
+    grid = np.zeros((amounts.size, lengths.size))
+    most = grid.size + _MOST_REFINED
+    for number, (row, column) in enumerate(np.ndindex(grid.shape)):
+        tried(number / most)
+        grid[row, column] = worst(float(amounts[row]), float(lengths[column]))
+    row, column = (int(place) for place in np.unravel_index(int(grid.argmin()), grid.shape))
+    refined = itertools.count(grid.size)
 
     def scaled(x: FloatArray) -> float:
+        tried(min(next(refined) / most, 1.0))
         return worst(float(x[0]) * deepest, float(x[1]) * longest)
 
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
-    optimum = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
+    settled = {"xatol": _SETTLED_PLACE, "fatol": _SETTLED_VALUE * float(grid.min()), "maxfev": _MOST_REFINED}
+    optimum = minimize(scaled, start, method="Nelder-Mead", options=settled)
     relief: TipRelief | None = TipRelief(
         float(optimum.x[0] * deepest), length=float(optimum.x[1] * longest), shape=shape
     )
@@ -311,4 +324,4 @@ def optimal_tip_relief(
     swings, swings_without = (
         np.array([mesh.peak_to_peak_transmission_error for mesh in loaded]) for loaded in (with_it, without)
     )
-    return ReliefOptimum(relief, pair, value, value_without, swings, swings_without, amounts, lengths, tried)
+    return ReliefOptimum(relief, pair, value, value_without, swings, swings_without, amounts, lengths, grid)

@@ -1,6 +1,7 @@
 """Interruptions at awkward moments: where Python drops them, and within an import, which is let finish."""
 
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from gearwhine.cli import command_line
-from gearwhine.interruption import each_from_thread, in_thread, uninterrupted
+from gearwhine.interruption import cleared_at_the_end, each_from_thread, in_thread, uninterrupted
 
 
 @pytest.fixture(autouse=True)
@@ -143,3 +144,81 @@ def test_results_and_errors_come_from_aside() -> None:
     assert in_thread(lambda: None) is None
     with pytest.raises(ZeroDivisionError):
         in_thread(lambda: 1 / 0)
+
+
+# Compiled code that takes minutes without a step of Python, and lets other threads run.
+DEAF = """
+import hashlib, subprocess, sys
+from pathlib import Path
+import numpy as np
+from gearwhine.cli import command_line
+from gearwhine.drawing_process import _Running, one_process
+from gearwhine.output import staging
+from gearwhine.output.checkpoints import stored_record
+
+def work(*_, **__):
+    kept, empty = stored_record(Path("kept"), 16 * "a"), stored_record(Path("empty"), 16 * "b")
+    with kept as blocks, empty, one_process() as drawing:
+        blocks.append({"time": np.arange(3.0)})
+        child = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        drawing._running = _Running(child, child.stdin, child.stdout, child.stdin)
+        with staging(Path("new")) as place:
+            (place / "half.json").write_text("{")
+            print(child.pid, flush=True)
+            hashlib.pbkdf2_hmac("sha256", b"deaf", b"deaf", 2_000_000_000)
+
+command_line.app = work
+sys.exit(command_line.run_command([], is_process=True))
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_compiled_code_that_takes_no_signal_is_ended(tmp_path: Path, how: signal.Signals) -> None:
+    """Nothing half-written stays, blocks of a motion do, and no process goes on."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", DEAF], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    child = Path("/proc", process.stdout.readline().strip())
+    time.sleep(0.5)  # until the compiled code is at work
+    process.send_signal(how)
+    _, errors = process.communicate(timeout=60.0)
+    assert process.returncode == 130, errors
+    first, second = errors.splitlines()
+    assert first == "gearwhine: interrupted; the output folder holds no half-written file"
+    assert second.startswith("gearwhine: what was marched so far is kept in kept/.resume-")
+    assert second.endswith(": the same command goes on from there, --fresh does not")
+    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["block-00000000.npz"]
+    assert {path.name for path in tmp_path.iterdir()} == {"kept"}
+    limit = time.monotonic() + 20.0
+    while child.exists() and child.joinpath("stat").read_text(encoding="utf-8").split()[2] != "Z":
+        assert time.monotonic() < limit, "the child lives on"
+        time.sleep(0.05)
+
+
+def test_an_interruption_that_unwinds_in_time_ends_nothing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The wakeup of signals is given back, and what clears away at the end is forgotten."""
+    unwound: list[str] = []
+
+    def clear() -> None:
+        unwound.append("by the thread")
+
+    def work(*_: object, **__: object) -> None:
+        with cleared_at_the_end(clear):
+            try:
+                signal.raise_signal(signal.SIGTERM)
+                time.sleep(10.0)
+            finally:
+                unwound.append("by itself")
+
+    before = signal.set_wakeup_fd(-1)
+    signal.set_wakeup_fd(before)
+    threads = threading.active_count()
+    monkeypatch.setattr(command_line, "app", work)
+    assert command_line.run_command([], is_process=True) == 130
+    assert capsys.readouterr().err == "gearwhine: interrupted; the output folder holds no half-written file\n"
+    assert unwound == ["by itself"]
+    assert threading.active_count() == threads
+    assert signal.set_wakeup_fd(before) == before
