@@ -233,6 +233,7 @@ def settled_response(
     *,
     closure: float = CLOSURE,
     step_tolerance: float = STEP_TOLERANCE,
+    near: SettledMotion | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> SettledMotion:
     """Find the periodic motion in which a machine with turning carriers settles.
@@ -244,6 +245,9 @@ def settled_response(
         Largest closure error, over the size of the vibration.
     step_tolerance : float
         Local error of a step, relative, that sets the step.
+    near : SettledMotion, optional
+        Motion of the same machine at a speed nearby, from which the search begins with as many steps a period; by
+        default static equilibrium.
     progress : callable
         Called with an estimate of the finished part, from 0 to 1.
 
@@ -260,11 +264,16 @@ def settled_response(
     outputs = TransientOutputs(np.eye(size), np.eye(size), np.zeros((0, size)))
     samples = max(_LEAST_SAMPLES, int(np.ceil(period * max(least_sampling_rate(system)[0], _PER_CYCLE * fastest))))
     first = PeriodMap(followed, period, period / _LEAST_STEPS, outputs, samples, tolerance=step_tolerance)
-    begin = first.begin()
-    end, _ = first()
-    turn = replace(first, step=end.smallest, tolerance=_NO_LIMIT)
     states = _States(followed.system, period, 2.0 * np.pi * fastest)
-    at = states.joined(begin.q, begin.v)
+    if near is None or near.turn.followed.system.size != size:
+        begin = first.begin()
+        end, _ = first()
+        turn = replace(first, step=end.smallest, tolerance=_NO_LIMIT)
+        at = states.joined(begin.q, begin.v)
+    else:
+        slower = period / near.period
+        turn = replace(first, step=near.turn.step * slower, tolerance=_NO_LIMIT)
+        at = states.joined(near.start[0], near.start[1] / slower)
     at, sought = states.held(at, at), list[tuple[FloatArray, FloatArray]]()
     while True:
         try:

@@ -13,6 +13,7 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response
+from gearwhine.coupling.periodic.settled_curve import settled_curve
 from gearwhine.coupling.periodic.settling import _States
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientOutputs
@@ -193,8 +194,50 @@ def test_machine_and_analysis_take_the_motion_that_settles() -> None:
         motion = machine.steady()
         assert isinstance(motion, SettledMotion)
         assert motion.residual < 1e-4
-    with pytest.raises(CouplingError, match="one speed of a machine whose carriers turn"):
-        solve_steady(described.assembled, over_speed=(200.0, 400.0))
+    with pytest.raises(CouplingError, match="1 points from 200 to 400; expected two or more"):
+        solve_steady(described.assembled, over_speed=(200.0, 400.0), points=1)
+
+
+def test_a_curve_through_the_critical_speeds_of_an_unsymmetric_shaft() -> None:
+    """Its amplitude under a constant force has a closed form; its turning dashpots leave it unstable from the first."""
+    curve = settled_curve(lambda turn: rotating_shaft(turn, DAMPED)[0], 1.5, 3.5, points=11)
+    assert curve.speeds == pytest.approx(np.linspace(1.5, 3.5, 11))
+    assert curve.gaps == ()
+    assert curve.ending == "end"
+    largest = np.array([rotating_shaft(turn, DAMPED)[1][0] for turn in curve.speeds.tolist()])
+    assert curve.stable.tolist() == (largest < 1.0).tolist() == [True] * 3 + [False] * 8
+    ((kind, index),) = [(event.kind, event.index) for event in curve.bifurcations]
+    assert (kind, index) == ("branch point", 3)
+    for turn, motion in zip(curve.speeds.tolist(), curve.responses, strict=True):
+        # At t = 0 the frame is not turned: the displacement is the sum of both circular parts.
+        exact = np.zeros(2)
+        for sense in (1, -1):
+            phasor, w = 0.5 * (FORCE - 1j * sense * QUARTER @ FORCE), -sense * turn
+            stiffness = np.diag([4.0, 9.0]) - (turn**2 + w**2) * np.eye(2)
+            dynamic = stiffness + 1j * w * (DAMPED + 2.0 * turn * QUARTER)
+            exact += np.linalg.solve(dynamic, phasor).real
+        np.testing.assert_allclose(motion.displacement, exact, atol=1e-2 * np.abs(exact).max())
+    (between,) = curve.at(3.45)
+    assert isinstance(between, SettledMotion)
+    alone = settled_response(rotating_shaft(3.45, DAMPED)[0])
+    np.testing.assert_allclose(between.displacement, alone.displacement, atol=1e-2 * np.abs(alone.displacement).max())
+
+
+@pytest.mark.slow
+def test_sensors_over_speed_are_those_of_the_linear_lines() -> None:
+    described = turning_set(ANISOTROPIC)
+    steady = solve_steady(described.assembled, over_speed=(290.0, 310.0), points=3)
+    assert steady.curve is not None
+    assert steady.curve.speeds == pytest.approx([290.0, 300.0, 310.0])
+    assert len(steady.motions) == 1
+    for number, speed in enumerate(steady.curve.speeds.tolist()):
+        machine = described.assembled.at_speed(speed)
+        lines = MeshHarmonicModel(machine).parts(TWO_PI * 3000.0)
+        for sensor, row in machine.sensor_rows.items():
+            amplitudes = [line.frequency**2 * abs(complex(row @ line.motion)) for line in lines]
+            assert steady.branch_rms[sensor][number] == pytest.approx(
+                np.linalg.norm(amplitudes) / np.sqrt(2.0), rel=0.01
+            )
 
 
 def test_motions_that_nothing_resists_have_no_place_and_no_mean_rate() -> None:
