@@ -206,7 +206,7 @@ class SolvedSteady:
         if curve is None or not curve.gaps:
             return []
         low, high = sorted((abs(curve.begin), abs(curve.aim)))
-        why = _WHY_NOT_SETTLED if circles(self.machine.system) else _WHY_NOT
+        why = _WHY_NOT_SETTLED if curve.settled else _WHY_NOT
         gaps = [tuple(sorted((_RPM * abs(first), _RPM * abs(last)))) for first, last in curve.gaps]
         narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW_RANGE_SHARE * _RPM * (high - low)]
         warnings = []

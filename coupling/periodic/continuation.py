@@ -143,6 +143,11 @@ class ResponseCurve:
         return ". ".join(words)
 
     @property
+    def settled(self) -> bool:
+        """Whether the motions are settled in time, speed by speed, as where carriers turn."""
+        return any(isinstance(response, SettledMotion) for response in self.responses)
+
+    @property
     def folds(self) -> tuple[Bifurcation, ...]:
         """Folds, at which the branch turns back in speed."""
         return tuple(event for event in self.bifurcations if event.kind == "fold")

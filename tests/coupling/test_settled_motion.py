@@ -13,6 +13,7 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response
+from gearwhine.coupling.periodic.response import FloquetMultipliers
 from gearwhine.coupling.periodic.settled_curve import settled_curve
 from gearwhine.coupling.periodic.settling import _States
 from gearwhine.coupling.time.histories import histories, transient_outputs
@@ -140,6 +141,25 @@ def test_stability_of_an_unsymmetric_shaft_is_told_within_its_error(
     assert abs(settled.floquet.largest - exact[0]) <= settled.floquet.largest_error
     assert settled.floquet.largest_error < 0.06
     assert settled.floquet.leaving == ("fold" if verdict == "unstable" else None)
+
+
+@pytest.mark.parametrize(
+    ("values", "errors", "verdict", "growing"),
+    [
+        ([0.97], [0.02], "stable", 0),
+        ([0.97], [0.04], "not decided", 0),
+        ([1.03], [0.04], "not decided", 0),
+        ([1.03, 0.5], [0.02, 0.6], "unstable", 1),
+        ([0.9, 0.5], [0.02, 0.6], "not decided", 0),
+    ],
+)
+def test_a_verdict_is_told_by_whole_intervals(
+    values: list[float], errors: list[float], verdict: str, growing: int
+) -> None:
+    multipliers = FloquetMultipliers(np.array(values, dtype=complex), 1.0, np.array(errors))
+    assert (multipliers.stability, multipliers.growing) == (verdict, growing)
+    assert multipliers.largest_error == errors[0]
+    assert multipliers.stable is (verdict == "stable")
 
 
 def test_a_disturbance_that_the_search_never_meets_decides() -> None:
