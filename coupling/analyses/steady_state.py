@@ -10,9 +10,11 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
 from gearwhine.coupling.periodic.continuation import ResponseCurve, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.settled_curve import settled_curve
 from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response
 from gearwhine.coupling.periodic.superposition import (
@@ -40,6 +42,7 @@ _NAMED_LINE_DISTANCE = 1e-3  # distance of a line from the excitation that it is
 _DOUBTFUL_FORCE_SHARE = 0.1  # part of a mesh's varying force that may be neglected without a warning
 
 _NARROW_RANGE_SHARE = 0.01  # width over that of the whole range below which ranges are told together
+_WHY_NOT_SETTLED = "the motion settles at none of the points there; `run` shows what the machine does"
 _WHY_NOT = (
     "the branch is lost there and no other start led to a motion; --points 400 takes shorter steps, a narrower [sweep] "
     "more of them, and `run` or `sweep` shows what the machine does there"
@@ -203,13 +206,14 @@ class SolvedSteady:
         if curve is None or not curve.gaps:
             return []
         low, high = sorted((abs(curve.begin), abs(curve.aim)))
+        why = _WHY_NOT_SETTLED if curve.settled else _WHY_NOT
         gaps = [tuple(sorted((_RPM * abs(first), _RPM * abs(last)))) for first, last in curve.gaps]
         narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW_RANGE_SHARE * _RPM * (high - low)]
         warnings = []
         for first, last in (gap for gap in gaps if gap not in narrow):
             message = (
                 f"no motion was followed between {first:.5g} and {last:.5g} rpm of {_RPM * low:.5g} to "
-                f"{_RPM * high:.5g}: {_WHY_NOT}"
+                f"{_RPM * high:.5g}: {why}"
             )
             warnings.append(warning("branch range", message, from_rpm=first, to_rpm=last))
         if narrow:
@@ -257,7 +261,7 @@ def solve_steady(
     """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
 
     Where carriers turn, the motion is the one in which the machine settles, see
-    :mod:`gearwhine.coupling.periodic.settling`.
+    :mod:`gearwhine.coupling.periodic.settling`; over speed it is settled anew at each of the points.
 
     If the common period of all excitations is long, such as that of hunting teeth, each group of excitations has its
     own motion and these are superposed, see :mod:`gearwhine.coupling.periodic.superposition`.
@@ -285,14 +289,13 @@ def solve_steady(
     if speed == 0.0:
         raise CouplingError("a speed of 0; expected a speed: what stands still has no motion that repeats")
     progress("compiling the search for periodic motions (the first time takes longer)")
-    if circles(machine.system):
-        if over_speed is not None:
-            raise CouplingError(_NO_BRANCH_OF_CARRIERS)
+    turning = circles(machine.system)
+    if turning and over_speed is None:
         settled = settled_response(
             machine.system, progress=lambda fraction: progress("settling in a motion that repeats", fraction)
         )
         return SolvedSteady(machine, (_motion(machine, speed, settled),))
-    groups = () if exact else excitation_groups(machine.system)
+    groups = () if exact or turning else excitation_groups(machine.system)
     if len(groups) > 1 and over_speed is not None:
         cycles = common_cycles(machine.system)
         raise CouplingError(f"expected {_NO_BRANCH.format(_period_in_words(cycles))}")
@@ -303,22 +306,27 @@ def solve_steady(
         return SolvedSteady(machine, (_motion(machine, speed, response),))
     rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
 
-    def seen(at: float, response: PeriodicResponse) -> None:
+    def seen(at: float, response: PeriodicResponse | SettledMotion) -> None:
         if rms:
             motion = _motion(machine.at_speed(at), at, response)
             for name, value in motion.sensor_rms.items():
                 rms[name].append(value)
 
-    curve = response_curve(
-        lambda at: machine.at_speed(at).system,
-        *over_speed,
-        points=points,
-        tolerance=CURVE_TOLERANCE,
-        progress=lambda fraction: progress("following the motion over speed", fraction),
-        seen=seen,
-    )
+    def system_at(at: float) -> CoupledSystem:
+        return machine.at_speed(at).system
+
+    def followed(fraction: float) -> None:
+        progress("following the motion over speed", fraction)
+
+    if turning:
+        curve = settled_curve(system_at, *over_speed, points=points, progress=followed, seen=seen)
+    else:
+        curve = response_curve(
+            system_at, *over_speed, points=points, tolerance=CURVE_TOLERANCE, progress=followed, seen=seen
+        )
     progress("the motions at the speed of operation")
-    responses = curve.at(speed) if curve.passes(speed) else [periodic_response(machine.system)]
+    alone = settled_response if turning else periodic_response
+    responses = curve.at(speed) if curve.passes(speed) else [alone(machine.system)]
     motions = tuple(_motion(machine, speed, response) for response in responses)
     branch_rms = {name: np.array(values) for name, values in rms.items()}
     loudest = () if machine.housing is None else tuple(_loudest(machine, curve, branch_rms))
@@ -360,10 +368,6 @@ def _loudest(machine: CoupledMachine, curve: ResponseCurve, rms: dict[str, Float
             )
 
 
-_NO_BRANCH_OF_CARRIERS = (
-    "expected one speed of a machine whose carriers turn: its motion is settled in time, which no branch follows; "
-    "`gearwhine sweep` solves speed by speed; or leave --curve out"
-)
 _NO_BRANCH = (
     "excitations with a short common period, for a branch over speed follows one periodic motion; theirs {}; "
     "`gearwhine sweep` solves speed by speed, and names the peaks between them; or leave unbalance, runout or a stage "

@@ -37,6 +37,7 @@ from gearwhine.coupling.errors import CouplingError, PeriodicError
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.periodic.branch import Branch, Point, interpolation
 from gearwhine.coupling.periodic.response import BranchMotion, PeriodicResponse, motion_summary
+from gearwhine.coupling.periodic.settling import SettledMotion, settled_response
 from gearwhine.coupling.periodic.shooting import integrated_again, periodic_response, problem, response_near
 
 FloatArray = npt.NDArray[np.float64]
@@ -73,8 +74,8 @@ class ResponseCurve:
     ----------
     speeds : ndarray, shape (p,)
         Speeds in the unit of ``system_at``.
-    responses : tuple of BranchMotion
-        Summary of each motion; :meth:`motion` computes its course over time.
+    responses : tuple of BranchMotion or SettledMotion
+        Summary of each motion; :meth:`motion` computes its course over time. Where carriers turn, the motions.
     bifurcations : tuple of Bifurcation
     pieces : tuple of int
         Index of the first point of each piece, 0 first: between two pieces nothing is followed.
@@ -87,7 +88,7 @@ class ResponseCurve:
     """
 
     speeds: FloatArray
-    responses: tuple[BranchMotion, ...]
+    responses: tuple[BranchMotion | SettledMotion, ...]
     bifurcations: tuple[Bifurcation, ...]
     system_at: Callable[[float], CoupledSystem] = field(repr=False)
     periods: int = 1
@@ -142,6 +143,11 @@ class ResponseCurve:
         return ". ".join(words)
 
     @property
+    def settled(self) -> bool:
+        """Whether the motions are settled in time, speed by speed, as where carriers turn."""
+        return any(isinstance(response, SettledMotion) for response in self.responses)
+
+    @property
     def folds(self) -> tuple[Bifurcation, ...]:
         """Folds, at which the branch turns back in speed."""
         return tuple(event for event in self.bifurcations if event.kind == "fold")
@@ -166,14 +172,16 @@ class ResponseCurve:
         """Part of the period that the flanks of every contact are apart, shape (p, c)."""
         return np.array([response.contact_loss for response in self.responses])
 
-    def motion(self, index: int) -> PeriodicResponse:
+    def motion(self, index: int) -> PeriodicResponse | SettledMotion:
         """Integrate the periodic motion of a point again, from the starts of its segments."""
         branch_motion = self.responses[index]
+        if isinstance(branch_motion, SettledMotion):
+            return branch_motion
         return integrated_again(
             self.system_at(float(self.speeds[index])), self._period(branch_motion.period), branch_motion
         )
 
-    def at(self, speed: float, tolerance: float = 1e-8) -> list[PeriodicResponse]:
+    def at(self, speed: float, tolerance: float = 1e-8) -> list[PeriodicResponse | SettledMotion]:
         """Every motion of the branch at a speed, in the branch's order.
 
         Raises
@@ -200,9 +208,11 @@ class ResponseCurve:
         """Whether a piece comes to a speed."""
         return any(self.speeds[piece].min() <= speed <= self.speeds[piece].max() for piece in self.slices)
 
-    def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse:
+    def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse | SettledMotion:
         """Solve for the motion at a speed that is a part of the way from one point to the next."""
         before, after = self.responses[index], self.responses[index + 1]
+        if isinstance(before, SettledMotion) or isinstance(after, SettledMotion):
+            return settled_response(self.system_at(speed), near=before if isinstance(before, SettledMotion) else None)
         # Rates are compared in their own period.
         length = 1.0 / (1.0 / before.period + part * (1.0 / after.period - 1.0 / before.period))
         q = (1.0 - part) * before.displacements + part * after.displacements

@@ -24,6 +24,7 @@ from gearwhine.coupling.time.settings import MotionRecord, TransientOutputs
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Loss = Literal["fold", "period doubling", "Neimark-Sacker"]
+Stability = Literal["stable", "unstable", "not decided"]
 
 STABLE_WITHIN = 1e-7
 """Tolerance of a stable multiplier beyond one, for the rounding of an undamped motion."""
@@ -39,10 +40,14 @@ class FloquetMultipliers:
         A disturbance along the eigenvector number i is multiplied by values[i] every period.
     period : float
         Period [s].
+    errors : ndarray, shape (2 N,), optional
+        Estimated error of each modulus, where they come from an iteration (then there may be fewer); by default of a
+        monodromy that is known to rounding.
     """
 
     values: ComplexArray
     period: float
+    errors: FloatArray | None = None
 
     @property
     def exponents(self) -> ComplexArray:
@@ -56,23 +61,38 @@ class FloquetMultipliers:
         return float(np.abs(self.values).max(initial=0.0))
 
     @property
+    def largest_error(self) -> float | None:
+        """Estimated error of the largest modulus; None for a monodromy that is known to rounding."""
+        return None if self.errors is None else float(self.errors[np.argmax(np.abs(self.values))])
+
+    @property
+    def stability(self) -> Stability:
+        """``stable`` where no disturbance grows, ``unstable`` where one does, ``not decided`` within the errors."""
+        if self.growing:
+            return "unstable"
+        if self.errors is None or np.all(np.abs(self.values) + self.errors < 1.0):
+            return "stable"
+        return "not decided"
+
+    @property
     def stable(self) -> bool:
         """Whether no disturbance grows."""
-        return self.largest <= 1.0 + STABLE_WITHIN
+        return self.stability == "stable"
 
     @property
     def growing(self) -> int:
-        """Number of multipliers outside the unit circle."""
-        return int(np.count_nonzero(np.abs(self.values) > 1.0 + STABLE_WITHIN))
+        """Number of multipliers outside the unit circle, beyond their errors."""
+        errors = STABLE_WITHIN if self.errors is None else self.errors
+        return int(np.count_nonzero(np.abs(self.values) - errors > 1.0))
 
     @property
     def leaving(self) -> Loss | None:
-        """Kind of instability, by the place where the largest multiplier left the unit circle; None if stable.
+        """Kind of instability, by the place where the largest multiplier left the unit circle; None if none did.
 
         At +1 the motion has a fold and jumps; at -1 a motion of twice the period replaces it; a pair elsewhere brings a
         second frequency (Neimark and Sacker).
         """
-        if self.stable:
+        if not self.growing:
             return None
         worst = self.values[np.argmax(np.abs(self.values))]
         if abs(worst.imag) > 1e-9 * abs(worst):
@@ -135,6 +155,11 @@ class PeriodicResponse:
     def stable(self) -> bool:
         """Whether no small disturbance grows."""
         return self.floquet.stable
+
+    @property
+    def stability(self) -> Stability:
+        """``stable``, ``unstable`` or ``not decided``."""
+        return self.floquet.stability
 
     @cached_property
     def mean_force(self) -> FloatArray:

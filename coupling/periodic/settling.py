@@ -8,9 +8,11 @@ Anderson's iteration: with f = Φ(x) - x and the differences of the last iterate
     x_{k+1} = Φ(x_k) - Σ γ_i (Φ(x_{i+1}) - Φ(x_i)),    γ the least of |f_k - Σ γ_i (f_{i+1} - f_i)|,
 
 which is a secant method in the few motions that last longer than a period; all others die out by themselves. Steps are
-the same in all periods, so that Φ is smooth. As Φ(x_{i+1}) - Φ(x_i) is the monodromy times x_{i+1} - x_i, the
-differences give its largest eigenvalues on their span too (Rayleigh and Ritz). Motions that nothing resists, such as
-the rotation of the train, have neither a place nor a mean rate of their own: both are taken out of every state.
+the same in all periods, so that Φ is smooth. Motions that nothing resists, such as the rotation of the train, have
+neither a place nor a mean rate of their own: both are taken out of every state.
+
+Such a search converges to an unstable motion too. What becomes of disturbances, also of those that the search never
+meets, say the leading multipliers (:mod:`gearwhine.coupling.periodic.leading_multipliers`).
 
 - D. G. Anderson, Iterative procedures for nonlinear integral equations, *J. ACM* 12, 547, 1965.
 """
@@ -27,8 +29,10 @@ from gearwhine.coupling.errors import PeriodicError, TransientError
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import driving_frequencies, least_sampling_rate
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
-from gearwhine.coupling.periodic.response import FloquetMultipliers
+from gearwhine.coupling.periodic.leading_multipliers import Product, leading_multipliers
+from gearwhine.coupling.periodic.response import FloquetMultipliers, Stability
 from gearwhine.coupling.periodic.shooting import common_period
+from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
 from gearwhine.coupling.time.condensation import Condensed, condensed, with_static_attachments
 from gearwhine.coupling.time.integration import Checkpoint, Integration
 from gearwhine.coupling.time.newmark_stepper import NewmarkStepper
@@ -46,9 +50,11 @@ STEP_TOLERANCE = 5e-4
 _MOST_PERIODS = 60
 _REMEMBERED = 12  # differences of iterates that the acceleration takes
 _INDEPENDENT = 1e-8  # least singular value of differences of length one that count as independent
-_OF_MULTIPLIERS = 1e-3  # the same, of those from which multipliers are computed
-_MULTIPLIER_ERROR = 0.02  # largest residual of a multiplier and its disturbance
-_GROWS = 0.1  # growth in a period beyond which a motion is unstable: such multipliers are estimates
+_DISTURBANCE = 1e-3  # size of a disturbance over that of the vibration
+_LONG_STEPS = 4.0  # steps with which disturbances are sought, over those of the motion
+_LEAST_RATIO = 1.5  # of these steps, where a natural frequency bounds both
+_UNCOUPLED = 1e-9  # coupling that is rounding, over its scale
+_SEED = 20
 _MOST_CYCLES = 2000  # cycles of the fastest excitation in a period that is integrated
 _LEAST_STEPS, _LEAST_SAMPLES, _PER_CYCLE = 64, 512, 32.0  # in a period; samples in a cycle of the fastest excitation
 _NO_LIMIT = 1e9  # tolerance of steps that are kept
@@ -72,7 +78,7 @@ class SettledMotion:
     displacement, velocity : ndarray, shape (n,)
         Displacements and rates at t = 0.
     floquet : FloquetMultipliers
-        Multipliers of the disturbances that the search met, those within 0.02.
+        Multipliers of the disturbances that last longest, each with its error.
     residual : float
         Closure error of the period, over the size of the vibration.
     error : float
@@ -113,8 +119,13 @@ class SettledMotion:
 
     @property
     def stable(self) -> bool:
-        """Whether no disturbance that the search met grows by a tenth in a period or more."""
-        return self.floquet.largest <= 1.0 + _GROWS
+        """Whether no small disturbance grows, beyond the error of the largest multiplier."""
+        return self.floquet.stable
+
+    @property
+    def stability(self) -> Stability:
+        """``stable``, ``unstable``, or ``not decided`` where the largest multiplier is one within its error."""
+        return self.floquet.stability
 
     def record(self, outputs: TransientOutputs, samples: int) -> MotionRecord:
         """Rows of coordinates, rates and accelerations over the period, and the contacts.
@@ -222,6 +233,7 @@ def settled_response(
     *,
     closure: float = CLOSURE,
     step_tolerance: float = STEP_TOLERANCE,
+    near: SettledMotion | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> SettledMotion:
     """Find the periodic motion in which a machine with turning carriers settles.
@@ -233,6 +245,9 @@ def settled_response(
         Largest closure error, over the size of the vibration.
     step_tolerance : float
         Local error of a step, relative, that sets the step.
+    near : SettledMotion, optional
+        Motion of the same machine at a speed nearby, from which the search begins with as many steps a period; by
+        default static equilibrium.
     progress : callable
         Called with an estimate of the finished part, from 0 to 1.
 
@@ -249,11 +264,16 @@ def settled_response(
     outputs = TransientOutputs(np.eye(size), np.eye(size), np.zeros((0, size)))
     samples = max(_LEAST_SAMPLES, int(np.ceil(period * max(least_sampling_rate(system)[0], _PER_CYCLE * fastest))))
     first = PeriodMap(followed, period, period / _LEAST_STEPS, outputs, samples, tolerance=step_tolerance)
-    begin = first.begin()
-    end, _ = first()
-    turn = replace(first, step=end.smallest, tolerance=_NO_LIMIT)
     states = _States(followed.system, period, 2.0 * np.pi * fastest)
-    at = states.joined(begin.q, begin.v)
+    if near is None or near.turn.followed.system.size != size:
+        begin = first.begin()
+        end, _ = first()
+        turn = replace(first, step=end.smallest, tolerance=_NO_LIMIT)
+        at = states.joined(begin.q, begin.v)
+    else:
+        slower = period / near.period
+        turn = replace(first, step=near.turn.step * slower, tolerance=_NO_LIMIT)
+        at = states.joined(near.start[0], near.start[1] / slower)
     at, sought = states.held(at, at), list[tuple[FloatArray, FloatArray]]()
     while True:
         try:
@@ -282,7 +302,7 @@ def settled_response(
         period=period,
         displacement=followed.recovery @ start[0],
         velocity=followed.recovery @ start[1],
-        floquet=FloquetMultipliers(_multipliers(sought), period),
+        floquet=_multipliers(_Monodromy(turn, states, at, found), progress),
         residual=residual,
         error=float(np.linalg.norm(refined - after)) / scale,
         elements=end.steps,
@@ -333,16 +353,81 @@ def _next(sought: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
     return np.asarray(after - moved @ factors)
 
 
-def _multipliers(sought: list[tuple[FloatArray, FloatArray]]) -> npt.NDArray[np.complex128]:
-    """Eigenvalues of the monodromy on the differences of the states of a search that it leaves there, largest first."""
-    if len(sought) < 2:
-        return np.zeros(0, dtype=np.complex128)
-    before, moved = _differences(sought)
-    left, sizes, right = np.linalg.svd(before, full_matrices=False)
-    kept = sizes > _OF_MULTIPLIERS * sizes[0]
-    projected = left[:, kept].T @ moved @ (right[kept].T / sizes[kept])
-    values, vectors = np.linalg.eig(projected)
-    vectors = (right[kept].T / sizes[kept]) @ vectors
-    missed = np.linalg.norm(moved @ vectors - before @ vectors * values, axis=0)
-    values = values[missed <= _MULTIPLIER_ERROR * np.linalg.norm(before @ vectors, axis=0)].astype(np.complex128)
-    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+class _Monodromy:
+    """Products of the monodromy of a periodic motion, in coordinates whose length is that of energy.
+
+    With the modes φ of the system about its mean load and their frequencies ω a state is (√(ω² + ω_T²) φᵀq, φᵀv), ω_T
+    the frequency of the period.
+    """
+
+    def __init__(self, turn: PeriodMap, states: _States, at: FloatArray, found: Samples) -> None:
+        system = turn.followed.system
+        stiffness = linear_matrices(system, mean_contact(system))[0]
+        squares, self.modes = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+        self.weights = np.sqrt(np.maximum(squares, 0.0) + (2.0 * np.pi / turn.period) ** 2)
+        self.states, self.at = states, at
+        ranges = np.ptp(found.displacement, axis=0), np.ptp(found.velocity, axis=0)
+        self.size = _DISTURBANCE * 0.5 * float(np.linalg.norm(self._energetic(*ranges))) or _DISTURBANCE
+        nothing = np.zeros((0, system.size))
+        # Samples have events of their own, so that a state after a period is a smooth function of the one before.
+        self.turn = replace(turn, outputs=TransientOutputs(nothing, nothing, nothing))
+
+    def product(self, step: float) -> tuple[Product, int]:
+        """Product by differences of motions with a largest step [s], and the number of steps in a period."""
+        turn = replace(self.turn, step=step)
+
+        def after(state: FloatArray) -> tuple[FloatArray, int]:
+            end, _ = turn(*self.states.parted(state))
+            return self._in_energy(self.states.held(state, self.states.joined(end.q, end.v))), end.steps
+
+        undisturbed, steps = after(self.at)
+
+        def product(disturbance: FloatArray, sense: float) -> FloatArray:
+            size = sense * self.size
+            return (after(self.at + size * self._in_states(disturbance))[0] - undisturbed) / size
+
+        return product, steps
+
+    def random(self) -> FloatArray:
+        """Disturbance with a part of all others that meet anything, of about the same energy."""
+        both = np.random.default_rng(_SEED).standard_normal(2 * len(self.weights))
+        displacement, velocity = self.states.parted(self._in_states(both))
+        alone = _uncoupled(self.turn.followed.system)
+        displacement[alone] = velocity[alone] = 0.0
+        state = self.states.joined(displacement, velocity)
+        return self._in_energy(self.states.held(state, state))
+
+    def _energetic(self, displacement: FloatArray, velocity: FloatArray) -> FloatArray:
+        return np.concatenate([self.weights * (self.modes.T @ displacement), self.modes.T @ velocity])
+
+    def _in_energy(self, state: FloatArray) -> FloatArray:
+        return self._energetic(*self.states.parted(state))
+
+    def _in_states(self, energetic: FloatArray) -> FloatArray:
+        displacement, velocity = np.split(energetic, 2)
+        return self.states.joined(self.modes @ (displacement / self.weights), self.modes @ velocity)
+
+
+def _uncoupled(system: CoupledSystem) -> npt.NDArray[np.bool_]:
+    """Whether each coordinate is alone, as residual modes of shafts that no force moves: undamped, its motion stays."""
+    stiffness = system.mean_stiffness
+    sizes = np.sqrt(np.abs(np.diag(stiffness)))
+    scaled = np.abs(stiffness) / np.maximum(np.outer(sizes, sizes), 1e-300)
+    beside = [scaled, np.abs(system.damping) / max(float(np.abs(system.damping).max(initial=0.0)), 1e-300)]
+    turning = [one.turning for one in system.linear] + [one.turning for one in system.contacts]
+    ways = [way for parts in turning for part in parts for way in (part.cosine, part.sine)]
+    moved = [np.abs(np.reshape(way, (system.size, -1))) for way in ways]
+    coupled = np.any([np.max(matrix - np.diag(np.diag(matrix)), axis=1) > _UNCOUPLED for matrix in beside], axis=0)
+    for directions in moved:
+        coupled |= np.any(directions > _UNCOUPLED * directions.max(initial=0.0), axis=1)
+    return np.asarray(~coupled)
+
+
+def _multipliers(monodromy: _Monodromy, progress: Callable[[float], None]) -> FloquetMultipliers:
+    """Leading multipliers of a periodic motion."""
+    step = monodromy.turn.step
+    (coarse, few), (fine, many) = monodromy.product(_LONG_STEPS * step), monodromy.product(step)
+    found = leading_multipliers(
+        monodromy.random(), coarse, fine, ratio=max(many / few, _LEAST_RATIO), progress=progress
+    )
+    return FloquetMultipliers(found.values, monodromy.turn.period, found.errors)

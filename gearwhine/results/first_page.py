@@ -335,12 +335,19 @@ def _proofs(summary: Summary) -> Iterator[Finding]:
         if (error := motion.get("error")) is not None and motion.get("residual") is not None:
             yield Finding(
                 f"Steady state: the motion closes {closing(motion['residual'])} and changes by {error:.0e} with "
-                f"elements half as long (bound: {_PERIODIC:.0e}); {'stable' if motion['stable'] else 'unstable'}.",
+                f"elements half as long (bound: {_PERIODIC:.0e}); {_stability(motion)}.",
                 passed=max(error, motion["residual"]) < _PERIODIC and bool(motion["stable"]),
                 link=("section Steady state",),
             )
     yield from _sound_proofs(summary)
     yield from _basis(summary)
+
+
+def _stability(motion: Document) -> str:
+    """Return whether a periodic motion is stable, or that its largest multiplier leaves this open."""
+    undecided = "stability not decided within the error of the largest Floquet multiplier"
+    verdict = motion.get("stability", "stable" if motion["stable"] else "unstable")
+    return undecided if verdict == "not decided" else str(verdict)
 
 
 def _point_proofs(summary: Summary) -> Iterator[Finding]:

@@ -40,7 +40,9 @@ _LINES_SHOWN = 3  # highest lines of each sensor on the terminal, with what exci
 PROOF = (
     Quantity("period_s"),
     Quantity("stable"),
+    Quantity("stability", "floquet.stability"),
     Quantity("largest_multiplier", "floquet.largest"),
+    Quantity("largest_multiplier_error", "floquet.largest_error", optional=True),
     Quantity("instability", "floquet.leaving"),
     Quantity("residual"),
     Quantity("error"),
@@ -526,8 +528,12 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
 def _proof(motion: Document, name: str) -> str:
     if motion["stable"]:
         stability = f"stable, {_decay(motion['largest_multiplier'], motion['period_s'])}"
+    elif motion.get("stability") == "not decided":
+        stability = "stability not decided"
     else:
         stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
+    if (error := motion.get("largest_multiplier_error")) is not None:
+        stability += f" (largest Floquet multiplier {motion['largest_multiplier']:.4g} ± {error:.1g})"
     return (
         f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes {closing(motion['residual'])}, "
         f"changes by {motion['error']:.0e} with {'elements' if 'switches' in motion else 'steps'} half as long"

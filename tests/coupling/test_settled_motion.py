@@ -13,6 +13,8 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response
+from gearwhine.coupling.periodic.response import FloquetMultipliers
+from gearwhine.coupling.periodic.settled_curve import settled_curve
 from gearwhine.coupling.periodic.settling import _States
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientOutputs
@@ -91,15 +93,100 @@ def test_lines_of_the_settled_motion_are_the_linear_ones(angles: tuple[float, ..
 
 @pytest.mark.slow
 def test_multipliers_are_those_of_a_turn() -> None:
-    """Each disturbance that the search tells is one of the machine, whose monodromy is that of Magnus's series."""
+    """The largest is that of the monodromy by Magnus's series, within its error."""
     machine = turning_machine(ANISOTROPIC, speed=3000.0)
     settled = settled_response(machine.system, closure=1e-6)
     exact = multipliers(machine.system, settled.period, 120)
-    found = settled.floquet.values
-    assert len(found) >= 4
-    assert 0.5 < settled.floquet.largest < 0.8
-    assert max(float(np.abs(exact - value).min()) for value in found) < 0.01
-    assert settled.stable
+    # Without the rotation of the train and the torsion of shafts that no force moves, which nothing damps.
+    largest = np.abs(exact[np.abs(exact) < 1.0 - 1e-4]).max()
+    assert largest == pytest.approx(0.9539, abs=1e-4)
+    assert settled.floquet.largest_error < 0.03
+    assert settled.floquet.largest == pytest.approx(largest, abs=settled.floquet.largest_error)
+    assert settled.stability == "stable"
+
+
+DAMPED = 0.02 * np.eye(2)
+
+
+def rotating_shaft(turn: float, damping: FloatArray) -> tuple[CoupledSystem, FloatArray]:
+    """An unsymmetric shaft that turns with its dashpots, of 4 and 9 N/m at 1 kg, and its exact multipliers' moduli."""
+    zeros, stiffness = np.zeros((2, 2)), np.diag([4.0, 9.0])
+    springs = LinearConnector("shaft", np.eye(2), stiffness, damping, turning=(TurningPart(turn, np.eye(2), QUARTER),))
+    system = CoupledSystem((Component("disc", ("rotor",) * 2, zeros, zeros, zeros),), (0.0,), (springs,), load=FORCE)
+    frame = np.block([[zeros, np.eye(2)], [turn**2 * np.eye(2) - stiffness, -damping - 2.0 * turn * QUARTER]])
+    return system, np.sort(np.abs(np.exp(np.linalg.eigvals(frame) * TWO_PI / turn)))[::-1]
+
+
+@pytest.mark.parametrize(
+    ("turn", "damping", "tolerance", "verdict"),
+    [
+        (1.3, DAMPED, 5e-4, "stable"),
+        (1.95, DAMPED, 5e-4, "stable"),  # 0.9917
+        (2.5, DAMPED, 5e-4, "unstable"),  # between the critical speeds 2 and 3 rad/s of both planes
+        (2.02, 0.1 * np.eye(2), 5e-4, "unstable"),
+        (2.001, DAMPED, 1e-7, "unstable"),  # 1.059, which would pass for the error of a rough estimate
+        (2.0, DAMPED, 5e-4, "not decided"),  # exactly 1
+        (1.3, np.zeros((2, 2)), 5e-4, "not decided"),  # all four on the unit circle
+    ],
+)
+def test_stability_of_an_unsymmetric_shaft_is_told_within_its_error(
+    turn: float, damping: FloatArray, tolerance: float, verdict: str
+) -> None:
+    """Its motion under a constant force is unstable between its critical speeds; also then the search finds it."""
+    system, exact = rotating_shaft(turn, damping)
+    settled = settled_response(system, step_tolerance=tolerance)
+    assert settled.stability == verdict
+    assert settled.stable is (verdict == "stable")
+    assert settled.floquet.largest_error is not None
+    assert abs(settled.floquet.largest - exact[0]) <= settled.floquet.largest_error
+    assert settled.floquet.largest_error < 0.06
+    assert settled.floquet.leaving == ("fold" if verdict == "unstable" else None)
+
+
+@pytest.mark.parametrize(
+    ("values", "errors", "verdict", "growing"),
+    [
+        ([0.97], [0.02], "stable", 0),
+        ([0.97], [0.04], "not decided", 0),
+        ([1.03], [0.04], "not decided", 0),
+        ([1.03, 0.5], [0.02, 0.6], "unstable", 1),
+        ([0.9, 0.5], [0.02, 0.6], "not decided", 0),
+    ],
+)
+def test_a_verdict_is_told_by_whole_intervals(
+    values: list[float], errors: list[float], verdict: str, growing: int
+) -> None:
+    multipliers = FloquetMultipliers(np.array(values, dtype=complex), 1.0, np.array(errors))
+    assert (multipliers.stability, multipliers.growing) == (verdict, growing)
+    assert multipliers.largest_error == errors[0]
+    assert multipliers.stable is (verdict == "stable")
+
+
+def test_a_disturbance_that_the_search_never_meets_decides() -> None:
+    """A second shaft without a load rests while the first is found; it turns between its critical speeds."""
+    system, _ = rotating_shaft(1.3, DAMPED)
+    (shaft,), (disc,) = system.linear, system.components
+
+    def moved(rows: FloatArray, number: int) -> FloatArray:
+        return np.roll(np.vstack([rows, np.zeros((2, 2))]), 2 * number, axis=0)
+
+    shafts = tuple(
+        replace(
+            shaft,
+            name=f"shaft {number}",
+            directions=moved(shaft.directions, number),
+            stiffness=factor * shaft.stiffness,
+            turning=tuple(
+                replace(part, cosine=moved(part.cosine, number), sine=moved(part.sine, number))
+                for part in shaft.turning
+            ),
+        )
+        for number, factor in ((0, 1.0), (1, 0.25))
+    )
+    discs = (disc, replace(disc, name="second disc"))
+    settled = settled_response(CoupledSystem(discs, (0.0, 0.0), shafts, load=np.concatenate([FORCE, np.zeros(2)])))
+    assert np.abs(settled.displacement[2:]).max() < 1e-12
+    assert settled.stability == "unstable"
 
 
 def test_a_motion_of_long_period_is_refused_with_what_to_leave_out() -> None:
@@ -127,8 +214,50 @@ def test_machine_and_analysis_take_the_motion_that_settles() -> None:
         motion = machine.steady()
         assert isinstance(motion, SettledMotion)
         assert motion.residual < 1e-4
-    with pytest.raises(CouplingError, match="one speed of a machine whose carriers turn"):
-        solve_steady(described.assembled, over_speed=(200.0, 400.0))
+    with pytest.raises(CouplingError, match="1 points from 200 to 400; expected two or more"):
+        solve_steady(described.assembled, over_speed=(200.0, 400.0), points=1)
+
+
+def test_a_curve_through_the_critical_speeds_of_an_unsymmetric_shaft() -> None:
+    """Its amplitude under a constant force has a closed form; its turning dashpots leave it unstable from the first."""
+    curve = settled_curve(lambda turn: rotating_shaft(turn, DAMPED)[0], 1.5, 3.5, points=11)
+    assert curve.speeds == pytest.approx(np.linspace(1.5, 3.5, 11))
+    assert curve.gaps == ()
+    assert curve.ending == "end"
+    largest = np.array([rotating_shaft(turn, DAMPED)[1][0] for turn in curve.speeds.tolist()])
+    assert curve.stable.tolist() == (largest < 1.0).tolist() == [True] * 3 + [False] * 8
+    ((kind, index),) = [(event.kind, event.index) for event in curve.bifurcations]
+    assert (kind, index) == ("branch point", 3)
+    for turn, motion in zip(curve.speeds.tolist(), curve.responses, strict=True):
+        # At t = 0 the frame is not turned: the displacement is the sum of both circular parts.
+        exact = np.zeros(2)
+        for sense in (1, -1):
+            phasor, w = 0.5 * (FORCE - 1j * sense * QUARTER @ FORCE), -sense * turn
+            stiffness = np.diag([4.0, 9.0]) - (turn**2 + w**2) * np.eye(2)
+            dynamic = stiffness + 1j * w * (DAMPED + 2.0 * turn * QUARTER)
+            exact += np.linalg.solve(dynamic, phasor).real
+        np.testing.assert_allclose(motion.displacement, exact, atol=1e-2 * np.abs(exact).max())
+    (between,) = curve.at(3.45)
+    assert isinstance(between, SettledMotion)
+    alone = settled_response(rotating_shaft(3.45, DAMPED)[0])
+    np.testing.assert_allclose(between.displacement, alone.displacement, atol=1e-2 * np.abs(alone.displacement).max())
+
+
+@pytest.mark.slow
+def test_sensors_over_speed_are_those_of_the_linear_lines() -> None:
+    described = turning_set(ANISOTROPIC)
+    steady = solve_steady(described.assembled, over_speed=(290.0, 310.0), points=3)
+    assert steady.curve is not None
+    assert steady.curve.speeds == pytest.approx([290.0, 300.0, 310.0])
+    assert len(steady.motions) == 1
+    for number, speed in enumerate(steady.curve.speeds.tolist()):
+        machine = described.assembled.at_speed(speed)
+        lines = MeshHarmonicModel(machine).parts(TWO_PI * 3000.0)
+        for sensor, row in machine.sensor_rows.items():
+            amplitudes = [line.frequency**2 * abs(complex(row @ line.motion)) for line in lines]
+            assert steady.branch_rms[sensor][number] == pytest.approx(
+                np.linalg.norm(amplitudes) / np.sqrt(2.0), rel=0.01
+            )
 
 
 def test_motions_that_nothing_resists_have_no_place_and_no_mean_rate() -> None:

@@ -16,7 +16,8 @@ def test_a_settled_motion_has_its_period_and_proofs() -> None:
     (motion,) = document["motions"]
     assert document["method"] == "settled"
     assert motion["period_s"] == pytest.approx(turn, rel=1e-9)
-    assert motion["stable"]
+    assert motion["stability"] == "stable"
+    assert 0.0 < motion["largest_multiplier"] + motion["largest_multiplier_error"] < 1.0
     assert motion["residual"] < 1e-4
     assert motion["error"] < 1e-2
     assert "switches" not in motion  # which steps of a time integration do not count
@@ -30,3 +31,8 @@ def test_a_settled_motion_has_its_period_and_proofs() -> None:
     (section,) = sections(document)
     said = next(part for part in section.content if isinstance(part, str) and "period" in part and "closes" in part)
     assert said.endswith("with steps half as long")
+    assert f"(largest Floquet multiplier {motion['largest_multiplier']:.4g} ± " in said
+    # The same motion, did its largest multiplier's interval contain one.
+    open_ = motion | {"stable": False, "stability": "not decided", "instability": None}
+    (section,) = sections(document | {"motions": [open_]})
+    assert any(isinstance(part, str) and "stability not decided (largest" in part for part in section.content)
