@@ -42,8 +42,23 @@ def find_load(
 ) -> tuple[SolvedLoad | None, list[ResultWarning]]:
     """Find the operating point of a loaded machine beside another analysis, and its warnings.
 
-    Where no equilibrium is found and the machine does not need one, the point is None, a warning gives the reason, and
-    the analysis goes on.
+    Where no equilibrium is found and the machine does not need one, the point is None, and a warning gives the reason.
+    Parameters and errors are those of :func:`load_or_reason`.
+    """
+    solved, message = load_or_reason(machine, progress, is_needed=is_needed, aligned_by_default=aligned_by_default)
+    return solved, [warning("operating point", message)] if solved is None else load_warnings(solved)
+
+
+def load_or_reason(
+    machine: Machine,
+    progress: Progress = silent,
+    *,
+    is_needed: bool | None = None,
+    aligned_by_default: Collection[str] = (),
+) -> tuple[SolvedLoad | None, str]:
+    """Find the operating point of a loaded machine beside another analysis, or why there is none.
+
+    Where no equilibrium is found and the machine does not need one, the point is None, and the analysis goes on.
 
     Parameters
     ----------
@@ -61,7 +76,7 @@ def find_load(
         Where bearings or flanks are left to an operating point that is not found.
     """
     try:
-        solved = solve_load(machine, progress, aligned_by_default=aligned_by_default)
+        return solve_load(machine, progress, aligned_by_default=aligned_by_default), ""
     except NO_OPERATING_POINT as error:
         if any(one.needs_load for one in machine.bearings) if is_needed is None else is_needed:
             raise
@@ -69,8 +84,7 @@ def find_load(
         aligned = [pair.label for pair in machine.gear_pairs if pair.misalignment is None]
         if aligned:
             message += f"; the misalignment of {', '.join(aligned)} is taken as 0"
-        return None, [warning("operating point", message)]
-    return solved, load_warnings(solved)
+        return None, message
 
 
 def load_warnings(solved: SolvedLoad) -> list[ResultWarning]:

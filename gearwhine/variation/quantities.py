@@ -17,7 +17,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.transmission_error import transmission_error_phasors
 from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
-from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
@@ -99,7 +99,7 @@ class _Gearbox:
         """Operating point; None where nothing loads the machine or none is found."""
         if not self.machine.is_loaded:
             return None
-        return find_load(self.machine, is_needed=self.wanted.needs_load or "load" in self.wanted.analyses)[0]
+        return load_or_reason(self.machine, is_needed=self.wanted.needs_load or "load" in self.wanted.analyses)[0]
 
     @cached_property
     def loaded(self) -> LoadedMachine:
