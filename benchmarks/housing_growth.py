@@ -74,10 +74,18 @@ def main() -> None:
         print(json.dumps(solve(problem, options.limit, options.precision, options.threads)))
         return
     print(f"{machine()}; all modes below {options.limit:.0f} Hz, {options.threads} threads\n")
-    print(
-        "| mesh size | degrees of freedom | modes | factor | eigensolver | in all | processor | peak memory | residual |"
-    )
-    print("|---|---|---|---|---|---|---|---|---|")
+    columns = [
+        "mesh size",
+        "degrees of freedom",
+        "modes",
+        "factor",
+        "eigensolver",
+        "in all",
+        "processor",
+        "peak memory",
+    ]
+    print(f"| {' | '.join([*columns, 'residual', 'solver'])} |")
+    print("|---" * (len(columns) + 2) + "|")
     rows = []
     for size in options.mesh_size:
         with tempfile.TemporaryDirectory() as folder:

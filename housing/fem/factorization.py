@@ -135,7 +135,7 @@ class _RslabFactor:
 
     def solve(self, right: FloatArray) -> FloatArray:
         solve = self._handle.solve if right.ndim == 1 else self._handle.solve_many
-        return np.asarray(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
+        return np.array(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
 
 
 class SuperluSolver:
@@ -269,7 +269,9 @@ class Factorization:
         # Small numbers in double precision may be none in single.
         scale = np.max(np.abs(right), axis=0)
         scale = np.where(scale > 0.0, scale, 1.0)
-        return np.asarray(self._factor.solve(right / scale) * scale)
+        solution = self._factor.solve(right / scale)
+        solution *= scale
+        return solution
 
 
 class Factorizer:

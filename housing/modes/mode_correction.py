@@ -26,7 +26,7 @@ from gearwhine.numerics.arrays import FloatArray
 
 _STEPS = 20
 _GAIN = 2.0  # of the largest residual by a step, below which the next is of no use
-_COLUMNS = 16
+_COLUMNS = 8
 _INDEPENDENT = 1e-10  # least eigenvalue of the correlations of approximate modes
 _NO_CHANGE = 1e-10  # least singular value of the changes, beside 1
 
