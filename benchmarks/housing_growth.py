@@ -1,66 +1,112 @@
 """How time and memory grow with the number of degrees of freedom: the exponent over several mesh sizes.
 
     python benchmarks/housing_growth.py 24 17 12 8.5
+    python benchmarks/housing_growth.py 12 8.5 5.3 --precision single --limit 3000
 
-Each mesh is solved in a process of its own, so that its peak memory is its own; that of meshing is not counted.
+Each mesh is made in a process of its own, and solved in another, so that the peak of its memory is that of the solution
+alone, from the assembly to the certificate: the largest resident set, as the operating system has it.
 """
 
+import argparse
 import json
+import pickle
 import resource
 import subprocess
 import sys
+import tempfile
+import time
+from pathlib import Path
 
 import numpy as np
-from benchmark_box import STEEL, benchmark_box
+from benchmark_box import STEEL, Problem, benchmark_box
 from timing import machine, timed
 
 from gearwhine.housing import assemble, solve_modes
 
-_MODES = 30
-_LIMIT = 2.0 * np.pi * 3984.0
 
-
-def solve(mesh_size: float) -> dict[str, float]:
-    """One mesh, all modes below about the thirtieth."""
-    problem = benchmark_box(1e-3 * mesh_size)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+def solve(problem: Problem, limit: float, precision: str | None, threads: int) -> dict[str, object]:
+    """All modes below a limit [Hz], with time and memory."""
+    said: list[str] = []
+    processor = time.process_time()
     modes, seconds = timed(
-        lambda: solve_modes(assemble(problem.mesh, STEEL).held(problem.fixed), frequency_limit=_LIMIT)
+        lambda: solve_modes(
+            assemble(problem.mesh, STEEL, threads=threads).held(problem.fixed),
+            frequency_limit=2.0 * np.pi * limit,
+            precision=precision,
+            threads=threads,
+            progress=said.append,
+        )
     )
     return {
         "freedoms": problem.freedoms,
         "modes": modes.certificate.found,
+        "complete": modes.certificate.complete,
+        "backend": modes.backend,
         "seconds": seconds,
+        "processor": time.process_time() - processor,
         "factorisation": modes.seconds["factorisation"],
         "eigensolver": modes.seconds["eigensolver"],
-        "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
-        "meshing_mb": before / 1024.0,
+        "peak_gb": 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e9,
         "residual": modes.certificate.max_residual,
+        "said": [one for one in said if "precision" in one],
     }
 
 
+def separately(*words: str) -> str:
+    """Output of this program in a process of its own."""
+    return subprocess.run([sys.executable, __file__, *words], check=True, capture_output=True, text=True).stdout
+
+
 def main() -> None:
-    if sys.argv[1:2] == ["--one"]:
-        print(json.dumps(solve(float(sys.argv[2]))))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("mesh_size", nargs="*", type=float, default=[24.0, 17.0, 12.0, 8.5], help="sizes [mm]")
+    parser.add_argument("--limit", type=float, default=3984.0, help="of the frequencies [Hz]")
+    parser.add_argument("--precision", choices=["double", "single"], help="of the factor; by default as memory allows")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--mesh", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--solve", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.mesh is not None:
+        options.mesh.write_bytes(pickle.dumps(benchmark_box(1e-3 * options.mesh_size[0])))
         return
-    sizes = [float(size) for size in sys.argv[1:]] or [24.0, 17.0, 12.0, 8.5]
-    print(f"{machine()}; all modes below {_LIMIT / 2 / np.pi:.0f} Hz\n")
-    print(f"{'mesh':>8}{'dofs':>10}{'modes':>7}{'factor':>9}{'Lanczos':>9}{'in all':>9}{'peak':>9}{'residual':>10}")
+    if options.solve is not None:
+        problem = pickle.loads(options.solve.read_bytes())  # noqa: S301 - written by this program
+        print(json.dumps(solve(problem, options.limit, options.precision, options.threads)))
+        return
+    print(f"{machine()}; all modes below {options.limit:.0f} Hz, {options.threads} threads\n")
+    columns = [
+        "mesh size",
+        "degrees of freedom",
+        "modes",
+        "factor",
+        "eigensolver",
+        "in all",
+        "processor",
+        "peak memory",
+    ]
+    print(f"| {' | '.join([*columns, 'residual', 'solver'])} |")
+    print("|---" * (len(columns) + 2) + "|")
     rows = []
-    for size in sizes:
-        ended = subprocess.run(
-            [sys.executable, __file__, "--one", str(size)], check=True, capture_output=True, text=True
-        )
-        row = json.loads(ended.stdout.splitlines()[-1])
+    for size in options.mesh_size:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "mesh"
+            separately(str(size), "--mesh", str(file))
+            words = ["--solve", str(file), "--limit", str(options.limit), "--threads", str(options.threads)]
+            precision = [] if options.precision is None else ["--precision", options.precision]
+            row = json.loads(separately(*words, *precision).splitlines()[-1])
         rows.append(row)
+        assert row["complete"]
         print(
-            f"{size:5.3g} mm{row['freedoms']:10.0f}{row['modes']:7.0f}{row['factorisation']:8.2f}s"
-            f"{row['eigensolver']:8.2f}s{row['seconds']:8.2f}s{row['peak_mb']:6.0f} MB{row['residual']:10.0e}",
+            f"| {size:g} mm | {row['freedoms']} | {row['modes']} | {row['factorisation']:.1f} s "
+            f"| {row['eigensolver']:.1f} s | {row['seconds']:.1f} s | {row['processor']:.1f} s "
+            f"| {row['peak_gb']:.2f} GB | {row['residual']:.0e} | {row['backend']} |",
             flush=True,
         )
+        for one in row["said"]:
+            print(f"    {one}")
     if len(rows) > 1:
         freedoms = np.log([row["freedoms"] for row in rows])
-        for key, name in (("seconds", "time"), ("peak_mb", "peak memory")):
+        for key, name in (("processor", "processor time"), ("peak_gb", "peak memory")):
             print(f"{name} grows with the power {np.polyfit(freedoms, np.log([row[key] for row in rows]), 1)[0]:.2f}")
 
 

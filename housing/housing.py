@@ -19,6 +19,7 @@ from scipy import linalg, sparse
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.assembly import assemble
 from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.fem.slepc import SlepcUnavailableError
 from gearwhine.housing.material import (
     MassProperties,
     Material,
@@ -453,6 +454,9 @@ class Housing:
                 solver=solver,
                 progress=progress,
             )
+        except SlepcUnavailableError as error:
+            refuse([Finding(_PART, "solver", solver, f"one that can be started; {error}")], SlepcUnavailableError)
+            raise
         except HousingError as error:
             attribute = "count" if below_hz is None else "below_hz"
             finding = Finding(_PART, attribute, None, f"what this model has; {error}")

@@ -68,10 +68,10 @@ def refused_by_key(table: HousingTable) -> Iterator[None]:
     Raises
     ------
     CaseError
-        With every fixture that does not fit the mesh, modes that the model does not have, too few damping ratios, or an
-        accuracy that no mesh reaches.
+        With every fixture that does not fit the mesh, modes that the model does not have, too few damping ratios, an
+        accuracy that no mesh reaches, or a solver that cannot be started.
     """
-    keys = {"count": "modes", "below_hz": "frequency_limit", "damping_ratio": "damping_ratio", "accuracy": "accuracy"}
+    keys = {"count": "modes", "below_hz": "frequency_limit"}  # others have the attribute's name
     try:
         yield
     except HousingError as error:
@@ -82,7 +82,9 @@ def refused_by_key(table: HousingTable) -> Iterator[None]:
         problems = []
         for finding in error.findings:
             value = f"{len(finding.value)} ratios" if isinstance(finding.value, tuple) else finding.value or UNSAID
-            problems.append(Problem(f"housing.{keys[finding.attribute]}", value, finding.expected))
+            problems.append(
+                Problem(f"housing.{keys.get(finding.attribute, finding.attribute)}", value, finding.expected)
+            )
         raise CaseError(problems) from error
 
 

@@ -38,7 +38,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from gearwhine.housing.errors import FactorizationError
-from gearwhine.housing.fem.linear_algebra import Operator, Precision, SymmetricMatrix
+from gearwhine.housing.fem.linear_algebra import FactorableMatrix, Operator, Precision, SymmetricMatrix
 from gearwhine.housing.fem.memory import available_memory, check_memory
 from gearwhine.numerics.arrays import FloatArray
 
@@ -100,7 +100,7 @@ class RslabSolver:
         self._threads = threads
         self._symbolic: Any = None
 
-    def order(self, matrix: SymmetricMatrix) -> None:
+    def order(self, matrix: FactorableMatrix) -> None:
         """Find the ordering."""
         # Nested dissection outright: by default several orderings are tried, and on solids it always wins. Its
         # refinement gives up sooner than by default: a third of its time for no more fill.
@@ -113,19 +113,19 @@ class RslabSolver:
             nd_init_trials=4,
         )
 
-    def memory(self, matrix: SymmetricMatrix, precision: Precision) -> float:
+    def memory(self, matrix: FactorableMatrix, precision: Precision) -> float:
         """Memory that a factor and its solutions take, beside that of the ordering, which is found if need be."""
         if self._symbolic is None:
             self.order(matrix)
         plan = self._symbolic.memory_plan(dtype=_KINDS[precision].__name__, nrhs=_COLUMNS)
         return float(plan["factor_peak_bytes"])
 
-    def factor(self, matrix: SymmetricMatrix, precision: Precision) -> "_RslabFactor":
+    def factor(self, matrix: FactorableMatrix, precision: Precision) -> "_RslabFactor":
         """Factor in the ordering found, or in the first matrix's."""
         if self._symbolic is None:
             self.order(matrix)
         kind = _KINDS[precision]
-        return _RslabFactor(self._symbolic.factor(matrix.values.astype(kind, copy=False)), kind)
+        return _RslabFactor(self._symbolic.factor(matrix.entries(kind)), kind)
 
 
 class _RslabFactor:
@@ -135,20 +135,20 @@ class _RslabFactor:
 
     def solve(self, right: FloatArray) -> FloatArray:
         solve = self._handle.solve if right.ndim == 1 else self._handle.solve_many
-        return np.asarray(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
+        return np.array(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
 
 
 class SuperluSolver:
     """scipy's SuperLU without row exchanges, so that the signs of U's diagonal are the inertia."""
 
-    def order(self, matrix: SymmetricMatrix) -> None:
+    def order(self, matrix: FactorableMatrix) -> None:
         """Do nothing: SuperLU orders each matrix anew."""
 
-    def memory(self, matrix: SymmetricMatrix, precision: Precision) -> float:
+    def memory(self, matrix: FactorableMatrix, precision: Precision) -> float:
         """Return 0: SuperLU does not foresee its memory."""
         return 0.0
 
-    def factor(self, matrix: SymmetricMatrix, precision: Precision) -> "_SuperluFactor":
+    def factor(self, matrix: FactorableMatrix, precision: Precision) -> "_SuperluFactor":
         """Factor a matrix, in double precision."""
         handle = splu(
             matrix.full(),
@@ -187,11 +187,11 @@ _ERROR_BOUND = 1e-2  # error of a solution: 1e-8 is usual, and a singular matrix
 class _Solver(Protocol):
     """A sparse solver that knows the pattern of the matrices to come."""
 
-    def order(self, matrix: SymmetricMatrix) -> None: ...
+    def order(self, matrix: FactorableMatrix) -> None: ...
 
-    def memory(self, matrix: SymmetricMatrix, precision: Precision) -> float: ...
+    def memory(self, matrix: FactorableMatrix, precision: Precision) -> float: ...
 
-    def factor(self, matrix: SymmetricMatrix, precision: Precision) -> NumericFactor: ...
+    def factor(self, matrix: FactorableMatrix, precision: Precision) -> NumericFactor: ...
 
 
 class UnprovedInertiaError(FactorizationError):
@@ -269,7 +269,9 @@ class Factorization:
         # Small numbers in double precision may be none in single.
         scale = np.max(np.abs(right), axis=0)
         scale = np.where(scale > 0.0, scale, 1.0)
-        return np.asarray(self._factor.solve(right / scale) * scale)
+        solution = self._factor.solve(right / scale)
+        solution *= scale
+        return solution
 
 
 class Factorizer:
@@ -317,7 +319,7 @@ class Factorizer:
             self._solver = RslabSolver(threads)
         self._ordering: Future[None] | None = None
 
-    def order_ahead(self, matrix: SymmetricMatrix) -> None:
+    def order_ahead(self, matrix: FactorableMatrix) -> None:
         """Begin to find the ordering for matrices of this pattern in a background thread.
 
         The first call of :meth:`factor` waits for it.
@@ -326,7 +328,7 @@ class Factorizer:
         self._ordering = pool.submit(self._solver.order, matrix)
         pool.shutdown(wait=False)
 
-    def factor(self, matrix: SymmetricMatrix | sparse.csr_array) -> Factorization:
+    def factor(self, matrix: FactorableMatrix | sparse.csr_array) -> Factorization:
         """Factor a matrix and check that the factor solves.
 
         Raises
@@ -336,7 +338,7 @@ class Factorizer:
         MemoryError
             Where the factor needs more memory than is available; rslab estimates it before it allocates any.
         """
-        if not isinstance(matrix, SymmetricMatrix):
+        if isinstance(matrix, sparse.csr_array):
             matrix = SymmetricMatrix.of(matrix)
         start = time.perf_counter()
         if self._ordering is not None:
@@ -354,7 +356,7 @@ class Factorizer:
             except MemoryError as too_large:
                 raise MemoryError(f"{error}; {too_large}, or move the limit a little") from error
 
-    def _fitting(self, matrix: SymmetricMatrix) -> Precision:
+    def _fitting(self, matrix: FactorableMatrix) -> Precision:
         """Double precision, or single where the available memory is too small for it."""
         needed = self._solver.memory(matrix, "double") + 8.0 * _VECTORS_BESIDE * matrix.shape[0]
         available = available_memory()
@@ -366,7 +368,7 @@ class Factorizer:
         )
         return "single"
 
-    def _factored(self, matrix: SymmetricMatrix, precision: Precision, start: float) -> Factorization:
+    def _factored(self, matrix: FactorableMatrix, precision: Precision, start: float) -> Factorization:
         # Where an allocation fails the library ends the process; so the need is foreseen, from the ordering.
         needed = self._solver.memory(matrix, precision)
         check_memory(needed, f"the factor of a matrix of order {matrix.shape[0]} in {precision} precision")
@@ -381,7 +383,7 @@ class Factorizer:
 
 
 def checked_factor(
-    backend: str, numeric: NumericFactor, matrix: SymmetricMatrix, seconds: float, precision: Precision = "double"
+    backend: str, numeric: NumericFactor, matrix: FactorableMatrix, seconds: float, precision: Precision = "double"
 ) -> Factorization:
     """Check that a factor solves, and prove its inertia where it is in single precision.
 
@@ -412,7 +414,7 @@ def default_backend() -> Backend:
     return "rslab" if can_import("rslab") else "superlu"
 
 
-def _check(factor: Factorization, matrix: SymmetricMatrix) -> None:
+def _check(factor: Factorization, matrix: FactorableMatrix) -> None:
     """Solve for a known vector; a factor that cannot is refused."""
     exact = np.random.default_rng(0).standard_normal(factor.size)
     right = matrix @ exact
@@ -428,7 +430,7 @@ def _check(factor: Factorization, matrix: SymmetricMatrix) -> None:
         )
 
 
-def _prove_inertia(factor: Factorization, matrix: SymmetricMatrix) -> None:
+def _prove_inertia(factor: Factorization, matrix: FactorableMatrix) -> None:
     """Refine known solutions until a wrong inertia is as good as excluded; a factor that does not allow it is refused.
 
     The proof is that of the module's docstring, with eight columns.

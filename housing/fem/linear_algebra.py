@@ -61,6 +61,20 @@ class Operator(Protocol):
         """Multiply by one vector, shape (n,), or by many, shape (n, m)."""
 
 
+class FactorableMatrix(Operator, Protocol):
+    """Sparse symmetric matrix that can be assembled for a factorisation, and multiplied."""
+
+    @property
+    def lower(self) -> sparse.csc_array:
+        """The lower triangle."""
+
+    def full(self) -> sparse.csc_array:
+        """Both triangles."""
+
+    def entries(self, kind: type) -> npt.NDArray[Any]:
+        """Entries of the lower triangle, of a type of numbers."""
+
+
 @dataclass(frozen=True)
 class SymmetricMatrix:
     """The lower triangle by columns, which is also the upper one by rows.
@@ -104,6 +118,10 @@ class SymmetricMatrix:
         matrix = sparse.csc_array((self.values, self.rows, self.pointer), shape=self.shape)
         matrix.has_canonical_format = True
         return matrix
+
+    def entries(self, kind: type) -> npt.NDArray[Any]:
+        """Entries of the lower triangle, of a type of numbers."""
+        return np.asarray(self.values.astype(kind, copy=False))
 
     def full(self) -> sparse.csc_array:
         """Both triangles."""
@@ -161,7 +179,13 @@ class BlockAlgebra:
 
     def combined(self, block: FloatArray, mixture: FloatArray) -> FloatArray:
         """B m, shape (rows, columns of m)."""
-        return np.concatenate(self._each(lambda rows: block[rows] @ mixture))
+        result = np.empty((len(block), mixture.shape[1]))
+
+        def multiply(rows: slice) -> None:
+            result[rows] = block[rows] @ mixture
+
+        self._each(multiply)
+        return result
 
     def replace(self, block: FloatArray, mixture: FloatArray) -> None:
         """Replace the first columns of B by B m, in place, a few rows at a time."""

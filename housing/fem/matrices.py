@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
-from gearwhine.housing.fem.linear_algebra import SymmetricMatrix, at_once
+from gearwhine.housing.fem.linear_algebra import Operator, SymmetricMatrix, at_once
 from gearwhine.numerics.arrays import FloatArray, IntArray
 
 Int32Array = npt.NDArray[np.int32]
@@ -309,6 +309,7 @@ class Matrices:
 
 _FLOOR = 0.06  # part of a limit: its square is small beside the wanted eigenvalues
 _STIFFNESS_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
+_NODES_BY_BLOCKS = 50_000
 _WORTH_A_THREAD = 2**16  # entries of the scalar mass: fewer are multiplied sooner than a thread starts
 
 
@@ -321,12 +322,16 @@ class FreeSystem:
         Matrices of n_nodes nodes, with supports.
     threads : int
         Threads that multiply K and M with vectors; the products are the same to the last bit for any number.
+    by_blocks : bool, optional
+        Whether products are made of the blocks, without matrices: by default those of more than 50,000 nodes, where
+        the memory counts.
 
     Attributes
     ----------
     free : ndarray of int, shape (n,)
         Free degrees of freedom, among the 3 n_nodes.
     threads : int
+    by_blocks : bool
 
     Raises
     ------
@@ -334,7 +339,7 @@ class FreeSystem:
         Where every degree of freedom is fixed.
     """
 
-    def __init__(self, matrices: Matrices, *, threads: int = 1) -> None:
+    def __init__(self, matrices: Matrices, *, threads: int = 1, by_blocks: bool | None = None) -> None:
         is_fixed = np.zeros(3 * matrices.n_nodes, dtype=bool)
         is_fixed[matrices.fixed] = True
         if is_fixed.all():
@@ -342,7 +347,7 @@ class FreeSystem:
         self.free = np.flatnonzero(~is_fixed)
         self._matrices = matrices
         self.threads = threads
-        self._pointer, self._rows, self._source = _lower_pattern(matrices, self.free)
+        self.by_blocks = matrices.n_nodes > _NODES_BY_BLOCKS if by_blocks is None else by_blocks
 
     @property
     def size(self) -> int:
@@ -355,29 +360,52 @@ class FreeSystem:
         return self._matrices.n_nodes
 
     @cached_property
-    def stiffness(self) -> SymmetricMatrix:
+    def stiffness(self) -> Operator:
         """K [N/m]."""
-        return self._matrix(self._matrices.blocks.ravel()[self._source])
+        if not self.by_blocks:
+            return self.assembled(self._matrices.blocks)
+        from gearwhine.housing.fem.block_products import BlockProduct
+
+        matrices = self._matrices
+        return BlockProduct(matrices.pointer, matrices.neighbors, matrices.blocks, self.free, self.threads)
 
     @cached_property
-    def mass(self) -> "FreeMass":
-        """M [kg], as an operator."""
-        return FreeMass(self._matrices, self.free, self.threads)
+    def mass(self) -> Operator:
+        """M [kg]."""
+        if not self.by_blocks:
+            return FreeMass(self._matrices, self.free, self.threads)
+        from gearwhine.housing.fem.block_products import BlockProduct
 
-    def assembled_mass(self) -> SymmetricMatrix:
-        """M on the pattern of K [kg]."""
-        return self._matrix(self._matrices.mass_blocks().ravel()[self._source])
+        matrices = self._matrices
+        attached = matrices.attached_mass
+        further = sparse.csr_array(attached.matrix(self.n_nodes)[self.free][:, self.free]) if len(attached) else None
+        return BlockProduct(matrices.pointer, matrices.neighbors, matrices.node_mass, self.free, self.threads, further)
 
-    def shifted(self, shift: float) -> SymmetricMatrix:
+    def shifted(self, shift: float) -> "ShiftedMatrix":
         """K - shift M, always on the same pattern [rad²/s²]."""
-        return self._matrix(self._matrices.shifted_blocks(shift).ravel()[self._source])
+        return ShiftedMatrix(self, shift)
+
+    def assembled(self, blocks: FloatArray) -> SymmetricMatrix:
+        """Assemble a matrix from its blocks on the pattern of K."""
+        pointer, rows, source = self._pattern
+        return SymmetricMatrix(pointer, rows, blocks.ravel()[source], self.threads)
+
+    def shifted_blocks(self, shift: float) -> FloatArray:
+        """K - shift M on the pattern of blocks, shape (n_blocks, 3, 3)."""
+        return self._matrices.shifted_blocks(shift)
+
+    def assembled_pair(self) -> tuple[SymmetricMatrix, SymmetricMatrix]:
+        """K [N/m] and M [kg], on one pattern."""
+        return self.assembled(self._matrices.blocks), self.assembled(self._matrices.mass_blocks())
 
     def floor(self, limit: float = 0.0) -> float:
         """λ up to which a mode counts as rigid [rad²/s²].
 
         It is far above the rounding of K, and its root small beside a limit of circular frequencies [rad/s].
         """
-        ratio = self.stiffness.diagonal() / self._matrices.mass_diagonal()[self.free]
+        matrices = self._matrices
+        diagonal = np.einsum("nii->ni", matrices.blocks[matrices.pointer[:-1]]).ravel()
+        ratio = (diagonal / matrices.mass_diagonal())[self.free]
         return max(_STIFFNESS_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
 
     def expand(self, vectors: FloatArray) -> FloatArray:
@@ -386,8 +414,52 @@ class FreeSystem:
         full[:, self.free] = vectors.T
         return full.reshape(len(full), self.n_nodes, 3)
 
-    def _matrix(self, values: FloatArray) -> SymmetricMatrix:
-        return SymmetricMatrix(self._pointer, self._rows, values, self.threads)
+    def forget_pattern(self) -> None:
+        """Give up the pattern of assembled matrices where products need none; it is found again where it is used."""
+        if self.by_blocks:
+            self.__dict__.pop("_pattern", None)
+
+    @cached_property
+    def _pattern(self) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
+        return _lower_pattern(self._matrices, self.free)
+
+
+class ShiftedMatrix:
+    """K - σM on the free degrees of freedom: assembled where it is factored, and multiplied without that.
+
+    Parameters
+    ----------
+    system : FreeSystem
+    shift : float
+        σ [rad²/s²].
+    """
+
+    def __init__(self, system: FreeSystem, shift: float) -> None:
+        self._system, self._shift = system, shift
+        self.shape = (system.size, system.size)
+
+    @property
+    def lower(self) -> sparse.csc_array:
+        """The lower triangle."""
+        return self._assembled().lower
+
+    def full(self) -> sparse.csc_array:
+        """Both triangles."""
+        return self._assembled().full()
+
+    def entries(self, kind: type) -> npt.NDArray[Any]:
+        """Entries of the lower triangle, of a type of numbers."""
+        return self._assembled().entries(kind)
+
+    def __matmul__(self, vectors: FloatArray) -> FloatArray:
+        """Multiply by one vector or by many, shape (n, m)."""
+        product = np.array(self._system.mass @ vectors)
+        product *= -self._shift
+        product += self._system.stiffness @ vectors
+        return product
+
+    def _assembled(self) -> SymmetricMatrix:
+        return self._system.assembled(self._system.shifted_blocks(self._shift))
 
 
 class FreeMass:

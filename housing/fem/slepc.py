@@ -71,6 +71,7 @@ class SlepcRanks:
                     stdout=subprocess.PIPE,
                     stderr=errors,
                     text=True,
+                    start_new_session=True,  # an mpiexec that fails may signal its whole group
                 )
         except OSError as error:
             shutil.rmtree(self._folder, ignore_errors=True)
@@ -164,7 +165,7 @@ def _end(process: "subprocess.Popen[str]", folder: Path) -> None:
     try:
         process.wait(timeout=10.0)
     except subprocess.TimeoutExpired:  # such as in a factorisation that nobody waits for any longer
-        process.kill()
+        process.terminate()  # mpiexec then ends all ranks
         process.wait()
     shutil.rmtree(folder, ignore_errors=True)
 

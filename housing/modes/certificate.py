@@ -182,6 +182,7 @@ class CertifiedSearch:
             factor = checked_factor("mumps", numeric, self._system.shifted(shift), time.perf_counter() - start)
         else:
             factor = self._factorizer.factor(self._system.shifted(shift))
+        self._system.forget_pattern()
         self.seconds["factorisation"] += time.perf_counter() - start
         return factor
 
@@ -220,23 +221,22 @@ class CertifiedSearch:
     ) -> tuple[FloatArray, FloatArray]:
         """Uncertified modes of a factor in single precision, corrected in double."""
         system = self._system
-        _, vectors = block_lanczos(
-            factor.solve_approximately,
-            self._mass,
-            shift,
-            count,
-            above=above,
-            seed=attempt,
-            threads=system.threads,
-            tolerance=_IN_SINGLE,
-            precision="single",
-            companion_tolerance=_COMPANIONS,
-        )
         return corrected_modes(
             system.stiffness,
             self._mass,
             factor.solve_approximately,
-            vectors,
+            block_lanczos(
+                factor.solve_approximately,
+                self._mass,
+                shift,
+                count,
+                above=above,
+                seed=attempt,
+                threads=system.threads,
+                tolerance=_IN_SINGLE,
+                precision="single",
+                companion_tolerance=_COMPANIONS,
+            )[1],
             count,
             floor=self.floor,
             tolerance=_CORRECTED,

@@ -25,7 +25,9 @@ from gearwhine.housing.modes.eigensolver import orthonormal
 from gearwhine.numerics.arrays import FloatArray
 
 _STEPS = 20
-_STALLED = 0.5  # part of the largest residual that a step leaves at least, where it is of no use
+_GAIN = 2.0  # of the largest residual by a step, below which the next is of no use
+_COLUMNS = 8
+_INDEPENDENT = 1e-10  # least eigenvalue of the correlations of approximate modes
 _NO_CHANGE = 1e-10  # least singular value of the changes, beside 1
 
 
@@ -50,7 +52,7 @@ def corrected_modes(
         X from (K - σM) X = Y, shape (n, m) both, with a relative error well below 1 for every part of Y that modes
         outside the space have.
     vectors : ndarray, shape (n, m)
-        Approximate modes, the wanted ones and companions that are next to them or to the shift. Overwritten.
+        Approximate modes, the wanted ones and companions that are next to them or to the shift.
     count : int
         Number of the lowest modes that are corrected, at most m.
     floor : float
@@ -68,46 +70,68 @@ def corrected_modes(
     vectors : ndarray, shape (n, count)
         φ, with φᵀ M φ = 1.
     """
-    n, kept = vectors.shape
-    algebra = BlockAlgebra(n, threads)
-    space = np.empty((n, kept + 2 * count), order="F")
-    start = orthonormal(space[:, :0], vectors, mass, algebra).block
-    kept = start.shape[1]
+    algebra = BlockAlgebra(len(vectors), threads)
+    space, kept = _orthonormal_space(vectors, 2 * count, mass, algebra)
+    del vectors
     count = min(count, kept)
-    space[:, :kept] = start
-    del start, vectors
-    small = algebra.products(space[:, :kept], stiffness @ space[:, :kept])
-    last = np.inf
-    size = kept  # of the space; its first part are the Ritz vectors of the last step
+    small = np.concatenate(
+        [algebra.products(space[:, :kept], stiffness @ space[:, part]) for part in _parts(kept)], axis=1
+    )
+    last, size = np.inf, kept
     for _ in range(_STEPS):
         values, mixture = linalg.eigh(0.5 * (small + small.T))
+        values = values[:count]
         changed = _changes(mixture[:, :count], mixture[:, :kept], kept)
         mixture = np.concatenate([mixture[:, :kept], changed], axis=1)
         algebra.replace(space[:, :size], mixture)
         small = mixture.T @ small @ mixture
         size = mixture.shape[1]
-        values = values[:count]
-        modes = space[:, :count]
-        inertia = mass @ modes
-        residuals = stiffness @ modes - inertia * values
-        sizes = np.linalg.norm(residuals, axis=0) / (
-            (np.abs(values) + abs(values[-1]) + floor) * np.linalg.norm(inertia, axis=0)
-        )
-        active = sizes > tolerance
-        largest = float(sizes.max())
-        if not active.any() or not largest < last / _STALLED:
+        largest = 0.0
+        for part in _parts(count):
+            inertia = mass @ space[:, part]
+            residuals = stiffness @ space[:, part] - inertia * values[part]
+            scale = np.abs(values[part]) + abs(values[-1]) + floor
+            sizes = np.linalg.norm(residuals, axis=0) / (scale * np.linalg.norm(inertia, axis=0))
+            del inertia
+            largest = max(largest, float(sizes.max()))
+            if np.any(sizes > tolerance):
+                corrections = solve_approximately(residuals[:, sizes > tolerance])
+                corrections /= np.linalg.norm(corrections, axis=0)
+                added = orthonormal(space[:, :size], corrections, mass, algebra).block
+                end = size + added.shape[1]
+                space[:, size:end] = added
+                forces = algebra.products(space[:, :end], stiffness @ added)
+                small = np.block([[small, forces[:size]], [forces[:size].T, forces[size:]]])
+                size = end
+        if not tolerance < largest < last / _GAIN:
             break
         last = largest
-        corrections = solve_approximately(np.ascontiguousarray(residuals[:, active]))
-        corrections /= np.linalg.norm(corrections, axis=0)
-        added = orthonormal(space[:, :size], corrections, mass, algebra).block
-        if not added.shape[1]:
-            break
-        space[:, size : size + added.shape[1]] = added
-        forces = algebra.products(space[:, : size + added.shape[1]], stiffness @ added)
-        small = np.block([[small, forces[:size]], [forces[:size].T, forces[size:]]])
-        size += added.shape[1]
-    return values, np.array(modes, order="F")
+    return values, np.array(space[:, :count], order="F")
+
+
+def _parts(count: int) -> list[slice]:
+    """Columns that are multiplied at a time: more take more memory."""
+    return [slice(begin, min(begin + _COLUMNS, count)) for begin in range(0, count, _COLUMNS)]
+
+
+def _orthonormal_space(
+    vectors: FloatArray, further: int, mass: Operator, algebra: BlockAlgebra
+) -> tuple[FloatArray, int]:
+    """M-orthonormal vectors of the span, with room for some further ones, and their number."""
+    n, kept = vectors.shape
+    space = np.empty((n, kept + further), order="F")
+    space[:, :kept] = vectors
+    del vectors
+    for _ in range(2):
+        gram = np.concatenate(
+            [algebra.products(space[:, :kept], mass @ space[:, part]) for part in _parts(kept)], axis=1
+        )
+        lengths = np.sqrt(gram.diagonal())
+        shares, turn = linalg.eigh(gram / np.outer(lengths, lengths))
+        independent = shares > _INDEPENDENT
+        algebra.replace(space[:, :kept], (turn / lengths[:, None])[:, independent] / np.sqrt(shares[independent]))
+        kept = int(independent.sum())
+    return space, kept
 
 
 def _changes(wanted: FloatArray, ritz: FloatArray, kept: int) -> FloatArray:

@@ -171,10 +171,10 @@ def solve_modes(
     if solver == "slepc":
         if backend is not None or precision is not None:
             raise HousingError("the solver 'slepc' has a factorisation of its own, in double precision: leave out both")
-        factorizer = SlepcRanks(system.stiffness, system.assembled_mass(), threads)
+        factorizer = SlepcRanks(*system.assembled_pair(), threads)
     else:
         factorizer = Factorizer(backend=backend, precision=precision, threads=threads, progress=progress)
-        factorizer.order_ahead(system.stiffness)
+        factorizer.order_ahead(system.shifted(0.0))
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
     solution = (
         search.below(frequency_limit, progress)

@@ -40,18 +40,27 @@ def test_any_degrees_of_freedom_may_be_fixed(matrices: Matrices, data: st.DataOb
     free = np.setdiff1d(np.arange(order), fixed)
     if not len(free):
         return
-    system = FreeSystem(matrices.held(fixed))
+    system = FreeSystem(matrices.held(fixed), by_blocks=False)
+    by_blocks = FreeSystem(matrices.held(fixed), by_blocks=True, threads=data.draw(st.integers(1, 3)))
     by_threads = FreeMass(matrices, free, data.draw(st.integers(2, 3)), least=1)
     np.testing.assert_array_equal(system.free, free)
     stiffness, mass = (whole.toarray()[np.ix_(free, free)] for whole in (matrices.stiffness, matrices.mass))
-    np.testing.assert_array_equal(system.stiffness.full().toarray(), stiffness)
+    np.testing.assert_array_equal(system.shifted(0.0).full().toarray(), stiffness)
     shifted = stiffness - shift * mass
     np.testing.assert_allclose(system.shifted(shift).full().toarray(), shifted, atol=1e-15 * np.abs(shifted).max())
-    np.testing.assert_array_equal(system.shifted(shift).rows, system.stiffness.rows)
+    np.testing.assert_array_equal(system.shifted(shift).lower.indices, system.shifted(0.0).lower.indices)
     vectors = np.random.default_rng(len(free)).standard_normal((len(free), 3))
     np.testing.assert_array_equal(by_threads @ vectors, system.mass @ vectors)
-    for found, expected in ((system.mass, mass), (system.stiffness, stiffness)):
-        scale = np.abs(expected) @ np.abs(vectors)
+    by_blocks.forget_pattern()
+    for found, expected in (
+        (system.mass, mass),
+        (system.stiffness, stiffness),
+        (system.shifted(shift), shifted),
+        (by_blocks.mass, mass),
+        (by_blocks.stiffness, stiffness),
+        (by_blocks.shifted(shift), shifted),
+    ):
+        scale = (np.abs(mass) if expected is mass else np.abs(stiffness) + abs(shift) * np.abs(mass)) @ np.abs(vectors)
         assert (np.abs(found @ vectors - expected @ vectors) <= 1e-14 * scale).all()
         assert (np.abs(found @ vectors[:, 0] - expected @ vectors[:, 0]) <= 1e-14 * scale[:, 0]).all()
     whole = system.expand(vectors).reshape(3, -1)

@@ -132,9 +132,10 @@ def test_what_the_ranks_cannot_do_is_said(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_mass_on_the_pattern_of_the_stiffness(box_matrices: Matrices) -> None:
     system = FreeSystem(box_matrices.held(np.arange(30)))
-    mass = system.assembled_mass()
+    stiffness, mass = system.assembled_pair()
     vectors = np.random.default_rng(2).standard_normal((system.size, 2))
-    assert mass.rows is system.stiffness.rows
+    assert mass.rows is stiffness.rows
+    np.testing.assert_allclose(stiffness @ vectors, system.stiffness @ vectors, rtol=1e-12, atol=1e-3)
     np.testing.assert_allclose(mass @ vectors, system.mass @ vectors, rtol=1e-12, atol=1e-15)
 
 
