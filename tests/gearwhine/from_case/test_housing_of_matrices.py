@@ -118,6 +118,28 @@ def test_seats_stand_under_the_bearings_whatever_the_order_of_the_nodes(
     assert {bearing.seat for bearing in study.case.bearing} == {f"{name} seat" for name in POINTS}
 
 
+def test_a_free_housing_is_held_softly_and_one_that_the_matrices_hold_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Equal springs k under equal bodies m: as a whole they move at √(k/m) along each axis, which is to be 50 Hz."""
+    monkeypatch.chdir(tmp_path)
+    for folder, ground, held in (("free", 0.0, 4), ("held", 1e8, 0)):
+        (tmp_path / folder).mkdir()
+        written(tmp_path / folder, ground)
+        command = ["import", f"{folder}/unit.rexs", "--housing", f"{folder}/box.pch", "-o", f"{folder}/unit.toml"]
+        assert run_command(command) == 0
+        assert ("nothing holds it: springs at its seats" in capsys.readouterr().out) == bool(held)
+        study = gw.load(f"{folder}/unit.toml")
+        table = study.case.reduced_housing
+        assert table is not None
+        assert len(table.support) == held
+        if held:
+            frequencies = np.array(study.check().document["reduced_housing"]["frequencies_hz"][:6])
+            # Two digits of the springs are 2.5 % of them at most.
+            assert (np.abs(frequencies / 50.0 - 1.0) < 0.0125).sum() >= 3
+            assert frequencies[0] > 25.0
+
+
 def test_the_matrices_take_the_place_of_a_static_stiffness_in_the_file_of_the_unit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -199,7 +221,7 @@ def test_two_commands_from_the_files_to_the_spectrum_at_a_sensor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The lines of a sensor stand at multiples of the mesh frequency, that of 20 teeth on the input."""
-    written(tmp_path, ground=1e8)
+    written(tmp_path)
     monkeypatch.chdir(tmp_path)
     assert run_command(["import", "unit.rexs", "--housing", "box.pch"]) == 0
     capsys.readouterr()
