@@ -13,6 +13,7 @@ from typing import Any
 
 from gearwhine.exchange.rexs.bearings import bearing_table, find_bearings, support_table
 from gearwhine.exchange.rexs.errors import RexsError, RexsProblem, wrong
+from gearwhine.exchange.rexs.flanks import MODIFICATIONS_LEFT_OUT
 from gearwhine.exchange.rexs.gear_unit import GearUnit, readable
 from gearwhine.exchange.rexs.gears import Mesh, find_meshes, find_teeth, gear_table, settle_heights, settle_shifts
 from gearwhine.exchange.rexs.materials import Materials
@@ -51,6 +52,7 @@ _TAKEN = {
     *("rolling_element", "cylindrical_gear_flank", "flank_geometry", "rack_shaped_tool", "cutter_wheel_tool"),
     *("tip_relief", "root_relief", "profile_crowning", "helix_crowning"),
     *("end_relief_datum_face", "end_relief_non_datum_face"),
+    *MODIFICATIONS_LEFT_OUT,
 }
 """Types of components that an import takes, or notes one by one."""
 _SAID_ELSEWHERE = {
