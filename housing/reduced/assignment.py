@@ -5,7 +5,6 @@ A node at a wrong place, or lengths in other units, strain the rotations of a ho
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import permutations
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, refuse
 
 Point = tuple[float, float, float]
-
-MOST_ORDERED = 6
-"""Places up to which every order of the nodes is tried: 720 orders."""
 
 _FREE = 1e-3  # sixth least eigenvalue over the seventh, below which six motions are free and no more
 _NEAR = 0.05  # largest distance of a node from its place, over the extent of all places
@@ -90,14 +86,11 @@ def assign_nodes(matrices: Mapping[str, LabelledMatrix], places: Sequence[Point]
 
 
 def _orders(stiffness: FloatArray, nodes: Sequence[int], places: Sequence[Point]) -> Iterator[tuple[int, ...]]:
-    """Yield orders of the nodes: the one in which they came, that by their positions, and of few nodes all others."""
-    count = len(places)
-    yield tuple(nodes[:count])
+    """Yield orders of the nodes: the one in which they came, and that by their positions."""
+    yield tuple(nodes[: len(places)])
     positions = free_positions(stiffness)
     if positions is not None and (at := _nearest(positions, np.asarray(places))) is not None:
         yield tuple(nodes[place] for place in at)
-    if len(nodes) <= MOST_ORDERED:
-        yield from permutations(nodes, count)
 
 
 def free_positions(stiffness: FloatArray) -> FloatArray | None:
