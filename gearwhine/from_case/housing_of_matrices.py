@@ -21,6 +21,8 @@ from gearwhine.housing.reduced.row_labels import row_labels_beside
 
 LIMIT_HZ = 3000.0
 """Frequency limit of a reduction that states none [Hz]."""
+MOST_SENSORS = 12
+"""Nodes beside the seats that get a sensor, at most."""
 SUPPORT_HZ = 50.0
 """Frequency at which a housing that nothing holds moves as a whole on the springs that it is given [Hz]."""
 REVOLUTIONS, DISCARDED = 40.0, 20.0
@@ -32,9 +34,9 @@ def with_reduced_housing(
 ) -> ImportedCase:
     """Return an imported gear unit whose bearings on the ground stand in a housing of reduced matrices.
 
-    Each of these bearings gets a seat at a node, and a sensor there along y. The nodes and the units of the matrices
-    are those by which the rigid motions of the housing are free; where nothing proves them, they are noted as assumed.
-    A free housing is held by soft springs at its seats.
+    Each of these bearings gets a seat at a node, and a sensor there along y; so do other nodes of a free housing. The
+    nodes and the units of the matrices are those by which the rigid motions of the housing are free; where nothing
+    proves them, they are noted as assumed. A free housing is held by soft springs at its seats.
 
     Parameters
     ----------
@@ -100,17 +102,22 @@ def with_reduced_housing(
         seats.append({"name": name, "node": node, "center": at})
         sensors.append({"name": f"at {bearing['name']}", "node": node, "position": at, "direction": "y"})
         shown.append(f"{node} at {bearing['name']}")
+    for node, point in [*found.others.items()][:MOST_SENSORS]:
+        position = [mm(round(value, 7)) for value in point]
+        sensors.append({"name": f"at node {node}", "node": node, "position": position, "direction": "y"})
     tables = {"frequency_limit": of(LIMIT_HZ, "Hz"), "damping_ratio": 0.01, "reduced": reduced}
     supports = _soft_supports(read, found, places, seats) if found.is_proved else []
     housing = {**tables, "seat": seats, **({"support": supports} if supports else {}), "sensor": sensors}
     proof = "its rigid motions are free by them" if found.is_proved else "in their order, which nothing proves"
     about = f"housing {stiffness.name}"
     rows = "" if mapping is None else f"rows by {mapping.name}; "
+    count = len(sensors) - len(seats)
+    elsewhere = f", and at {count} other node{'s' * (count > 1)}" if count else ""
     notes = [
         Note("assumed", about, f"{rows}nodes {', '.join(shown)}, in {found.units}: {proof}", ("housing", "reduced")),
         Note("assumed", about, "a band, which the files of a reduction do not state", ("housing", "frequency_limit")),
         Note("assumed", about, "1 % of critical damping", ("housing", "damping_ratio")),
-        Note("assumed", about, "a sensor along y at each seat", ("housing", "sensor", 0)),
+        Note("assumed", about, f"a sensor along y at each seat{elsewhere}", ("housing", "sensor", 0)),
     ]
     if supports:
         text = f"springs at its seats hold it, on which it moves as a whole at about {SUPPORT_HZ:g} Hz"

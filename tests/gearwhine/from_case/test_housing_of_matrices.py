@@ -80,6 +80,9 @@ def test_four_of_eleven_nodes_are_found_by_the_positions_that_free_motions_tell(
     for matrix, units in ((stiffness, "SI"), (in_millimetres(stiffness), "mm-t-s")):
         found = assign_nodes({"stiffness": LabelledMatrix(matrix, coordinates)}, [tuple(one) for one in places])
         assert (found.nodes, found.units, found.is_proved) == ((90, 30, 110, 60), units, True)
+        assert set(found.others) == {10, 20, 40, 50, 70, 80, 100}
+        for node, place in found.others.items():
+            np.testing.assert_allclose(place, positions[node // 10 - 1] + [0.2, -0.1, 0.4], atol=1e-8)
     # A foot on a spring: nothing is free any more, and nothing tells the positions.
     held = stiffness.copy()
     held[0, 0] += 1e9
@@ -138,6 +141,28 @@ def test_a_free_housing_is_held_softly_and_one_that_the_matrices_hold_is_not(
             # Two digits of the springs are 2.5 % of them at most.
             assert (np.abs(frequencies / 50.0 - 1.0) < 0.0125).sum() >= 3
             assert frequencies[0] > 25.0
+
+
+def test_nodes_beside_the_seats_get_sensors(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A node on the lid, 0.3 m above the first bearing, for the accelerometer that measures there."""
+    lid = CENTERS["6205"] + [0.0, 0.3, 0.02]
+    nodes = {**{f"{name}": node for name, node in NODES.items()}, "lid": 301}
+    stiffness = springs_between(np.array([*(CENTERS[name] for name in NODES), lid]))
+    mass = np.diag(np.tile([10.0] * 3 + [0.05] * 3, len(nodes)))
+    coordinates = [(node, axis) for node in nodes.values() for axis in range(1, 7)]
+    write_dmig(tmp_path / "box.pch", {"MAAX": mass, "KAAX": stiffness}, coordinates)
+    (tmp_path / "unit.rexs").write_bytes(helical_stage().xml())
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["import", "unit.rexs", "--housing", "box.pch"]) == 0
+    assert "a sensor along y at each seat, and at 1 other node" in " ".join(capsys.readouterr().out.split())
+    table = gw.load("unit.toml").case.reduced_housing
+    assert table is not None
+    (sensor,) = (one for one in table.sensor if one.node == 301)
+    assert sensor.name == "at node 301"
+    np.testing.assert_allclose(sensor.position, lid, atol=1e-7)
+    assert gw.load("unit.toml").check().document["reduced_housing"]["certificate"]["free_rigid_motions"] == 6
 
 
 def test_the_matrices_take_the_place_of_a_static_stiffness_in_the_file_of_the_unit(
