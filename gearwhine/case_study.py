@@ -886,9 +886,9 @@ class CaseStudy(Study):
             ``files``, and ``reduced`` with the order and the nodes of seats and sensors.
         """
         from gearwhine.coupling.machine.components import component_of_housing
-        from gearwhine.results_folder import export_reduced, refuse_ending
+        from gearwhine.results_folder import export_reduced, refuse_target
 
-        refuse_ending(Path(file))
+        refuse_target(Path(file))
         housing = self._required_housing("export --reduced")
         component = component_of_housing(housing, participates=False, with_coarser=False)
         return export_reduced(self.case.title, component, Path(file))

@@ -281,7 +281,7 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
     from gearwhine.from_case.reduced_housing import tables_of
     from gearwhine.housing.reduced.writing import write_matrices
 
-    refuse_ending(target)
+    refuse_target(target)
     try:
         reduced = interface_matrices(housing)
     except CouplingError as error:
@@ -293,9 +293,7 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
         origin = f"# Reduced by Gearwhine {__version__}{f' from {origin_title}' if origin_title else ''}.\n\n"
         tables.write_text(origin + tables_of(reduced, files, housing.complete_below), encoding="utf-8")
         names = sorted({path.name for path in (*files.values(), tables)})
-        if standing := [name for name in names if (target.parent / name).exists()]:
-            expected = "a place where no file of that name stands yet"
-            raise CaseError([Problem("export --reduced", str(target.parent / standing[0]), expected)])
+        _refuse_standing([target.parent / name for name in names])
     document: dict[str, Any] = {
         "folder": str(target.parent),
         "files": names,
@@ -310,13 +308,21 @@ def export_reduced(title: str, housing: HousingComponent, target: Path) -> dict[
     return document
 
 
-def refuse_ending(target: Path) -> None:
-    """Refuse a file of reduced matrices by its ending, before a housing is solved for it."""
+def refuse_target(target: Path) -> None:
+    """Refuse a file of reduced matrices by its ending or place, before a housing is solved for it."""
     from gearwhine.housing.reduced.writing import WRITTEN_ENDINGS
 
     if target.suffix.lower() not in WRITTEN_ENDINGS:
         expected = f"a file that ends in one of {', '.join(WRITTEN_ENDINGS)}"
         raise CaseError([Problem("export --reduced", str(target), expected)])
+    _refuse_standing([target, target.with_suffix(".toml")])
+
+
+def _refuse_standing(files: Sequence[Path]) -> None:
+    """Refuse files of which one stands already."""
+    for file in files:
+        if file.exists():
+            raise CaseError([Problem("export --reduced", str(file), "a place where no file of that name stands yet")])
 
 
 def reduced_sections(document: Document) -> tuple[Section, ...]:

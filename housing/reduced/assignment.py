@@ -4,8 +4,7 @@ A node at a wrong place, or lengths in other units, strain the rotations of a ho
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import permutations
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, refuse
 
 Point = tuple[float, float, float]
-
-MOST_ORDERED = 6
-"""Places up to which every order of the nodes is tried: 720 orders."""
 
 _FREE = 1e-3  # sixth least eigenvalue over the seventh, below which six motions are free and no more
 _NEAR = 0.05  # largest distance of a node from its place, over the extent of all places
@@ -38,12 +34,15 @@ class Assignment:
         which moments over forces of a node have a lever nearest to the places' distance from their centre.
     by_order : bool
         Whether the rows of the file belong to the nodes by order alone, six each.
+    others : mapping of int to tuple of float
+        Places of the other nodes with six motions [m], where the free rigid motions tell and prove them.
     """
 
     nodes: tuple[int, ...]
     units: str
     is_proved: bool
     by_order: bool
+    others: Mapping[int, Point] = field(default_factory=dict)
 
 
 def assign_nodes(matrices: Mapping[str, LabelledMatrix], places: Sequence[Point]) -> Assignment:
@@ -78,26 +77,37 @@ def assign_nodes(matrices: Mapping[str, LabelledMatrix], places: Sequence[Point]
         misfit = abs(np.log(max(lever, 1e-12) / max(extent, 1e-12)))
         first = Assignment(tuple(nodes[: len(places)]), units, is_proved=False, by_order=by_order)
         unproved.append((float(misfit), first))
-        for order in _orders(stiffness, nodes, places):
+        positions = free_positions(stiffness)
+        for order in _orders(positions, nodes, places):
             taken = [6 * nodes.index(node) + axis for node in order for axis in range(6)]
             if len(order) == len(nodes):
                 part = stiffness[np.ix_(taken, taken)]
             else:
                 part = condensed_stiffness(stiffness, taken)
             if _is_free(part, places):
-                return Assignment(order, units, is_proved=True, by_order=by_order)
+                others = _places_of_others(stiffness, positions, nodes, dict(zip(order, places, strict=True)))
+                return Assignment(order, units, is_proved=True, by_order=by_order, others=others)
     return min(unproved, key=lambda one: one[0])[1]
 
 
-def _orders(stiffness: FloatArray, nodes: Sequence[int], places: Sequence[Point]) -> Iterator[tuple[int, ...]]:
-    """Yield orders of the nodes: the one in which they came, that by their positions, and of few nodes all others."""
-    count = len(places)
-    yield tuple(nodes[:count])
-    positions = free_positions(stiffness)
+def _places_of_others(
+    stiffness: FloatArray, positions: FloatArray | None, nodes: Sequence[int], known: Mapping[int, Point]
+) -> dict[int, Point]:
+    """Places of nodes beside those of known place; none where they do not keep the rigid motions of all free."""
+    if positions is None or len(known) == len(nodes):
+        return {}
+    shift = np.mean([np.subtract(place, positions[nodes.index(node)]) for node, place in known.items()], axis=0)
+    placed = {node: tuple((positions[row] + shift).tolist()) for row, node in enumerate(nodes)} | dict(known)
+    if not _is_free(stiffness, [placed[node] for node in nodes]):
+        return {}
+    return {node: place for node, place in placed.items() if node not in known}
+
+
+def _orders(positions: FloatArray | None, nodes: Sequence[int], places: Sequence[Point]) -> Iterator[tuple[int, ...]]:
+    """Yield orders of the nodes: the one in which they came, and that by their positions."""
+    yield tuple(nodes[: len(places)])
     if positions is not None and (at := _nearest(positions, np.asarray(places))) is not None:
         yield tuple(nodes[place] for place in at)
-    if len(nodes) <= MOST_ORDERED:
-        yield from permutations(nodes, count)
 
 
 def free_positions(stiffness: FloatArray) -> FloatArray | None:

@@ -66,6 +66,8 @@ def read_med(path: Path) -> MeshContent:
             families = file.get(f"FAS/{name}")
             of_elements, of_nodes = (_groups_of_families(families, kind) for kind in ("ELEME", "NOEUD"))
             return _content(mesh, of_elements, of_nodes, path)
+    except GeometryError:
+        raise
     except OSError as error:
         raise GeometryError(f"mesh file {path} is no HDF5 file, which a MED file is: {error}") from error
     except (KeyError, ValueError, AttributeError) as error:

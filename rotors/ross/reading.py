@@ -21,6 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 # Row, column of ROSS's coefficients in the matrix over x, y, z and the rotations about x and y.
 PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1), "zz": (2, 2)}
 
+_ROUNDING = 1e-6  # negative damping over the largest of a table, below which it is zero
 _COEFFICIENT = re.compile(r"[kcm](x|y|z|alpha|beta|theta){2}")
 
 
@@ -149,6 +150,11 @@ def _matrix(tables: dict[str, FloatArray], letter: str, speeds: FloatArray | Non
     for place, (row, column) in PLACES.items():
         if row < size:
             table[:, row, column] = tables[letter + place]
+    if letter == "c":
+        # Magnetic bearings of ROSS have the difference of two large numbers as their damping.
+        direct = table[:, range(2), range(2)]
+        is_rounding = (direct < 0.0) & (direct > -_ROUNDING * direct.max(initial=0.0))
+        table[:, range(2), range(2)] = np.where(is_rounding, 0.0, direct)
     return table[0] if speeds is None else table
 
 

@@ -176,7 +176,8 @@ def read_entries(path: str | os.PathLike[str], remarks: Remarks) -> list[Entry]:
     parameters = document.get("parameters", {})
     if isinstance(parameters, Mapping):
         for name in sorted(set(parameters) - _SPEEDS_OF_OPERATION):
-            remarks.add(f"{place.name}: parameters", f"{name} is not read")
+            if parameters[name] not in (0, None):  # ROSS 3 writes damping of zero or none
+                remarks.add(f"{place.name}: parameters", f"{name} is not read")
     return entries
 
 

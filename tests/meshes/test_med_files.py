@@ -173,8 +173,8 @@ def change(key: str, value: object) -> Callable[[Path], None]:
     [
         (cut, "is no HDF5 file"),
         (lambda path: path.write_bytes(b""), "is no HDF5 file"),
-        (change("NOE/COO", np.zeros(23)), "has 23 coordinates of 7 nodes"),
-        (change("NOE", None), "holds no solid elements of tetra.*; it holds: nothing"),
+        (change("NOE/COO", np.zeros(23)), r"brick.med has 23 coordinates of 7 nodes"),
+        (change("NOE", None), r"^mesh file \S*brick.med holds no solid elements of tetra.*; it holds: nothing"),
         (change("MAI/HE8/NOD", np.arange(1, 8)), "has 7 nodes of hexahedron elements; expected 8 of each"),
         (change("MAI/HE8/NOD", np.arange(2, 10)), "node"),
         (change("MAI/HE8/NOD", None), "has not the groups and arrays of a MED file"),

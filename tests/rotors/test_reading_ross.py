@@ -360,12 +360,33 @@ def test_files_of_every_version_are_read(tmp_path: Path, version: str | None) ->
         table |= {"interpolation": "pchip", "radial_clearance": 1e-4}
     content = two_elements(BearingElement_b=table)
     del content["ross_version"]
+    if version == "3.1.0":
+        content["parameters"] = {"default_damping_ratio": 0.0, "alpha": 0.0, "beta": 0.0}
     _, (read,), remarks = read_ross(
         saved(tmp_path, content if version is None else {"ross_version": version} | content)
     )
     np.testing.assert_array_equal(read.speeds, [0.0, 50.0, 100.0])
     np.testing.assert_array_equal(read.stiffness[:, 0, 0], [1e6, 2e6, 4e6])
     assert remarks == ()
+
+
+def test_rounding_below_zero_in_the_damping_of_a_table_is_zero(tmp_path: Path) -> None:
+    """ROSS 3.1 saves a magnetic bearing with a damping of -4.6e-8 N s/m at 1 rad/s beside others of 3 N s/m."""
+    speeds = [0.0, 50.0, 100.0]
+    table = bearing(0, "b", frequency=speeds) | {"cxx": [-4.6e-8, 1.5, 3.0], "kxx": [-4e3, 1e4, 2e4]}
+    content = two_elements(MagneticBearingElement_b=table) | {"ross_version": "3.1.0"}
+    _, (read,), _ = read_ross(saved(tmp_path, content))
+    np.testing.assert_array_equal(read.damping[:, 0, 0], [0.0, 1.5, 3.0])
+    np.testing.assert_array_equal(read.stiffness[:, 0, 0], [-4e3, 1e4, 2e4])
+    table["cxx"][0] = -4.6e-3
+    with pytest.raises(RotorError, match="a negative one feeds energy in"):
+        read_ross(saved(tmp_path, content))
+
+
+def test_damping_of_the_shaft_in_a_file_of_version_3_is_said(tmp_path: Path) -> None:
+    content = two_elements() | {"ross_version": "3.1.0", "parameters": {"alpha": 0.0, "beta": 1e-5}}
+    (remark,) = read_ross(saved(tmp_path, content)).warnings
+    assert remark.endswith("parameters: beta is not read")
 
 
 def test_a_table_over_the_frequency_of_whirl_is_taken_as_synchronous_and_said(tmp_path: Path) -> None:

@@ -10,9 +10,9 @@ from gearwhine.exchange.rexs.model import Component
 from gearwhine.exchange.rexs.quantities import deg, um
 
 _FLANKS = ("cylindrical_gear_flank", "flank_geometry")
-_LEFT_OUT = {
-    "profile_slope": "the case has no design slope of profiles; its sign is not taken for that of an error",
-    "helix_slope": "its sign is by the datum face; it is not taken",
+MODIFICATIONS_LEFT_OUT = {
+    "profile_slope": "the schema states no sign of it; give it as `errors.profile.slope` where it is known",
+    "helix_slope": "the schema states no sign of it and no face; give it as `errors.helix.slope` where they are known",
     "profile_twist": "flanks of a case are not twisted by design",
     "topographical_modification": "flanks of a case have no topography",
     "triangular_tip_relief": "flanks of a case have no triangular relief",
@@ -20,6 +20,7 @@ _LEFT_OUT = {
     "profile_deviation": "measured deviations are not taken",
     "helix_deviation": "measured deviations are not taken",
 }
+"""Modifications that are noted one by one, and why they are not taken."""
 _STRAIGHT = {"linear": "linear", "": "linear"}
 
 
@@ -54,7 +55,7 @@ def _differ(unit: GearUnit, left: Component, right: Component) -> bool:
 
 def _modifications(unit: GearUnit, flank: Component) -> list[Component]:
     kinds = ("tip_relief", "root_relief", "profile_crowning", "helix_crowning", "end_relief_datum_face")
-    return unit.model.referenced(flank.number, *kinds, "end_relief_non_datum_face", *_LEFT_OUT)
+    return unit.model.referenced(flank.number, *kinds, "end_relief_non_datum_face", *MODIFICATIONS_LEFT_OUT)
 
 
 def modified(unit: GearUnit, flank: Component, base_radius: float, tip_radius: float, *at: str | int) -> dict[str, Any]:
@@ -95,7 +96,9 @@ def modified(unit: GearUnit, flank: Component, base_radius: float, tip_radius: f
             else:
                 ends.append((depth, length))
         else:
-            unit.notes.left_out(one.label, _LEFT_OUT[one.kind])
+            slope = one.number_of(one.kind, "m") if one.kind in ("profile_slope", "helix_slope") else None
+            shown = "" if slope is None else f"{um(slope)}: "
+            unit.notes.left_out(one.label, shown + MODIFICATIONS_LEFT_OUT[one.kind])
     if len(ends) == 2:
         if ends[0] != ends[1]:
             unit.notes.changed(flank.label, "its end reliefs differ: both ends have their mean", *at, "errors")

@@ -13,6 +13,7 @@ from typing import Any
 
 from gearwhine.exchange.rexs.bearings import bearing_table, find_bearings, support_table
 from gearwhine.exchange.rexs.errors import RexsError, RexsProblem, wrong
+from gearwhine.exchange.rexs.flanks import MODIFICATIONS_LEFT_OUT
 from gearwhine.exchange.rexs.gear_unit import GearUnit, readable
 from gearwhine.exchange.rexs.gears import Mesh, find_meshes, find_teeth, gear_table, settle_heights, settle_shifts
 from gearwhine.exchange.rexs.materials import Materials
@@ -51,8 +52,18 @@ _TAKEN = {
     *("rolling_element", "cylindrical_gear_flank", "flank_geometry", "rack_shaped_tool", "cutter_wheel_tool"),
     *("tip_relief", "root_relief", "profile_crowning", "helix_crowning"),
     *("end_relief_datum_face", "end_relief_non_datum_face"),
+    *MODIFICATIONS_LEFT_OUT,
 }
 """Types of components that an import takes, or notes one by one."""
+_SAID_ELSEWHERE = {
+    *("reference_component_for_position", "support_vector", "u_axis_vector", "w_axis_vector", "name", "manufacturer"),
+    *("u_coordinate_on_shaft", "u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_outer_side"),
+    *("number_of_gears", "gear_shift_index", "material_designation", "defines_speed", "defines_torque"),
+    *("transmits_torque", "flag_designation_addendum_modification", "rotating_angle_around_neg_u_axis"),
+    *("number_of_bearing_rows", "common_face_width", "folder"),
+}
+"""Attributes that are not noted where they are not taken: places and names, and what follows from others."""
+_MOST_ATTRIBUTES = 8
 _WHY_LEFT_OUT = {
     "lubricant": "a case has no lubricant: damping and friction are keys of its bearings and gear pairs",
     "stage_gear_data": "results of the file's program",
@@ -191,6 +202,7 @@ def case_of(model: RexsModel, name: str = "", load_case: str = "") -> ImportedCa
     if sweep is not None:
         document["sweep"] = sweep
     _note_the_rest(unit, () if casing is None else ("assembly_group", "reduction_point"))
+    _note_attributes(unit)
     origin = f"{readable(name) or 'a file'} ({model.origin})"
     shown = [] if chosen is None else [described_load_case(model, chosen)]
     shown += [described_load_case(model, one) for one in model.load_cases if one is not chosen]
@@ -244,6 +256,22 @@ def _note_the_rest(unit: GearUnit, taken: tuple[str, ...]) -> None:
     for kind, numbers in kinds.items():
         shown = ", ".join(numbers[:6]) + (f" and {len(numbers) - 6} more" if len(numbers) > 6 else "")
         unit.notes.left_out(f"{readable(kind)} {shown}", _WHY_LEFT_OUT.get(kind, "not taken"))
+
+
+def _note_attributes(unit: GearUnit) -> None:
+    """Note the attributes that nothing asked for of the components that are taken, once for each type."""
+    unasked: dict[str, dict[str, None]] = {}
+    for component in unit.model.components.values():
+        if component.kind not in _TAKEN:
+            continue
+        for name, attribute in component.attributes.items():
+            is_empty = attribute.value is None or attribute.value == ""
+            if not is_empty and name not in component.looked_up and name not in _SAID_ELSEWHERE:
+                unasked.setdefault(component.kind, {})[name] = None
+    for kind, names in unasked.items():
+        shown = [readable(name) for name in names][:_MOST_ATTRIBUTES]
+        more = f" and {len(names) - len(shown)} more" if len(names) > len(shown) else ""
+        unit.notes.left_out(readable(kind), f"the attribute{'s' * (len(names) > 1)} {', '.join(shown)}{more}")
 
 
 def _text_of(origin: str, load_cases: list[str], notes: tuple[Note, ...]) -> str:

@@ -60,12 +60,15 @@ class Component:
         Its ``type``, such as ``shaft_section``.
     name : str
     attributes : mapping of str to Attribute
+    looked_up : set of str
+        Names of attributes that an import asked for, of the component and of what load cases make of it.
     """
 
     number: int
     kind: str
     name: str = ""
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
+    looked_up: set[str] = field(default_factory=set, compare=False, repr=False)
 
     @property
     def label(self) -> str:
@@ -74,6 +77,7 @@ class Component:
 
     def has(self, *names: str) -> bool:
         """Whether one of these attributes has a value."""
+        self.looked_up.update(names)
         return any(name in self.attributes and self.attributes[name].value is not None for name in names)
 
     def number_of(self, names: str | Sequence[str], unit: str = "") -> float | None:

@@ -43,3 +43,15 @@ def test_what_has_no_reduced_housing_is_refused(
     assert run_command(["export", *arguments]) == 2
     assert words in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_what_stands_there_is_refused_before_the_housing_is_solved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("gearwhine.solve.housing_modes.solve_housing", lambda *_, **__: pytest.fail("it was solved"))
+    for name in ("box.toml", "box.op4"):
+        (tmp_path / name).write_text("mine")
+        assert run_command(["export", "small-gearbox", "--reduced", "box.op4"]) == 2
+        assert f"a place where no file of that name stands yet, got '{name}'" in capsys.readouterr().err
+        (tmp_path / name).unlink()

@@ -664,3 +664,40 @@ def test_a_gap_between_sections_is_refused() -> None:
     section = next(one for one in file.components if one["type"] == "shaft_section")
     section["attributes"]["length"] = (20.0, "mm")
     assert "sections that join, got 'a gap of 10 mm'" in refusal(file)
+
+
+def test_attributes_that_nothing_asks_for_are_noted_once_for_each_type() -> None:
+    """A value that the file states and the case does not have is never passed over in silence."""
+
+    def unasked(file: RexsFile) -> dict[str, str]:
+        notes = case_of(read_content(file.xml())).notes
+        return {note.about: note.text for note in notes if note.text.startswith("the attribute")}
+
+    file = helical_stage()
+    before = unasked(file)
+    assert "cylindrical_gear" not in before
+    for gear in ("pinion", "wheel"):
+        file.named(gear)["chamfer_at_tooth_end"] = (0.5, "mm")
+    assert unasked(file) == before | {"cylindrical_gear": "the attribute chamfer_at_tooth_end"}
+    # One without a value does not count, and a long list is cut.
+    file.named("wheel")["nothing"] = ("", "none")
+    for number in range(9):
+        file.named("wheel")[f"custom_{number}"] = (1.0, "none")
+    names = ", ".join(f"custom_{number}" for number in range(7))
+    expected = f"the attributes chamfer_at_tooth_end, {names} and 2 more"
+    assert unasked(file)["cylindrical_gear"] == expected
+
+
+def test_slopes_of_flanks_are_noted_with_their_amounts() -> None:
+    """The schema has no word on their sign, so that only a user can take them, and then needs the amount."""
+    file = helical_stage()
+    (flank,) = {
+        dict(one["roles"])["left"] for one in file.relations if ("gear", file.number("pinion")) in one["roles"]
+    } - {None}
+    for kind, amount in (("profile_slope", 0.006), ("helix_slope", -0.0125)):
+        slope = file.add(kind, **{kind: (amount, "mm")})
+        file.relate("reference", origin=flank, referenced=slope)
+    said = {note.about.split()[0]: note.text for note in imported(file).notes if "slope" in note.about}
+    assert said["profile_slope"].startswith("6 um: the schema states no sign of it; give it as `errors.profile.slope`")
+    assert said["helix_slope"].startswith("-12.5 um: the schema states no sign of it and no face")
+    assert case(file).gear_named("pinion").tip_relief is not None

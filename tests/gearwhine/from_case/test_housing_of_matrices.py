@@ -80,6 +80,9 @@ def test_four_of_eleven_nodes_are_found_by_the_positions_that_free_motions_tell(
     for matrix, units in ((stiffness, "SI"), (in_millimetres(stiffness), "mm-t-s")):
         found = assign_nodes({"stiffness": LabelledMatrix(matrix, coordinates)}, [tuple(one) for one in places])
         assert (found.nodes, found.units, found.is_proved) == ((90, 30, 110, 60), units, True)
+        assert set(found.others) == {10, 20, 40, 50, 70, 80, 100}
+        for node, place in found.others.items():
+            np.testing.assert_allclose(place, positions[node // 10 - 1] + [0.2, -0.1, 0.4], atol=1e-8)
     # A foot on a spring: nothing is free any more, and nothing tells the positions.
     held = stiffness.copy()
     held[0, 0] += 1e9
@@ -116,6 +119,50 @@ def test_seats_stand_under_the_bearings_whatever_the_order_of_the_nodes(
     assert certificate["free_rigid_motions"] == 6
     assert certificate["mass_kg"] == pytest.approx(40.0)
     assert {bearing.seat for bearing in study.case.bearing} == {f"{name} seat" for name in POINTS}
+
+
+def test_a_free_housing_is_held_softly_and_one_that_the_matrices_hold_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Equal springs k under equal bodies m: as a whole they move at √(k/m) along each axis, which is to be 50 Hz."""
+    monkeypatch.chdir(tmp_path)
+    for folder, ground, held in (("free", 0.0, 4), ("held", 1e8, 0)):
+        (tmp_path / folder).mkdir()
+        written(tmp_path / folder, ground)
+        command = ["import", f"{folder}/unit.rexs", "--housing", f"{folder}/box.pch", "-o", f"{folder}/unit.toml"]
+        assert run_command(command) == 0
+        assert ("nothing holds it: springs at its seats" in capsys.readouterr().out) == bool(held)
+        study = gw.load(f"{folder}/unit.toml")
+        table = study.case.reduced_housing
+        assert table is not None
+        assert len(table.support) == held
+        if held:
+            frequencies = np.array(study.check().document["reduced_housing"]["frequencies_hz"][:6])
+            # Two digits of the springs are 2.5 % of them at most.
+            assert (np.abs(frequencies / 50.0 - 1.0) < 0.0125).sum() >= 3
+            assert frequencies[0] > 25.0
+
+
+def test_nodes_beside_the_seats_get_sensors(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A node on the lid, 0.3 m above the first bearing, for the accelerometer that measures there."""
+    lid = CENTERS["6205"] + [0.0, 0.3, 0.02]
+    nodes = {**{f"{name}": node for name, node in NODES.items()}, "lid": 301}
+    stiffness = springs_between(np.array([*(CENTERS[name] for name in NODES), lid]))
+    mass = np.diag(np.tile([10.0] * 3 + [0.05] * 3, len(nodes)))
+    coordinates = [(node, axis) for node in nodes.values() for axis in range(1, 7)]
+    write_dmig(tmp_path / "box.pch", {"MAAX": mass, "KAAX": stiffness}, coordinates)
+    (tmp_path / "unit.rexs").write_bytes(helical_stage().xml())
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["import", "unit.rexs", "--housing", "box.pch"]) == 0
+    assert "a sensor along y at each seat, and at 1 other node" in " ".join(capsys.readouterr().out.split())
+    table = gw.load("unit.toml").case.reduced_housing
+    assert table is not None
+    (sensor,) = (one for one in table.sensor if one.node == 301)
+    assert sensor.name == "at node 301"
+    np.testing.assert_allclose(sensor.position, lid, atol=1e-7)
+    assert gw.load("unit.toml").check().document["reduced_housing"]["certificate"]["free_rigid_motions"] == 6
 
 
 def test_the_matrices_take_the_place_of_a_static_stiffness_in_the_file_of_the_unit(
@@ -199,7 +246,7 @@ def test_two_commands_from_the_files_to_the_spectrum_at_a_sensor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The lines of a sensor stand at multiples of the mesh frequency, that of 20 teeth on the input."""
-    written(tmp_path, ground=1e8)
+    written(tmp_path)
     monkeypatch.chdir(tmp_path)
     assert run_command(["import", "unit.rexs", "--housing", "box.pch"]) == 0
     capsys.readouterr()

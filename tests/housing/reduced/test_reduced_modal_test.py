@@ -112,6 +112,7 @@ def test_by_landmarks_and_in_a_frame_of_its_own() -> None:
     landmarks = {label: tuple(place) for label, place in zip("1234", PLACES.tolist(), strict=False)}
     test = ModalTest(measured(shift=5.0, frame=turned), align=landmarks)
     comparison = compare_reduced(reduced(), test).comparison
+    assert len(comparison.pairs) == KEPT
     np.testing.assert_allclose([pair.mac for pair in comparison.pairs], 1.0, atol=1e-9)
 
 
@@ -254,6 +255,7 @@ def test_the_commands_show_modes_and_pairs(
     np.testing.assert_allclose(np.abs(shapes), np.abs(SHAPES[6:9, :KEPT].T), rtol=1e-6, atol=1e-8)
     compared = study.compare().document
     # Universal files have six digits.
+    assert len(compared["pairs"]) == KEPT
     np.testing.assert_allclose([pair["mac"] for pair in compared["pairs"]], 1.0, atol=1e-8)
     assert compared["pairs"][0]["error_percent"] == pytest.approx(100.0 / 0.98 - 100.0, rel=1e-4)
     assert compared["model_modes"]["count"] >= KEPT
