@@ -278,7 +278,7 @@ class CaseStudy(Study):
         if self.case.detection is not None:
             from gearwhine.analyses.detection_result import plan_detection
 
-            plan_detection(self.case, self._source)
+            plan_detection(self._source)
         checked = check_case(self.case, self.progress, self._source.imported)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 
@@ -726,7 +726,6 @@ class CaseStudy(Study):
         from gearwhine.analyses.detection_result import solve_detection
 
         return solve_detection(
-            self.case,
             self._source,
             Path(folder),
             workers=workers,

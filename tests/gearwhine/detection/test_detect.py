@@ -86,7 +86,7 @@ def test_a_key_that_is_no_tooth_fault_grows_from_its_value() -> None:
     )
     from gearwhine.analyses.detection_result import plan_detection
 
-    planned = plan_detection(study.case, study._source)
+    planned = plan_detection(study._source)
     assert planned.without == ""
     assert planned.gear == "pinion"
     assert planned.monitor.sensors == ("top", "right wall")
