@@ -288,7 +288,7 @@ class CaseStudy(Study):
         if self.case.detection is not None:
             from gearwhine.analyses.detection_result import plan_detection
 
-            plan_detection(self.case, self._source)
+            plan_detection(self._source)
         if self.case.optimisation is not None:
             from gearwhine.optimisation.design import design_inputs
 
@@ -765,7 +765,6 @@ class CaseStudy(Study):
         from gearwhine.analyses.detection_result import solve_detection
 
         return solve_detection(
-            self.case,
             self._source,
             Path(folder),
             workers=workers,

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from gearwhine.case.variation import Variation
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.condition_record import LEAST_TURNS
 from gearwhine.coupling.analyses.gear_condition import INDICATORS, OF_ONE_RECORD
+from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.gears import GearError
 from gearwhine.detection.detectability import DetectionResult, Monitor, Observation, detected_parts
 from gearwhine.detection.samples import Design, DetectionCase, detection_design
@@ -52,6 +54,7 @@ class PlannedDetection:
 
     Attributes
     ----------
+    case : Case
     settings : Detection
     source : CaseSource
         Content of the case without the tables of the study.
@@ -66,6 +69,7 @@ class PlannedDetection:
     monitor : Monitor
     """
 
+    case: Case
     settings: Detection
     source: CaseSource
     inputs: tuple[Input, ...]
@@ -76,8 +80,13 @@ class PlannedDetection:
     monitor: Monitor
 
 
-def plan_detection(case: Case, source: CaseSource) -> PlannedDetection:
+def plan_detection(source: CaseSource) -> PlannedDetection:
     """Check the detection study of a case.
+
+    Parameters
+    ----------
+    source : CaseSource
+        Content that the case is made of.
 
     Raises
     ------
@@ -85,6 +94,7 @@ def plan_detection(case: Case, source: CaseSource) -> PlannedDetection:
         Where the case has no fault, sensor or gear of such a name, a size is beyond what the model allows, the record
         holds too few turns, or nothing scatters.
     """
+    case = source.changed_case()
     settings = case.detection
     if settings is None:
         raise lacking(case, "detection", command="detect")
@@ -95,12 +105,15 @@ def plan_detection(case: Case, source: CaseSource) -> PlannedDetection:
     if not inputs and settings.sensor_noise == 0.0:
         expected = "noise above 0, or distributions under [variation.vary]: without scatter there is no threshold"
         raise CaseError([Problem("detection.sensor_noise", 0.0, expected)])
-    sensors, gear = _sensors(case, settings), _gear(case, settings)
-    without = _healthy_change(case, settings)
+    table = case.housing or case.reduced_housing
+    sensors = _sensors(() if table is None else tuple(sensor.name for sensor in table.sensor), settings)
+    shafts = {one.name: one.rotor for one in case.gear}
+    gear = _gear(list(shafts), case.gear_pair[0].driver, settings)
+    without = _healthy_change(case_document(case), settings)
     plain = replace(source, written={key: table for key, table in source.written.items() if key not in _OWN})
     plain = replace(plain, changes=tuple(text for text in source.changes if text.partition(".")[0] not in _OWN))
     _require_severities(plain, settings, without)
-    _require_turns(case, gear)
+    _require_turns(plan_of(case), shafts[gear] or "", case.parts.train.ratios)
     monitor = Monitor(
         sensors,
         settings.indicators or (tuple(INDICATORS) if settings.baseline == "own" else OF_ONE_RECORD),
@@ -112,14 +125,13 @@ def plan_detection(case: Case, source: CaseSource) -> PlannedDetection:
         settings.baseline == "own",
     )
     between = _between(source, variation, settings, inputs)
-    return PlannedDetection(settings, plain, inputs, variation, between, without, gear, monitor)
+    return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor)
 
 
 _OWN = ("detection", "variation")
 
 
 def solve_detection(
-    case: Case,
     source: CaseSource,
     folder: Path,
     *,
@@ -132,10 +144,8 @@ def solve_detection(
 
     Parameters
     ----------
-    case : Case
-        Case with its detection study.
     source : CaseSource
-        Content that the case is made of.
+        Content that the case with its detection study is made of.
     folder : path
         Folder of the samples; those that it holds already are not solved again.
     workers, scheduler
@@ -153,8 +163,8 @@ def solve_detection(
         Where the processes do not start.
     """
     start = time.perf_counter()
-    planned = plan_detection(case, source)
-    settings, monitor = planned.settings, planned.monitor
+    planned = plan_detection(source)
+    case, settings, monitor = planned.case, planned.settings, planned.monitor
     varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
     housing = None
     if case.housing is not None:
@@ -265,10 +275,8 @@ def _between(source: CaseSource, variation: Variation, settings: Detection, inpu
     return tuple(number for number, one in enumerate(inputs) if one.name in names)
 
 
-def _sensors(case: Case, settings: Detection) -> tuple[str, ...]:
-    """Return the sensors that are asked for, by default all."""
-    table = case.housing or case.reduced_housing
-    names = tuple(sensor.name for sensor in table.sensor) if table is not None else ()
+def _sensors(names: tuple[str, ...], settings: Detection) -> tuple[str, ...]:
+    """Return the sensors that are asked for, by default all there are."""
     if not names:
         raise CaseError([Problem("housing.sensor", UNSAID, "a sensor or more, which 'detect' listens to")])
     problems = [
@@ -281,24 +289,22 @@ def _sensors(case: Case, settings: Detection) -> tuple[str, ...]:
     return tuple(dict.fromkeys(settings.sensors)) or names
 
 
-def _gear(case: Case, settings: Detection) -> str:
-    """Return the gear by whose shaft signals are averaged."""
-    names = [gear.name for gear in case.gear]
+def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
+    """Return the gear by whose shaft signals are averaged, by default the faulty one, else the first driver."""
     steps = parse_key_path(settings.fault) or ()
     of_fault = steps[1] if len(steps) > 1 and steps[0] == "gear" else ""
     if of_fault.isdecimal() and of_fault not in names and int(of_fault) < len(names):
         of_fault = names[int(of_fault)]
-    chosen = settings.gear or (of_fault if of_fault in names else case.gear_pair[0].driver)
+    chosen = settings.gear or (of_fault if of_fault in names else driver)
     if chosen not in names:
         expected = f"the name of a gear: {', '.join(names)}{did_you_mean(chosen, names)}"
         raise CaseError([Problem("detection.gear", chosen, expected)])
     return chosen
 
 
-def _healthy_change(case: Case, settings: Detection) -> str:
+def _healthy_change(document: Mapping[str, Any], settings: Detection) -> str:
     """Return the change that takes the fault from the case; empty where its key is of no damaged tooth."""
     steps = parse_key_path(settings.fault) or ()
-    document = case_document(case)
     if "*" in steps:
         raise CaseError([Problem("detection.fault", settings.fault, "the key of one fault, without *")])
     if "fault" not in steps:
@@ -344,18 +350,16 @@ def _require_severities(source: CaseSource, settings: Detection, without: str) -
         raise CaseError(problems)
 
 
-def _require_turns(case: Case, gear: str) -> None:
-    """Refuse a record at constant speed that holds too few turns of the gear's shaft.
+def _require_turns(plan: TransientPlan, shaft: str, ratios: Mapping[str, Fraction]) -> None:
+    """Refuse a record at constant speed that holds too few turns of a shaft.
 
     Raises
     ------
     CaseError
     """
-    plan = plan_of(case)
-    shaft = next(one.rotor for one in case.gear if one.name == gear)
-    if plan.revolutions is None or shaft is None:
+    if plan.revolutions is None:
         return
-    ratio = abs(float(case.parts.train.ratios.get(shaft, 0)))
+    ratio = abs(float(ratios.get(shaft, 0)))
     turns = ratio * (plan.revolutions - plan.discarded)
     if ratio > 0.0 and turns < LEAST_TURNS + _SPARE_TURNS:
         least = plan.discarded + (LEAST_TURNS + _SPARE_TURNS) / ratio

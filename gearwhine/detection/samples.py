@@ -74,16 +74,17 @@ class DetectionCase:
 
     def solve(self, point: FloatArray) -> Outcome:
         """Find the record of a sample; errors are returned as failures, not raised."""
-        return outcome_of(lambda: self.evaluation(self.case(point)))
+        return outcome_of(lambda: self.evaluation(point))
 
-    def evaluation(self, case: Case) -> Evaluation:
-        """Find the record of a case of the study.
+    def evaluation(self, point: FloatArray) -> Evaluation:
+        """Find the record of a sample.
 
         Raises
         ------
         gearwhine.coupling.CouplingError
             Where the gear has no average, or the machine cannot be solved.
         """
+        case = self.case(point)
         machine, plan = self.varied.machine(case), plan_of(case)
         load = find_load(machine, is_needed=case.parts.needs_operating_point)[0] if machine.is_loaded else None
         loaded = load_machine(machine, None if load is None else load.point, plan.run)

@@ -72,6 +72,9 @@ def with_less_effort(words: list[str]) -> list[str]:
         return words
     case = Path(words[1]).stem
     settings = LESS_EFFORT["steel-box" if case == "updated" else case]
+    if words[0] == "detect":
+        # A record of few turns has no averages.
+        settings = tuple(setting for setting in settings if not setting.startswith("transient."))
     changes = [part for setting in settings for part in ("--set", setting)]
     for many, few in FEWER_POINTS.items():
         words = [word.replace(many, few) for word in words]

@@ -185,6 +185,12 @@ def test_faults_that_no_threshold_finds_have_no_a90() -> None:
     assert 1.5 < step.a90 < step.a90_95 < 2.5
     assert [share.found for share in step.shares[3:]] == [20, 20, 20]
     assert step.shares[-1].interval == pytest.approx((0.025 ** (1.0 / 20.0), 1.0))
+    # Φ((1 + 2 · 1.6 - 4) / 0.5) = 0.66 of the largest ones are seen.
+    small = np.tile(np.linspace(0.5, 1.6, 6), 100)
+    line = 1.0 + 2.0 * small + 0.5 * rng.normal(size=small.size)
+    rare = detection(small, line, threshold(rng.normal(4.0 - Z[0.99], 1.0, 100_000), 0.01, "normal"))
+    assert rare.curve.probability(1.6) == pytest.approx(0.66, abs=0.05)
+    assert (rare.a90, rare.a90_95) == (None, None)
     # Seen at every size: the smallest one is enough.
     seen = detection(sizes, 50.0 + 5.0 * sizes + rng.normal(size=sizes.size), healthy)
     assert (seen.a90, seen.a90_95) == (0.5, 0.5)

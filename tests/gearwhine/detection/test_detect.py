@@ -1,0 +1,154 @@
+"""Detection studies of a case: bad input is refused by its key, and the command finds, writes and resumes a study."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearwhine as gw
+from gearwhine.case import CaseError
+from gearwhine.case.load import bundled_case
+from gearwhine.cli import run_command
+
+CRACK = 'gear.pinion.fault={ kind = "crack", tooth = 3, depth = "1 mm" }'
+SHORT = ["transient.revolutions=12", "transient.discard=6", "housing.frequency_limit=2.8 kHz"]
+STUDY = """
+[detection]
+fault        = "gear.pinion.fault.depth"
+severities   = ["1 mm", "2 mm"]
+healthy      = 40
+faulty       = 12
+sensor_noise = "0.02 m/s^2"
+"""
+
+
+def _case(tmp_path: Path, study: str = STUDY) -> Path:
+    bundled = bundled_case("small-gearbox")
+    assert bundled is not None
+    path = tmp_path / "case.toml"
+    path.write_text(bundled.read_text() + study)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("study", "changes", "key", "said"),
+    [
+        (STUDY, ["gear.pinion.fault="], "detection.fault", "a fault that the case has"),
+        (STUDY, ["detection.fault=gear.pinion.fault.1.depth"], "detection.fault", "a fault that the case has"),
+        (STUDY, ["detection.fault=rotor.input.nothing"], "detection.fault", "a key of the case"),
+        (STUDY, ["detection.fault=gear.*.fault.depth"], "detection.fault", "one fault"),
+        (STUDY, ['detection.severities=["1 mm", "9 mm"]'], "detection.severities[1]", "through the foot of the tooth"),
+        (STUDY, ['detection.severities=["2 mm", "1 mm"]'], "detection.severities[1]", "ascending"),
+        (STUDY, ['detection.severities=["1 s", "2 s"]'], "detection.severities[0]", "a size that the case takes"),
+        (STUDY, ['detection.sensors=["top", "botom"]'], "detection.sensors[1]", "one of top, right wall"),
+        (STUDY, ['detection.indicators=["fm5"]'], "detection.indicators[0]", "did you mean"),
+        (STUDY, ["detection.gear=pinon"], "detection.gear", "did you mean 'pinion'"),
+        (STUDY, ["detection.healthy=9"], "detection.healthy", "from 10"),
+        (STUDY, ["detection.threshold=order"], "detection.healthy", "99 or more"),
+        (STUDY, ["detection.sensor_noise=0 m/s^2"], "detection.sensor_noise", "without scatter"),
+        (STUDY, ['detection.between=["operation.torque"]'], "detection.between[0]", "a key of [variation.vary]"),
+        (STUDY, ["transient.revolutions=10"], "transient.revolutions", "10.5 or more"),
+        (STUDY, ["transient="], "transient", "'detect' needs [transient]"),
+        (STUDY, ["housing.sensor=[]"], "housing.sensor", "listens to"),
+        ("", [], "detection", "'detect' needs [detection]"),
+    ],
+)
+def test_bad_input_is_refused_by_its_key(
+    tmp_path: Path, study: str, changes: list[str], key: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    of_case = [CRACK, "transient.revolutions=12", "transient.discard=6", *changes]
+    settings = [word for text in of_case for word in ("--set", text)]
+    path = _case(tmp_path, study)
+    assert run_command(["detect", str(path), "-o", str(tmp_path / "out"), "-q", *settings]) == 2
+    error = capsys.readouterr().err
+    assert f"{key}:" in error
+    assert said in error
+    assert not (tmp_path / "out" / "detection-samples").exists()
+    if study:
+        # What is wrong with the study is told before anything is solved.
+        assert run_command(["check", str(path), *settings]) == 2
+
+
+def test_a_key_that_is_no_tooth_fault_grows_from_its_value() -> None:
+    study = gw.load(
+        "small-gearbox",
+        {
+            "detection": {
+                "fault": "rotor.input.unbalance.0.moment",
+                "severities": ["4e-5 kg*m", "8e-5 kg*m"],
+                "sensor_noise": "0.1 m/s^2",
+            },
+            "transient.revolutions": 12,
+            "transient.discard": 6,
+        },
+    )
+    from gearwhine.analyses.detection_result import plan_detection
+
+    planned = plan_detection(study._source)
+    assert planned.without == ""
+    assert planned.gear == "pinion"
+    assert planned.monitor.sensors == ("top", "right wall")
+    with pytest.raises(CaseError, match=r"detection\.fault"):
+        gw.load("small-gearbox", {"detection": {"fault": "a..b", "severities": [1, 2], "sensor_noise": 1.0}})
+
+
+@pytest.mark.slow
+def test_the_command_finds_writes_and_resumes_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, out = _case(tmp_path), tmp_path / "out"
+    settings = [word for text in (CRACK, *SHORT) for word in ("--set", text)]
+    command = ["detect", str(path), "-o", str(out), "-q", "--workers", "1", *settings]
+    assert run_command(command) == 0
+    assert "a90 (a90/95) [mm]" in capsys.readouterr().out
+    document = json.loads((out / "summary.json").read_text())
+    names = {"detect.nc", "detection-matrix.png", "detection-probability.png", "detection-responses-1.png"}
+    assert set(document["files"]) >= names
+    # The gearbox without the fault twice, as the reference and as a healthy one, and one for each size.
+    assert (document["samples"], document["resumed"], document["failed"]) == (4, 0, [])
+    assert run_command([*command, "--set", "detection.sensor_noise=2 m/s^2", "--json"]) == 0
+    noisy = json.loads(capsys.readouterr().out)
+    assert noisy["resumed"] == 4
+    assert len(noisy["detectability"]) == 2 * 14
+
+    # The records are those of `simulate` with and without the fault, in noise that is small beside them.
+    study = gw.load(path, [CRACK, *SHORT], folder=out)
+    run = study.simulate()
+    single = run.document["condition"]["gears"][0]["sensors"][0]["indicators"]["difference_rms_m_per_s2"]
+    sound = study.changed(["gear.pinion.fault="]).simulate(study.settings.transient)
+    assert "condition" not in sound.document
+    found = sound.solved.indicators(["difference_rms"]).gears[0].sensors[0].values["difference_rms"]
+    assert found is not None
+    rows = {(one["sensor"], one["indicator"]): one for one in document["detectability"]}
+    with xr.open_dataset(out / "detect" / "detect.nc" if (out / "detect").is_dir() else out / "detect.nc") as data:
+        of_size = data["faulty"].sel(sensor="top", indicator="difference_rms_m_per_s2")
+        grown = float(of_size[data["fault_size"].values == 1e-3].mean())
+    noise = 0.02 / np.sqrt(100.0)
+    assert rows["top", "difference_rms"]["healthy_mean"] == pytest.approx(1.0, abs=0.2)
+    assert grown == pytest.approx(np.hypot(single, noise) / np.hypot(found, noise), rel=0.1)
+    assert single > found
+
+    assert run_command(["report", str(out)]) == 0
+    page = (out / "report.html").read_text()
+    assert "Detectability of a fault" in page
+
+
+@pytest.mark.slow
+def test_a_fault_of_one_gear_is_in_the_average_of_its_shaft_and_not_of_the_other(tmp_path: Path) -> None:
+    """27 and 29 teeth: a cracked tooth of the pinion repeats with its turns, 29 of which fill a hunting period."""
+    changes = [
+        *("gear.pinion.teeth=27", "gear.wheel.teeth=29", "rotor.input.unbalance=", "housing.frequency_limit=2.8 kHz"),
+        *("transient.revolutions=36", "transient.discard=7"),
+    ]
+    study = gw.load("small-gearbox", changes)
+    cracked = study.changed(['gear.pinion.fault={ kind = "crack", tooth = 3, depth = "2 mm" }'])
+    rise = {}
+    for gear in ("pinion", "wheel"):
+        values = [
+            next(one for one in each.simulate().solved.indicators(["difference_rms"]).gears if one.gear.gear == gear)
+            .sensors[0]
+            .values["difference_rms"]
+            for each in (study, cracked)
+        ]
+        rise[gear] = values[1] - values[0]
+    assert rise["pinion"] > 5.0 * np.abs(rise["wheel"])
