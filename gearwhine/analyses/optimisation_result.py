@@ -306,16 +306,15 @@ def optimise(
     written = tuple(f"{float(first[one.name]):.6g}" for one in named)
     optimised = Optimised(named, goals, settings.words(goals, named), begun, written, tuple(designs), ended)
     if plan is not None and plan.run is None and isinstance(machine := made(first), Machine):
-        best = optimised.best
         at = tuple(wanted.speeds or (machine.speed,))
 
         def motion(values: Mapping[str, float]) -> Motion | Failure:
             one = made(values)
             return _motion_or_failure(lambda: motion_of(_as_machine(one), plan, at, needs_load=False))
 
-        if best is not None:
-            checked = Verification(at, motion(first), motion(values_of(best.point)))
-            optimised = replace(optimised, verification=checked)
+        proposals = [values_of(designs[number].point) for number in optimised.chosen]
+        checked = Verification(at, motion(first), tuple(motion(values) for values in proposals))
+        optimised = replace(optimised, verification=checked if proposals else None)
     return _result(Origin(title), optimised, begin)
 
 
@@ -480,13 +479,13 @@ def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:
 
 
 def _verification(proposed: ProposedCase, optimised: Optimised, case: Case, progress: Progress) -> Verification | None:
-    """Solve the transient of the case and of the best design; None where there is no best one."""
-    best = optimised.best
-    if best is None or not case.rotor or case.operation is None:
+    """Solve the transient of the case and of the proposed designs; None where there is no design."""
+    proposals = [optimised.designs[number] for number in optimised.chosen]
+    if not proposals or not case.rotor or case.operation is None:
         return None
     loudest = [
         value / (30.0 / np.pi)
-        for design in (optimised.start, best)
+        for design in (optimised.start, *proposals)
         for name, (value, _) in design.sides.items()
         if name.endswith("loudest_speed_rpm")
     ]
@@ -501,8 +500,11 @@ def _verification(proposed: ProposedCase, optimised: Optimised, case: Case, prog
 
     progress(f"the transient of the start at {len(speeds)} speeds")
     start = motion(None)
-    progress(f"the transient of the best design at {len(speeds)} speeds")
-    return Verification(speeds, start, motion(_as_designed(best, proposed)))
+    found = list[Motion | Failure]()
+    for design, label in zip(proposals, optimised.chosen.values(), strict=True):
+        progress(f"the transient of the design {label!r} at {len(speeds)} speeds")
+        found.append(motion(_as_designed(design, proposed)))
+    return Verification(speeds, start, tuple(found))
 
 
 def _as_designed(design: Design, proposed: ProposedCase) -> FloatArray:

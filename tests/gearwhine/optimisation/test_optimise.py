@@ -467,6 +467,8 @@ def test_designs_of_walls_and_gears_equal_the_single_calculations_and_the_transi
     single = study.changed(last)
     housing = single.modes().document
     assert float(levels.sel(quantity="housing.mass_kg")[7]) == pytest.approx(housing["mass_kg"], rel=1e-9)
+    masses = [housing["mass_kg"], *(row["mass_kg"] for row in single.rotors().document["rotors"])]
+    assert float(levels.sel(quantity="machine.mass_kg")[7]) == pytest.approx(sum(masses), rel=1e-9)
     for sensor in ("top", "right wall"):
         at_speeds = []
         for speed in (2500, 5500):
