@@ -97,6 +97,11 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
     return document | {"warnings": list(_warnings(optimised))}
 
 
+def _of(name: str) -> str:
+    """Return what a quantity is of; of several ones as they are named."""
+    return name.rpartition(".")[0] if "*" in name else part_of(name)
+
+
 def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
@@ -114,7 +119,7 @@ def _missed(limit: "LimitEnd", value: float) -> dict[str, Any]:
     name, factor = shown_quantity(limit.name)
     word = "at most" if limit.sign > 0.0 else "at least"
     by = limit.sign * (value - limit.end)
-    text = f"{part_of(limit.name)}, {name}: {factor * value:.4g}, {word} {factor * limit.end:.4g} is asked for"
+    text = f"{_of(limit.name)}, {name}: {factor * value:.4g}, {word} {factor * limit.end:.4g} is asked for"
     return {
         "name": limit.name,
         "limit": limit.key,
@@ -260,11 +265,17 @@ def _content(document: Document) -> Iterator[str | Table]:
         *_designs(labels, _text),
     )
     named = (
-        Column("of", lambda row: part_of(row["name"])),
+        Column("of", lambda row: _of(row["name"])),
         Column("quantity", lambda row: shown_quantity(row["name"])[0]),
     )
     yield from table_of(
-        (*named, Column("aim", "sense"), Column("weight", "weight"), *shown, Column("change", _change)),
+        (
+            *named,
+            Column("aim", "sense"),
+            Column("weight", "weight"),
+            *shown,
+            Column(f"change to {labels[0]}" if len(labels) > 1 else "change", _change),
+        ),
         document["aims"],
         "Aims",
     )
@@ -320,7 +331,7 @@ def _front(document: Document) -> Iterator[Table]:
 
     columns = [Column("design", "number", "d")]
     for place, one in enumerate(aims):
-        columns.append(Column(f"{part_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
+        columns.append(Column(f"{_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
     columns += [Column(one["key"], lambda row, place=place: row["keys"][place]) for place, one in enumerate(keys)]  # type: ignore[misc]
     part = f", {len(places)} of {len(front)} designs" if len(places) < len(front) else ""
     yield from table_of(tuple(columns), [front[place] for place in places], f"Pareto front{part}")
