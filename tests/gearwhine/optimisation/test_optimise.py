@@ -240,6 +240,20 @@ def test_a_grid_is_every_combination_and_the_search_is_no_worse_than_its_best(tm
     assert searched.document["aims"][0]["designs"][0] < found.document["aims"][0]["designs"][0]
 
 
+def test_an_aim_of_several_quantities_is_that_of_the_worst(tmp_path: Path) -> None:
+    text = SHAFT.replace('"bearing.right.force_n" = { sense', '"bearing.*.force_n" = { sense').replace(
+        LIMIT, '"bearing.left.force_n" = { at_least = 700 }'
+    )
+    found = _optimised(tmp_path, text, method="grid")
+    forces = found.dataset["input_value"].values
+    larger = np.maximum(forces @ [0.8, 0.2], forces @ [0.2, 0.8])
+    assert found.dataset["aim_value"].values[:, 0] == pytest.approx(larger, rel=1e-9)
+    most = _optimised(tmp_path, text.replace('"least"', '"most"'), method="grid")
+    smaller = np.minimum(forces @ [0.8, 0.2], forces @ [0.2, 0.8])
+    assert most.dataset["aim_value"].values[:, 0] == pytest.approx(smaller, rel=1e-9)
+    assert most.document["aims"][0]["designs"][0] == pytest.approx(smaller.max(), rel=1e-9)
+
+
 def test_an_interrupted_search_goes_on_with_the_designs_on_file(tmp_path: Path) -> None:
     first = _optimised(tmp_path, evaluations=30)
     lines = _lines(tmp_path / "out")
