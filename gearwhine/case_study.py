@@ -786,7 +786,7 @@ class CaseStudy(Study):
     ) -> "Result[Optimised]":
         """Which design is best, by the keys, aims and limits of [optimisation]; several aims have a Pareto front.
 
-        A search in the same folder takes the designs that it holds already. The best one is checked by the transient.
+        A search in the same folder takes the designs that it holds already. The transient checks the proposed ones.
 
         Parameters
         ----------
@@ -817,7 +817,6 @@ class CaseStudy(Study):
         from gearwhine.analyses.optimisation_result import solve_optimisation
 
         return solve_optimisation(
-            self.case,
             self._source,
             Path(folder),
             evaluations=evaluations,

@@ -13,12 +13,11 @@ import numpy as np
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
-from gearwhine.analyses.variation_result import NEEDS
-from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, dump_case, require
-from gearwhine.case.analysis_speeds import with_sense_of
+from gearwhine.analyses.variation_result import wanted_of
+from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
 from gearwhine.case.errors import NOTHING, UNSAID
 from gearwhine.case.model import lacking
-from gearwhine.case.optimisation import Aim, Method, Optimisation
+from gearwhine.case.optimisation import Aim, Method, Optimisation, Robust
 from gearwhine.case.units import si_amount
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
@@ -61,7 +60,6 @@ MOST_GRID = 100_000
 
 
 def solve_optimisation(
-    case: Case,
     source: CaseSource,
     folder: Path,
     *,
@@ -77,10 +75,8 @@ def solve_optimisation(
 
     Parameters
     ----------
-    case : Case
-        Case with its optimisation.
     source : CaseSource
-        Content that the case is made of, from which the designs are made, too.
+        Content of the case with its optimisation, from which the designs are made, too.
     folder : path
         Folder of the evaluations; those that it holds already are not solved again.
     evaluations, method, seed, workers, scheduler
@@ -98,7 +94,7 @@ def solve_optimisation(
     gearwhine.failures.WorkersError
         Where the processes do not start.
     """
-    begin = time.perf_counter()
+    begin, case = time.perf_counter(), source.changed_case()
     optimisation = case.optimisation
     if optimisation is None:
         raise lacking(case, "optimisation", command="optimise")
@@ -109,20 +105,22 @@ def solve_optimisation(
         optimisation.evaluations if evaluations is None else evaluations,
         optimisation.seed if seed is None else seed,
     )
+    settings.require_library(optimisation.aim)
     inputs = design_inputs(source, optimisation)
     plain = replace(source, written=_without(source.written), changes=tuple(filter(_is_kept, source.changes)))
-    scatter, variation = _scatter(case, plain, inputs)
-    proposed = ProposedCase(plain, inputs, _wanted(case, optimisation), variation=variation)
+    require_values(plain, inputs)
+    variation = None if optimisation.robust is None else case.variation
+    scatter = _scatter(optimisation.robust, variation, plain, inputs)
+    wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
+    proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     housing = None
     if case.housing is not None and case.rotor:
         housing = solve_housing(case, progress, command="optimise", folder=folder, fresh=fresh)
         key = housing_key(given_housing(case, "optimise"))
         proposed = replace(proposed, housing=reduce_housing(case, housing), housing_key=key)
-    require_values(plain, inputs)
     progress("the case as it is written")
     nominal = proposed.evaluation(proposed.case(None))
     goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)
-    _require_library(goals, settings)
     coordinates = start_point(plain, inputs)
     evaluated = Evaluations(proposed, folder, workers, scheduler, fresh=fresh, progress=progress)
 
@@ -151,8 +149,8 @@ def solve_optimisation(
         gearboxes=len(scatter),
         resumed=evaluated.resumed,
     )
-    if optimisation.verify and case.transient is not None and case.transient.run is None:
-        optimised = replace(optimised, verification=_verification(proposed, optimised, case, progress))
+    if optimisation.verify:
+        optimised = replace(optimised, verification=_verification(proposed, optimised, progress))
     origin = Origin(case.title, case=case, housing=housing)
 
     def design_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
@@ -208,7 +206,7 @@ def optimise(
     speeds : sequence of float
         Signed speeds of "lines" [rad/s]; by default that of each machine.
     plan : TransientPlan, optional
-        Stretch of the motion; with it the transient of the start and of the best machine is solved at the end.
+        Stretch of the motion; with it the transient of the start and of the proposed machines is solved at the end.
     method : {"search", "grid"}
         "grid" tries every combination of the values, of each range a number of levels.
     levels : int
@@ -286,7 +284,7 @@ def optimise(
     nominal = found(first)
     goals = goals_of(senses, ranges, list(nominal.numbers))
     settings = _Settings(method, evaluations, seed)
-    _require_library(goals, settings)
+    settings.require_library(senses)
 
     def tried(points: FloatArray, to_come: int) -> list[Design]:
         outcomes = [outcome_of(partial(found, values_of(point))) for point in points]
@@ -306,16 +304,15 @@ def optimise(
     written = tuple(f"{float(first[one.name]):.6g}" for one in named)
     optimised = Optimised(named, goals, settings.words(goals, named), begun, written, tuple(designs), ended)
     if plan is not None and plan.run is None and isinstance(machine := made(first), Machine):
-        best = optimised.best
         at = tuple(wanted.speeds or (machine.speed,))
 
         def motion(values: Mapping[str, float]) -> Motion | Failure:
             one = made(values)
             return _motion_or_failure(lambda: motion_of(_as_machine(one), plan, at, needs_load=False))
 
-        if best is not None:
-            checked = Verification(at, motion(first), motion(values_of(best.point)))
-            optimised = replace(optimised, verification=checked)
+        proposals = [values_of(designs[number].point) for number in optimised.chosen]
+        checked = Verification(at, motion(first), tuple(motion(values) for values in proposals))
+        optimised = replace(optimised, verification=checked if proposals else None)
     return _result(Origin(title), optimised, begin)
 
 
@@ -332,6 +329,11 @@ class _Settings:
     method: Method
     evaluations: int
     seed: int
+
+    def require_library(self, aims: Mapping[str, Aim]) -> None:
+        """Refuse a search for a Pareto front where its library is not installed."""
+        if self.method == "search" and len(aims) > 1 and any(aim.weight is None for aim in aims.values()):
+            require_pareto_library()
 
     def words(self, goals: Goals, inputs: Sequence[DesignInput]) -> str:
         """Return the method in words."""
@@ -394,12 +396,12 @@ def _with_scatter(point: FloatArray, scatter: FloatArray) -> FloatArray:
     return np.hstack([np.repeat(point[None], len(scatter), axis=0), scatter])
 
 
-def _scatter(case: Case, source: CaseSource, inputs: Sequence[DesignInput]) -> tuple[FloatArray, Variation | None]:
-    """Return the points of the scatter about each design, shape (n, v), and its variation; one without coordinates."""
-    robust = None if case.optimisation is None else case.optimisation.robust
+def _scatter(
+    robust: Robust | None, variation: Variation | None, source: CaseSource, inputs: Sequence[DesignInput]
+) -> FloatArray:
+    """Return the points of the scatter about each design, shape (n, v); one without coordinates where there is none."""
     if robust is None:
-        return np.zeros((1, 0)), None
-    variation = case.variation
+        return np.zeros((1, 0))
     if variation is None or not variation.vary:
         expected = "distributions of keys under [variation.vary], by which gearboxes scatter about each design"
         raise CaseError([Problem("variation", NOTHING, expected)])
@@ -407,7 +409,7 @@ def _scatter(case: Case, source: CaseSource, inputs: Sequence[DesignInput]) -> t
     varied = varied_inputs(source, variation)
     points = sobol_points(robust.samples, len(varied), variation.seed)
     correlation = correlation_matrix(varied, variation)
-    return (points if correlation is None else correlated(points, correlation)), variation
+    return points if correlation is None else correlated(points, correlation)
 
 
 def _without(written: Mapping[str, Any]) -> dict[str, Any]:
@@ -427,31 +429,15 @@ def _shown(one: DesignInput, value: object) -> str:
     return f"{amount / one.keys[0][1] / scale:.6g} {one.unit}".strip()
 
 
-def _wanted(case: Case, optimisation: Optimisation) -> Wanted:
-    """Return what is found of each design: as asked for, else what aims and limits name."""
-    analyses: tuple[str, ...]
-    if optimisation.analyses is not None:
-        analyses = optimisation.analyses
-    else:
-        names = [*optimisation.aim, *optimisation.limit]
-        found = {analysis_of(name) for name in names}
-        if None in found:
-            # Names that no analysis has are refused with those that there are.
-            found |= {"gears", "load"} if case.operation is not None and case.parts.is_loaded else {"gears"}
-        analyses = tuple(name for name in ANALYSES if name in found and (None not in found or _has(case, name)))
-    for name in analyses:
-        require(case, *NEEDS[name], command=f"optimise with quantities of {name!r}")
-    speeds = optimisation.speeds or (() if case.sweep is None else case.sweep.speeds)
-    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else ())
+def _with_analyses(optimisation: Optimisation) -> Optimisation:
+    """Return an optimisation with the analyses of the quantities that it names.
 
-
-def _has(case: Case, analysis: str) -> bool:
-    return all(getattr(case, table) for table in NEEDS[analysis])
-
-
-def _require_library(goals: Goals, settings: _Settings) -> None:
-    if settings.method == "search" and goals.count > 1:
-        require_pareto_library()
+    None are named where no analysis has one of them: it is refused with those that there are by default.
+    """
+    found = {analysis_of(name) for name in (*optimisation.aim, *optimisation.limit)}
+    if optimisation.analyses is not None or None in found or not found:
+        return optimisation
+    return optimisation.model_copy(update={"analyses": tuple(name for name in ANALYSES if name in found)})
 
 
 def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None:
@@ -479,14 +465,15 @@ def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:
     return senses
 
 
-def _verification(proposed: ProposedCase, optimised: Optimised, case: Case, progress: Progress) -> Verification | None:
-    """Solve the transient of the case and of the best design; None where there is no best one."""
-    best = optimised.best
-    if best is None or not case.rotor or case.operation is None:
+def _verification(proposed: ProposedCase, optimised: Optimised, progress: Progress) -> Verification | None:
+    """Solve the transient of the case and of the proposed designs; None without a design, or a steady transient."""
+    case = proposed.case(None)
+    proposals = [optimised.designs[number] for number in optimised.chosen]
+    if not proposals or case.operation is None or case.transient is None or case.transient.run is not None:
         return None
     loudest = [
         value / (30.0 / np.pi)
-        for design in (optimised.start, best)
+        for design in (optimised.start, *proposals)
         for name, (value, _) in design.sides.items()
         if name.endswith("loudest_speed_rpm")
     ]
@@ -501,8 +488,11 @@ def _verification(proposed: ProposedCase, optimised: Optimised, case: Case, prog
 
     progress(f"the transient of the start at {len(speeds)} speeds")
     start = motion(None)
-    progress(f"the transient of the best design at {len(speeds)} speeds")
-    return Verification(speeds, start, motion(_as_designed(best, proposed)))
+    found = list[Motion | Failure]()
+    for design, label in zip(proposals, optimised.chosen.values(), strict=True):
+        progress(f"the transient of the design {label!r} at {len(speeds)} speeds")
+        found.append(motion(_as_designed(design, proposed)))
+    return Verification(speeds, start, tuple(found))
 
 
 def _as_designed(design: Design, proposed: ProposedCase) -> FloatArray:

@@ -17,6 +17,7 @@ from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, requ
 from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.model import lacking
+from gearwhine.case.optimisation import Optimisation
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
@@ -38,7 +39,7 @@ from gearwhine.variation.statistics import VariedResult, require_known_limits
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-NEEDS = {
+_NEEDS = {
     "gears": ("gear_pair",),
     "load": ("rotor", "bearing", "operation"),
     "rotors": ("rotor",),
@@ -101,7 +102,7 @@ def solve_variation(
     wider = _wider(inputs, widen)
     seed = variation.seed if seed is None else seed
     points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
-    wanted = _wanted(case, variation)
+    wanted = wanted_of(case, variation)
     plain = replace(source, written={key: table for key, table in source.written.items() if key != "variation"})
     plain = replace(plain, changes=tuple(text for text in source.changes if not text.startswith("variation.")))
     varied = VariedCase(plain, inputs, wanted, wider=wider)
@@ -292,19 +293,19 @@ def _points(
     return of_wider.points, of_wider
 
 
-def _wanted(case: Case, variation: Variation) -> Wanted:
+def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "vary") -> Wanted:
     """Return what is found of each gearbox: as asked for, else what the case allows."""
     analyses: tuple[str, ...]
     if variation.analyses is not None:
         for name in variation.analyses:
-            require(case, *NEEDS[name], command=f"vary, analyses = ['{name}']")
+            require(case, *_NEEDS[name], command=f"{command}, analyses = ['{name}']")
         analyses = variation.analyses
     else:
         listens = case.housing is not None and bool(case.housing.sensor)
         listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
         allowed = {"gears": True, "load": case.parts.is_loaded, "lines": listens and case.parts.is_loaded}
         analyses = tuple(
-            name for name, held in allowed.items() if held and all(getattr(case, table) for table in NEEDS[name])
+            name for name, held in allowed.items() if held and all(getattr(case, table) for table in _NEEDS[name])
         )
         if not analyses and case.rotor:
             analyses = ("rotors",)

@@ -25,7 +25,7 @@ class DesignKey(Table):
     range: tuple[Amount, Amount] | None = None
     """Least and largest value."""
     values: Choices | None = None
-    """All values: quantities, numbers, numbers of teeth, words such as designations of bearings."""
+    """All values: quantities, numbers, numbers of teeth, words such as types of bearings."""
     levels: Annotated[int, Whole(2, 10_000)] = 5
     """Number of values of a `range`, its ends among them, that a grid takes."""
     along: dict[KeyPath, Choices] = Field(default={}, alias="with", max_length=100)
@@ -107,7 +107,7 @@ class Optimisation(Table):
     robust: Robust | None = None
     """Scatter about each design. Default: none."""
     verify: StrictBool = True
-    """Whether the transient of the start and of the best design is solved at the end."""
+    """Whether the transient of the start and of the proposed designs is solved at the end."""
 
     @property
     def speeds(self) -> tuple[float, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -67,7 +67,8 @@ def _values(optimised: Optimised, place: int) -> FloatArray:
 
 def _label(optimised: Optimised, place: int) -> str:
     name = optimised.goals.aims[place].name
-    return f"{part_of(name)}, {shown_quantity(name)[0]}"
+    of = name.rpartition(".")[0] if "*" in name else part_of(name)
+    return f"{of}, {shown_quantity(name)[0]}"
 
 
 def _set_label(axes: Axes, text: str, *, across: bool) -> None:
@@ -112,7 +113,7 @@ def _fronts(begins: str, optimised: Optimised) -> Figure:
     figure = sheet(
         HEAD + FOOT + len(pairs) * height + (len(pairs) - 1) * _GAP,
         "Pareto front",
-        f"{begins}blue: front, ring: chosen, grey: other designs, red: beyond the limits, cross: start.",
+        f"{begins}blue: front, ring: proposed, grey: others, red: beyond the limits, cross: start.",
     )
     within, beyond = _masks(optimised)
     front, chosen = optimised.front, [number for number in optimised.chosen if number in optimised.front]
@@ -122,7 +123,11 @@ def _fronts(begins: str, optimised: Optimised) -> Figure:
         axes.plot(across[beyond], up[beyond], ".", color=RED, ms=2.5, alpha=0.6)
         axes.plot(across[within], up[within], ".", color=GREY, ms=3.0)
         order = sorted(front, key=lambda number: across[number])
-        axes.plot(across[order], up[order], ".-" if len(pairs) == 1 else ".", color=BLUE, ms=5.0, lw=0.9)
+        axes.plot(across[order], up[order], ".", color=BLUE, ms=5.0)
+        if len(pairs) == 1:
+            # Between two designs of the front the worse one in the first aim stands for what is to be had.
+            where: Literal["post", "pre"] = "post" if optimised.goals.aims[first].sign > 0.0 else "pre"
+            axes.step(across[order], up[order], where=where, color=BLUE, lw=0.9)
         axes.plot(across[chosen], up[chosen], "o", mfc="none", color=INK, ms=7.0)
         factors = [shown_quantity(optimised.goals.aims[place].name)[1] for place in (first, second)]
         start = [factor * float(optimised.start.aims[p]) for factor, p in zip(factors, (first, second), strict=True)]

@@ -5,5 +5,5 @@
 * :mod:`~gearwhine.optimisation.goals`: aims and limits of quantities, with scatter or without.
 * :mod:`~gearwhine.optimisation.evaluations`: designs, their record, and the workers.
 * :mod:`~gearwhine.optimisation.optimised`: the best design, the Pareto front, bounds and limits that hold it back.
-* :mod:`~gearwhine.optimisation.verification`: the transient of the start and of the best.
+* :mod:`~gearwhine.optimisation.verification`: the transient of the start and of the proposed designs.
 """

@@ -111,8 +111,9 @@ class Evaluations:
         self, todo: Sequence[tuple[float, ...]], to_come: int
     ) -> Iterator[list[tuple[tuple[float, ...], Outcome]]]:
         for number, key in enumerate(todo):
-            is_long = self._scheduler is not None or self._each * to_come > _WORTH_WORKERS
-            if self._client is not None or (self._each and self._workers != 1 and is_long and len(todo) - number > 1):
+            is_worth = self._workers is not None or self._each * to_come > _WORTH_WORKERS
+            calls = self._scheduler is not None or (self._workers != 1 and is_worth)
+            if self._client is not None or (self._each and calls and len(todo) - number > 1):
                 yield from self._by_workers(todo[number:])
                 return
             begin = time.perf_counter()

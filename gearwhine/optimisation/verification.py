@@ -1,4 +1,4 @@
-"""Check of designs by the full machine: the transient of start and best, beside the lines of the linear machine.
+"""Check of designs by the full machine: transients of the start and the proposed, beside lines of the linear machine.
 
 An optimisation ranks by linear lines, by operating points or by gears alone. In the transient teeth part, runout and
 unbalance act, and the record holds every frequency up to where the housing's modes are complete.
@@ -51,28 +51,33 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """Start and best design by the full machine.
+    """Start and proposed designs by the full machine.
 
     Attributes
     ----------
     speeds : tuple of float
         Signed speeds [rad/s].
-    start, best : Motion or Failure
+    start : Motion or Failure
+    designs : tuple of Motion or Failure
+        The proposed designs, in the order of :attr:`gearwhine.optimisation.optimised.Optimised.chosen`.
     """
 
     speeds: tuple[float, ...]
     start: Motion | Failure
-    best: Motion | Failure
+    designs: tuple[Motion | Failure, ...]
 
     @property
     def contradicted(self) -> list[str]:
-        """Sensors at which linear machine and transient disagree on whether the best is quieter than the start."""
-        if isinstance(self.start, Failure) or isinstance(self.best, Failure):
+        """Sensors at which linear machine and transient disagree on whether a design is quieter than the start."""
+        return list(dict.fromkeys(sensor for one in self.designs for sensor in self._contradicted(one)))
+
+    def _contradicted(self, design: Motion | Failure) -> list[str]:
+        if isinstance(self.start, Failure) or isinstance(design, Failure):
             return []
         changes = {
-            sensor: (self.best.linear[sensor] - self.start.linear[sensor], self.best.motion[sensor] - level)
+            sensor: (design.linear[sensor] - self.start.linear[sensor], design.motion[sensor] - level)
             for sensor, level in self.start.motion.items()
-            if sensor in self.best.linear and sensor in self.start.linear
+            if sensor in design.linear and sensor in self.start.linear
         }
         return [
             sensor

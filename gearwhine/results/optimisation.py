@@ -1,6 +1,6 @@
 """Optimised designs: the best beside the start by keys, aims and limits, the Pareto front, and the check in motion."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -97,6 +97,11 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
     return document | {"warnings": list(_warnings(optimised))}
 
 
+def _of(name: str) -> str:
+    """Return what a quantity is of; of several ones as they are named."""
+    return name.rpartition(".")[0] if "*" in name else part_of(name)
+
+
 def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
@@ -114,7 +119,7 @@ def _missed(limit: "LimitEnd", value: float) -> dict[str, Any]:
     name, factor = shown_quantity(limit.name)
     word = "at most" if limit.sign > 0.0 else "at least"
     by = limit.sign * (value - limit.end)
-    text = f"{part_of(limit.name)}, {name}: {factor * value:.4g}, {word} {factor * limit.end:.4g} is asked for"
+    text = f"{_of(limit.name)}, {name}: {factor * value:.4g}, {word} {factor * limit.end:.4g} is asked for"
     return {
         "name": limit.name,
         "limit": limit.key,
@@ -128,7 +133,7 @@ def _verification(checked: "Verification") -> dict[str, Any]:
     return {
         "speeds_rpm": [_RPM * abs(speed) for speed in checked.speeds],
         "start": _motion(checked.start),
-        "best": _motion(checked.best),
+        "designs": [_motion(one) for one in checked.designs],
         "contradicted": checked.contradicted,
     }
 
@@ -260,11 +265,17 @@ def _content(document: Document) -> Iterator[str | Table]:
         *_designs(labels, _text),
     )
     named = (
-        Column("of", lambda row: part_of(row["name"])),
+        Column("of", lambda row: _of(row["name"])),
         Column("quantity", lambda row: shown_quantity(row["name"])[0]),
     )
     yield from table_of(
-        (*named, Column("aim", "sense"), Column("weight", "weight"), *shown, Column("change", _change)),
+        (
+            *named,
+            Column("aim", "sense"),
+            Column("weight", "weight"),
+            *shown,
+            Column(f"change to {labels[0]}" if len(labels) > 1 else "change", _change),
+        ),
         document["aims"],
         "Aims",
     )
@@ -272,7 +283,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         (*named, Column("limit", _limit), *shown, Column("margin", _margin)), document["limits"], "Limits"
     )
     yield from _front(document)
-    yield from _checked(document.get("verification"))
+    yield from _checked(document)
     yield from _sentences(document)
 
 
@@ -320,57 +331,50 @@ def _front(document: Document) -> Iterator[Table]:
 
     columns = [Column("design", "number", "d")]
     for place, one in enumerate(aims):
-        columns.append(Column(f"{part_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
+        columns.append(Column(f"{_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
     columns += [Column(one["key"], lambda row, place=place: row["keys"][place]) for place, one in enumerate(keys)]  # type: ignore[misc]
     part = f", {len(places)} of {len(front)} designs" if len(places) < len(front) else ""
     yield from table_of(tuple(columns), [front[place] for place in places], f"Pareto front{part}")
 
 
-def _checked(checked: Document | None) -> Iterator[str | Table]:
-    """Yield start and best by the transient."""
+def _checked(document: Document) -> Iterator[str | Table]:
+    """Yield start and proposed designs by the transient."""
+    checked = document.get("verification")
     if checked is None:
         return
-    for which in ("start", "best"):
-        if "failure" in checked[which]:
-            yield f"The transient of the {which} cannot be solved: {checked[which]['failure']}"
-    start, best = checked["start"], checked["best"]
-    if "failure" in start or "failure" in best:
-        return
-    speeds = ", ".join(f"{speed:.5g}" for speed in checked["speeds_rpm"])
+    labels = ["start", *(one["design"] for one in document["chosen"])]
+    motions = dict(zip(labels, (checked["start"], *checked["designs"]), strict=True))
+    for label, motion in motions.items():
+        if "failure" in motion:
+            yield f"The transient of the design {label!r} cannot be solved: {motion['failure']}"
+    solved = {label: motion for label, motion in motions.items() if "failure" not in motion}
     rows = [
         {
-            "of": f"sensor {sensor}",
-            "quantity": "highest level [dB re 1 µm/s²]",
-            "linear start": _level(start["linear_level_db"].get(sensor)),
-            "linear best": _level(best["linear_level_db"].get(sensor)),
-            "start": _level(level),
-            "best": _level(best["motion_level_db"].get(sensor)),
+            "of": f"{kind}{of}",
+            "quantity": name,
+            **{label: _as_text(one[key].get(of), form) for label, one in solved.items()},
         }
-        for sensor, level in start["motion_level_db"].items()
+        for key, kind, name, form in _MOTION_ROWS
+        for of in dict.fromkeys(of for one in solved.values() for of in one[key])
     ]
-    for key, name, form in (
-        ("peak_force_ratio", "largest tooth force / mean", ".3f"),
-        ("contact_loss", "part of the time apart", ".3f"),
-    ):
-        rows += [
-            {"of": pair, "quantity": name, "start": _as_text(value, form), "best": _as_text(best[key].get(pair), form)}
-            for pair, value in start[key].items()
-        ]
-    columns = (
-        Column("of", "of"),
-        Column("quantity", "quantity"),
-        Column("start, mesh harmonics", "linear start"),
-        Column("best, mesh harmonics", "linear best"),
-        Column("start, transient", "start"),
-        Column("best, transient", "best"),
-    )
-    yield from table_of(columns, rows, f"Start and best design by the full machine at {speeds} rpm")
-    if rows and not checked["contradicted"] and start["linear_level_db"]:
+    columns = (Column("of", "of"), Column("quantity", "quantity"), *(Column(label, _cell(label)) for label in solved))
+    speeds = ", ".join(f"{speed:.5g}" for speed in checked["speeds_rpm"])
+    yield from table_of(columns, rows, f"Start and proposed designs by the full machine at {speeds} rpm")
+    if len(solved) == len(motions) and checked["start"]["linear_level_db"] and not checked["contradicted"]:
         yield "The transient confirms the ranking by the linear machine."
 
 
-def _level(value: float | None) -> str:
-    return _as_text(value, ".1f")
+_MOTION_ROWS = (
+    ("linear_level_db", "sensor ", "mesh harmonics, linear [dB re 1 µm/s²]", ".1f"),
+    ("motion_level_db", "sensor ", "transient [dB re 1 µm/s²]", ".1f"),
+    ("peak_force_ratio", "", "largest tooth force / mean", ".3f"),
+    ("contact_loss", "", "part of the time apart", ".3f"),
+)
+"""Key of a motion in the document, the kind of what it is of, its name and form."""
+
+
+def _cell(label: str) -> Callable[[Document], str]:
+    return lambda row: row[label]
 
 
 def _as_text(value: float | None, form: str) -> str:
@@ -393,8 +397,3 @@ def _sentences(document: Document) -> Iterator[str]:
     within = f", {document['within_limits']} within all limits" if document["limits"] else ""
     tried = f"{document['designs']} designs{scatter}{within}, by {document['method']}"
     yield f"{tried}: {_ENDED[document['ended']]}{resumed}"
-
-
-def missed_limits(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Return the limits that no design meets together, as the nearest one misses them."""
-    return list(document.get("missed", ()))

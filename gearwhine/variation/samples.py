@@ -131,23 +131,15 @@ class VariedCase:
 
     def machine(self, case: Case) -> Machine:
         """Return the machine of a case of the study, in its housing."""
-        return describe_machine(
-            case, self._housing_of(case) or reduced_component(case.reduced_housing, case.input_files)
-        )
-
-    def _housing_of(self, case: Case) -> HousingComponent | None:
-        """Return the solved housing of a case; None where it has no mesh."""
-        if case.housing is None:
-            return self.housing
+        housing = self.housing
         # Places of bearings and materials belong to the housing, too.
-        key = housing_key(given_housing(case, "vary"))
-        if key == self.housing_key:
-            return self.housing
-        if key not in self.housings:
-            if len(self.housings) >= _KEPT_HOUSINGS:
-                self.housings.pop(next(iter(self.housings)))
-            self.housings[key] = reduce_housing(case, solve_housing(case, command="vary"))
-        return self.housings[key]
+        if case.housing is not None and (key := housing_key(given_housing(case, "vary"))) != self.housing_key:
+            if key not in self.housings:
+                if len(self.housings) >= _KEPT_HOUSINGS:
+                    self.housings.pop(next(iter(self.housings)))
+                self.housings[key] = reduce_housing(case, solve_housing(case, command="vary"))
+            housing = self.housings[key]
+        return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
 
     @cached_property
     def key(self) -> str:

@@ -57,7 +57,7 @@ LIMIT = '"bearing.left.force_n" = { at_least = 1000 }'
 KEYS = ("operation.force[0].x", "operation.force[1].x")
 SCATTER = """
 [optimisation.robust]
-samples = 64
+samples = 8
 deviations = 2
 [variation.vary]
 "operation.force[1].x" = { normal = ["500 N", "50 N"] }
@@ -106,17 +106,17 @@ def test_the_optimum_of_two_forces_is_the_corner_of_bound_and_limit(tmp_path: Pa
 def test_a_robust_optimum_keeps_two_standard_deviations_from_the_limit(tmp_path: Path) -> None:
     """F2 scatters with 50 N about its designed value: the left force by 10 N, the right one by 40 N."""
     found = _optimised(tmp_path, SHAFT + SCATTER)
-    deviation = float(np.std(Normal(0.0, 50.0).quantile(_points(64, 1)[:, 0]), ddof=1))
-    mean = float(np.mean(Normal(0.0, 50.0).quantile(_points(64, 1)[:, 0])))
-    assert deviation == pytest.approx(50.0, rel=0.05)
+    deviation = float(np.std(Normal(0.0, 50.0).quantile(_points(8, 1)[:, 0]), ddof=1))
+    mean = float(np.mean(Normal(0.0, 50.0).quantile(_points(8, 1)[:, 0])))
+    assert deviation == pytest.approx(50.0, rel=0.3)
     # 0.8 · 1200 + 0.2 (F2 + mean) - 2 · 0.2 deviation = 1000.
     second = (1000.0 - 960.0 + 0.4 * deviation) / 0.2 - mean
     assert _forces(found) == pytest.approx([1200.0, second], rel=3e-3)
     (aim,) = found.document["aims"]
     right = 240.0 + 0.8 * (second + mean)
     assert aim["designs"][0] == pytest.approx(right + 2.0 * 0.8 * deviation, rel=3e-3)
-    assert found.document["gearboxes_about_each"] == 64
-    assert len(_lines(tmp_path / "out")) == 64 * (found.document["designs"] + 1)
+    assert found.document["gearboxes_about_each"] == 8
+    assert len(_lines(tmp_path / "out")) == 8 * (found.document["designs"] + 1)
 
 
 def _points(count: int, dimension: int) -> np.ndarray:
@@ -133,7 +133,7 @@ def test_a_quantile_takes_the_side_that_is_worse(tmp_path: Path) -> None:
     text = (SHAFT + SCATTER).replace("deviations = 2", "quantile = 0.9")
     text = text.replace('normal = ["500 N", "50 N"]', 'uniform = ["400 N", "600 N"]')
     found = _optimised(tmp_path, text, evaluations=40)
-    drawn = -100.0 + 200.0 * _points(64, 1)[:, 0]
+    drawn = -100.0 + 200.0 * _points(8, 1)[:, 0]
     # Nine in ten have a left force above the limit, and a right one below the aim.
     low, high = np.quantile(drawn, [0.1, 0.9])
     second = 200.0 - low
@@ -146,7 +146,7 @@ def test_a_designed_key_scatters_about_its_designed_value(tmp_path: Path) -> Non
     scatter = SCATTER.replace("deviations = 2", "deviations = 3").replace(KEYS[1], KEYS[0])
     text = (SHAFT + scatter).replace('["500 N", "50 N"]', '["0.9 kN", "20 N"]')
     found = _optimised(tmp_path, text, evaluations=20)
-    drawn = Normal(0.0, 20.0).quantile(_points(64, 1)[:, 0])
+    drawn = Normal(0.0, 20.0).quantile(_points(8, 1)[:, 0])
     forces = found.dataset["input_value"].values
     mean = forces @ [0.8, 0.2] + 0.8 * drawn.mean()
     reach = 3.0 * 0.8 * drawn.std(ddof=1)
@@ -167,7 +167,7 @@ def test_a_tolerance_zone_lies_about_the_designed_length(tmp_path: Path) -> None
     """k6 of ISO 286-2 is 2 to 15 µm above 20 and 30 mm: the mass ρ π d² l / 4 tells the diameters that were drawn."""
     key = "rotor.shaft.segments[0].diameter"
     text = SHAFT[: SHAFT.index("[optimisation]")] + (
-        "[optimisation]\n[optimisation.robust]\nsamples = 32\nquantile = 0.9\n"
+        "[optimisation]\n[optimisation.robust]\nsamples = 8\nquantile = 0.9\n"
         f'[optimisation.design]\n"{key}" = {{ values = ["30 mm", "20 mm"] }}\n'
         '[optimisation.aim]\n"rotor.shaft.mass_kg" = { sense = "least" }\n'
         f'[variation.vary]\n"{key}" = {{ fit = "k6" }}\n'
@@ -177,7 +177,7 @@ def test_a_tolerance_zone_lies_about_the_designed_length(tmp_path: Path) -> None
     deviations = np.sqrt(4.0 * masses / (np.pi * 7850.0 * 0.5)) - np.array([[0.030], [0.020]])
     assert np.all(deviations > 2e-6)
     assert np.all(deviations < 15e-6)
-    assert deviations.mean(axis=1) == pytest.approx(8.5e-6, abs=1e-6)
+    assert deviations.mean(axis=1) == pytest.approx(8.5e-6, abs=1.5e-6)
     assert np.all(np.diff(deviations, axis=1) > 2e-6)
     assert found.document["keys"][0]["designs"] == ["20 mm"]
 
@@ -206,7 +206,7 @@ def test_two_aims_have_the_front_of_the_closed_form(tmp_path: Path) -> None:
     """The most on the left at the least on the right: F2 at its least and any F1, or F1 at its largest and any F2."""
     pytest.importorskip("pymoo")
     text = SHAFT.replace(LIMIT, "").replace("[optimisation.limit]", f'"{LEFT}" = {{ sense = "most" }}')
-    found = _optimised(tmp_path, text, evaluations=160)
+    found = _optimised(tmp_path, text, evaluations=120)
     front = np.array([row["aims"] for row in found.document["front"]])
     right, left = front.T
     exact = np.where(right < 0.2 * 1200.0 + 80.0, 4.0 * (right - 80.0) + 20.0, 960.0 + 0.25 * (right - 240.0))
@@ -238,6 +238,20 @@ def test_a_grid_is_every_combination_and_the_search_is_no_worse_than_its_best(tm
     assert found.document["ended"] == "complete"
     searched = _optimised(tmp_path, text, evaluations=len(expected) * 2)
     assert searched.document["aims"][0]["designs"][0] < found.document["aims"][0]["designs"][0]
+
+
+def test_an_aim_of_several_quantities_is_that_of_the_worst(tmp_path: Path) -> None:
+    text = SHAFT.replace('"bearing.right.force_n" = { sense', '"bearing.*.force_n" = { sense').replace(
+        LIMIT, '"bearing.left.force_n" = { at_least = 700 }'
+    )
+    found = _optimised(tmp_path, text, method="grid")
+    forces = found.dataset["input_value"].values
+    larger = np.maximum(forces @ [0.8, 0.2], forces @ [0.2, 0.8])
+    assert found.dataset["aim_value"].values[:, 0] == pytest.approx(larger, rel=1e-9)
+    most = _optimised(tmp_path, text.replace('"least"', '"most"'), method="grid")
+    smaller = np.minimum(forces @ [0.8, 0.2], forces @ [0.2, 0.8])
+    assert most.dataset["aim_value"].values[:, 0] == pytest.approx(smaller, rel=1e-9)
+    assert most.document["aims"][0]["designs"][0] == pytest.approx(smaller.max(), rel=1e-9)
 
 
 def test_an_interrupted_search_goes_on_with_the_designs_on_file(tmp_path: Path) -> None:
@@ -439,6 +453,7 @@ speed = ["2500 rpm", "5500 rpm"]
 """.replace("\\\n", "")
 
 
+@pytest.mark.slow
 def test_designs_of_walls_and_gears_equal_the_single_calculations_and_the_transient_is_that_of_simulate(
     tmp_path: Path,
 ) -> None:
@@ -467,6 +482,8 @@ def test_designs_of_walls_and_gears_equal_the_single_calculations_and_the_transi
     single = study.changed(last)
     housing = single.modes().document
     assert float(levels.sel(quantity="housing.mass_kg")[7]) == pytest.approx(housing["mass_kg"], rel=1e-9)
+    masses = [housing["mass_kg"], *(row["mass_kg"] for row in single.rotors().document["rotors"])]
+    assert float(levels.sel(quantity="machine.mass_kg")[7]) == pytest.approx(sum(masses), rel=1e-9)
     for sensor in ("top", "right wall"):
         at_speeds = []
         for speed in (2500, 5500):
