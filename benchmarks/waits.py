@@ -95,7 +95,7 @@ def recorded(*, quiet):
 
 shown_progress.shown = recorded
 signal.signal(signal.SIGALRM, hear)
-signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)
+signal.setitimer(signal.ITIMER_REAL, 0.2, 0.2)
 from gearwhine.cli import run_command
 
 if profiled:

@@ -3,6 +3,7 @@
 import gc
 import os
 import sys
+from contextlib import suppress
 
 _BLAS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -18,8 +19,16 @@ def main() -> None:
     # of a short run would go into looking for those that do not.
     gc.set_threshold(20_000, 20, 20)
     from gearwhine.cli import run_command
+    from gearwhine.interruption import INTERRUPTED
 
-    sys.exit(run_command(sys.argv[1:], is_process=True))
+    code = run_command(sys.argv[1:], is_process=True)
+    if code == INTERRUPTED:
+        # Python would wait for threads that are in compiled code, such as one that finds an ordering.
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(code)
+    sys.exit(code)
 
 
 if __name__ == "__main__":

@@ -3,16 +3,21 @@
 Python runs a signal's handler between two steps of the main thread. Compiled code, such as a factorisation, a product
 of large matrices or the compiler of the kernels, may last for a minute without one. A command therefore has a thread
 that the system itself wakes at a signal (:func:`ended_when_deaf`): where the exception has not unwound the command
-within two seconds, that thread clears away what is half-written and ends the process.
+within two seconds, that thread clears away what is half-written and ends the process. Where that code keeps threads
+from running, too, a small process beside does that.
 """
 
 import multiprocessing
 import os
+import select
+import shutil
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from queue import SimpleQueue
 from types import FrameType
 from typing import TypeVar
@@ -26,6 +31,9 @@ INTERRUPTED = 130
 
 _PATIENCE = 2.0
 """Time in which an interruption is to unwind a command, before its process is ended [s]."""
+
+_GUARDS_PATIENCE = 2.5
+"""Time after which a guard kills the process [s]."""
 
 _AGAIN = 0.05
 """Delay after which a deferred interruption is raised again [s]."""
@@ -62,18 +70,33 @@ def ended_when_deaf(say: Callable[[list[str]], None]) -> Iterator[None]:
     """End the process with exit code 130 where an interruption does not unwind this block within two seconds.
 
     Whatever :func:`cleared_at_the_end` names is cleared away first, and further processes are killed. For a command
-    that is a process of its own: the code that the main thread is in never returns.
+    that is a process of its own: the code that the main thread is in never returns. Where that code keeps even other
+    threads from running, as a factorisation does, a guard, which is forked here, removes the folders named and kills
+    the process.
 
     Parameters
     ----------
     say : callable
         Says that the command was interrupted; called with the notes of what was cleared away.
     """
-    heard, wake = os.pipe()
+    global _told
+    heard, wake = os.pipe()  # from the system's handler to the guard
+    relayed, relay = os.pipe()  # from the guard to the thread
+    told, _told = os.pipe()  # from the command to the guard
+    guard = os.fork()
+    if guard == 0:
+        for end in (wake, relayed, _told):
+            os.close(end)
+        try:
+            _guard(os.getppid(), heard, relay, told, say)
+        finally:
+            os._exit(0)
+    for end in (heard, relay, told):
+        os.close(end)
     os.set_blocking(wake, False)
     before = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
     left = threading.Event()
-    watch = threading.Thread(target=_end_when_deaf, args=(heard, left, say), name="interruption", daemon=True)
+    watch = threading.Thread(target=_end_when_deaf, args=(relayed, left, say), name="interruption", daemon=True)
     watch.start()
     try:
         yield
@@ -81,15 +104,16 @@ def ended_when_deaf(say: Callable[[list[str]], None]) -> Iterator[None]:
         left.set()
         signal.set_wakeup_fd(before)
         os.close(wake)
+        os.close(_told)
+        _told = None
+        os.waitpid(guard, 0)
         watch.join()
-        os.close(heard)
+        os.close(relayed)
 
 
-def _end_when_deaf(heard: int, left: threading.Event, say: Callable[[list[str]], None]) -> None:
-    while numbers := os.read(heard, 1):
-        if numbers[0] not in _NUMBERS:
-            continue
-        if not left.wait(_PATIENCE):
+def _end_when_deaf(relayed: int, left: threading.Event, say: Callable[[list[str]], None]) -> None:
+    while number := os.read(relayed, 1):
+        if number[0] in _NUMBERS and not left.wait(_PATIENCE):
             notes = []
             for clear in reversed(_clearances):
                 with suppress(Exception):
@@ -100,11 +124,44 @@ def _end_when_deaf(heard: int, left: threading.Event, say: Callable[[list[str]],
             os._exit(INTERRUPTED)
 
 
+def _guard(command: int, heard: int, relay: int, told: int, say: Callable[[list[str]], None]) -> None:
+    """Relay signals to the thread, and kill the command where that does not end it; until the command ends."""
+    for number in _NUMBERS:
+        signal.signal(number, signal.SIG_IGN)
+    texts, limit = b"", None
+    while True:
+        wait = None if limit is None else max(limit - time.monotonic(), 0.0)
+        ready = select.select([heard, told], [], [], wait)[0]
+        if told in ready:
+            if not (text := os.read(told, 4096)):
+                return
+            texts += text
+        if heard in ready and (number := os.read(heard, 1)):
+            os.write(relay, number)
+            if number[0] in _NUMBERS and limit is None:
+                limit = time.monotonic() + _GUARDS_PATIENCE
+        if not ready:
+            os.kill(command, signal.SIGKILL)
+            folders: dict[str, None] = {}
+            for line in texts.decode().splitlines():
+                folders[line[1:]] = None
+                if line[0] == "-":
+                    del folders[line[1:]]
+            for folder in folders:
+                shutil.rmtree(folder, ignore_errors=True)
+                with suppress(OSError):  # of other results
+                    Path(folder).parent.rmdir()
+            say([])
+            return
+
+
 _clearances: list[Callable[[], str | None]] = []
+_told: int | None = None
+"""Pipe to the guard of this process, which takes folders in lines, with + as they come and - as they go."""
 
 
 @contextmanager
-def cleared_at_the_end(clear: Callable[[], str | None]) -> Iterator[None]:
+def cleared_at_the_end(clear: Callable[[], str | None], folder: Path | None = None) -> Iterator[None]:
     """Call a function where the process is ended within this block; the block itself clears away in all other cases.
 
     Parameters
@@ -112,12 +169,23 @@ def cleared_at_the_end(clear: Callable[[], str | None]) -> Iterator[None]:
     clear : callable
         Clears away what is half-written, or ends a process; called without arguments from another thread. The text that
         it returns is said to the user.
+    folder : Path, optional
+        Folder of half-written files, which goes where no thread of the process can run. Where its parent is empty then,
+        it goes, too.
     """
     _clearances.append(clear)
+    _tell_guard("+", folder)
     try:
         yield
     finally:
         _clearances.remove(clear)
+        _tell_guard("-", folder)
+
+
+def _tell_guard(sign: str, folder: Path | None) -> None:
+    if _told is not None and folder is not None:
+        with suppress(OSError):  # the guard was killed
+            os.write(_told, f"{sign}{folder.absolute()}\n".encode())
 
 
 @contextmanager

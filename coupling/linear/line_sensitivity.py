@@ -36,7 +36,7 @@ of the teeth, and all that is not linear about the mean mesh: contact loss and t
 times the motion.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -237,18 +237,25 @@ class LineModel(MeshHarmonicModel):
 
     def stepped_bearing_stiffness(self, line: Line, bearing: str, part: float) -> float:
         """Change of the output by a factor 1 + part on a bearing's tangent, the response solved anew."""
-        law = self._connector(bearing)
-        change = part * self._with_damping(line, bearing) * (law.directions @ law.stiffness @ law.directions.T)
-        return self._solved_anew(line, self._dynamic(line.frequency) + change)
+
+        def dynamic() -> ComplexArray:
+            law = self._connector(bearing)
+            change = part * self._with_damping(line, bearing) * (law.directions @ law.stiffness @ law.directions.T)
+            return self._dynamic(line.frequency) + change
+
+        return self._solved_anew(line, ("bearing stiffness", bearing, part), dynamic)
 
     def stepped_bearing_position(self, line: Line, bearing: str, step: float) -> float:
         """Change of the output as a bearing moves along its shaft, the response solved anew."""
         law, load = self._connector(bearing), self.point.bearing(bearing)
-        inner = law.stiffness + 1j * line.frequency * law.damping
-        moved = law.directions + step * self._bearing_slope(load)[list(law.axes)].T
-        change = moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+
+        def dynamic() -> ComplexArray:
+            inner = law.stiffness + 1j * line.frequency * law.damping
+            moved = law.directions + step * self._bearing_slope(load)[list(law.axes)].T
+            return self._dynamic(line.frequency) + moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+
         by_tangent = self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load)
-        return self._solved_anew(line, self._dynamic(line.frequency) + change) + step * float(by_tangent)
+        return self._solved_anew(line, ("bearing position", bearing, step), dynamic) + step * float(by_tangent)
 
     def stepped_housing(self, line: Line, rates: HousingRates, number: int, step: float) -> float:
         """Change of the output by a step of a parameter of the housing, the response solved anew.
@@ -256,17 +263,21 @@ class LineModel(MeshHarmonicModel):
         Matrices and ports change to first order, so that resonances move with them.
         """
         coordinates, w = self.housing, line.frequency
-        dynamic = self._dynamic(w)
-        change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
-        dynamic[coordinates, coordinates] += step * change
-        for name, rows in rates.bearings[number].items():
-            law = self._connector(name)
-            moved = law.directions.copy()
-            moved[coordinates] -= step * rows[list(law.axes)].T
-            inner = law.stiffness + 1j * w * law.damping
-            dynamic += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
-        moved_output = line.output.moved(rates, number, step)
-        return self._solved_anew(line, dynamic, moved_output) + step * self._by_seats(line, rates, number)
+
+        def dynamic() -> ComplexArray:
+            total = self._dynamic(w)
+            change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
+            total[coordinates, coordinates] += step * change
+            for name, rows in rates.bearings[number].items():
+                law = self._connector(name)
+                moved = law.directions.copy()
+                moved[coordinates] -= step * rows[list(law.axes)].T
+                inner = law.stiffness + 1j * w * law.damping
+                total += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+            return total
+
+        change = self._solved_anew(line, (rates, number, step), dynamic, line.output.moved(rates, number, step))
+        return change + step * self._by_seats(line, rates, number)
 
     def _by_seats(self, line: Line, rates: HousingRates, number: int) -> float:
         """Differentiate the output by the seats' motions in the static field, through the bearings' tangents."""
@@ -275,10 +286,30 @@ class LineModel(MeshHarmonicModel):
             float(self._by_bearing_deflection(line, name) @ moved) for name, moved in rates.static[number].items()
         )
 
-    def _solved_anew(self, line: Line, dynamic: ComplexArray, output: LineOutput | None = None) -> float:
-        """Change of the output with another dynamic stiffness."""
-        motion = linalg.solve(dynamic, self._load(line.causes))
-        return (output or line.output).value(line.frequency, motion) - line.value
+    def _solved_anew(
+        self, line: Line, change: Hashable, dynamic: Callable[[], ComplexArray], output: LineOutput | None = None
+    ) -> float:
+        """Change of the output with another dynamic stiffness, whose motion all lines of a frequency share.
+
+        Parameters
+        ----------
+        line : Line
+        change : hashable
+            What changes, and by how much.
+        dynamic : callable
+            Returns the dynamic stiffness with the change, shape (n, n).
+        output : LineOutput, optional
+            Output with the change, where that moves it.
+        """
+        key = (line.frequency, line.causes, change)
+        if key not in self._motions:
+            self._motions[key] = linalg.solve(dynamic(), self._load(line.causes))
+        return (output or line.output).value(line.frequency, self._motions[key]) - line.value
+
+    @cached_property
+    def _motions(self) -> dict[Hashable, ComplexArray]:
+        """Motions with a change, shape (n,), by frequency and change."""
+        return {}
 
     @cached_property
     def housing(self) -> slice:

@@ -202,8 +202,8 @@ def gears_result(
         )
         add_warnings(document, [warning("rigid seats", message)])
     # All pairs aim at the sensors of one machine.
-    aims = [pair.aim for pair in pairs if isinstance(pair.aim, SensorLevel)]
-    add_warnings(document, aims[0].warnings if aims else ())
+    levels = [pair.aim for pair in pairs if isinstance(pair.aim, SensorLevel)]
+    add_warnings(document, levels[0].warnings if levels else ())
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures import draw_gear_pairs

@@ -179,7 +179,7 @@ def staging(folder: Path, settle: Callable[[Path], None] | None = None, *, liste
                     shutil.rmtree(stale, ignore_errors=True)
             place = Path(tempfile.mkdtemp(prefix=_STAGING, dir=folder))
             stack.enter_context(held_lock(place))
-        stack.enter_context(cleared_at_the_end(partial(_clear_stage, place, folder if is_new else None)))
+        stack.enter_context(cleared_at_the_end(partial(_clear_stage, place, folder if is_new else None), place))
         try:
             yield place
             with exclusive_lock(folder), uninterrupted():

@@ -306,8 +306,13 @@ def optimal_tip_relief(
         return worst(float(x[0]) * deepest, float(x[1]) * longest)
 
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
-    settled = {"xatol": _SETTLED_PLACE, "fatol": _SETTLED_VALUE * float(grid.min()), "maxfev": _MOST_REFINED}
-    optimum = minimize(scaled, start, method="Nelder-Mead", options=settled)
+    settled = _SETTLED_VALUE * float(grid.min())
+    optimum = minimize(
+        scaled,
+        start,
+        method="Nelder-Mead",
+        options={"xatol": _SETTLED_PLACE, "fatol": settled, "maxfev": _MOST_REFINED},
+    )
     relief: TipRelief | None = TipRelief(
         float(optimum.x[0] * deepest), length=float(optimum.x[1] * longest), shape=shape
     )

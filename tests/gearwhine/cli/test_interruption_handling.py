@@ -160,23 +160,28 @@ def work(*_, **__):
     kept, empty = stored_record(Path("kept"), 16 * "a"), stored_record(Path("empty"), 16 * "b")
     with kept as blocks, empty, one_process() as drawing:
         blocks.append({"time": np.arange(3.0)})
-        child = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        piped, line = subprocess.PIPE, [sys.executable, "-c", "input()"]
+        child = subprocess.Popen(line, stdin=piped, stdout=piped, stderr=subprocess.DEVNULL)
         drawing._running = _Running(child, child.stdin, child.stdout, child.stdin)
         with staging(Path("new")) as place:
             (place / "half.json").write_text("{")
             print(child.pid, flush=True)
-            hashlib.pbkdf2_hmac("sha256", b"deaf", b"deaf", 2_000_000_000)
+            WORK
 
 command_line.app = work
 sys.exit(command_line.run_command([], is_process=True))
 """
 
 
+LETS_THREADS_RUN = 'hashlib.pbkdf2_hmac("sha256", b"deaf", b"deaf", 2_000_000_000)'
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_compiled_code_that_takes_no_signal_is_ended(tmp_path: Path, how: signal.Signals) -> None:
     """Nothing half-written stays, blocks of a motion do, and no process goes on."""
+    deaf = DEAF.replace("WORK", LETS_THREADS_RUN)
     process = subprocess.Popen(
-        [sys.executable, "-c", DEAF], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", deaf], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     child = Path("/proc", process.stdout.readline().strip())
@@ -194,6 +199,23 @@ def test_compiled_code_that_takes_no_signal_is_ended(tmp_path: Path, how: signal
     while child.exists() and child.joinpath("stat").read_text(encoding="utf-8").split()[2] != "Z":
         assert time.monotonic() < limit, "the child lives on"
         time.sleep(0.05)
+
+
+def test_compiled_code_that_lets_no_thread_run_is_killed(tmp_path: Path) -> None:
+    """A sum in one call takes hours, in which no thread runs."""
+    deaf = DEAF.replace("WORK", "sum(range(10**13))")
+    process = subprocess.Popen(
+        [sys.executable, "-c", deaf], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(0.5)  # until the compiled code is at work
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60.0)
+    assert process.returncode == -signal.SIGKILL
+    assert errors == "gearwhine: interrupted; the output folder holds no half-written file\n"
+    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["block-00000000.npz"]
+    assert not (tmp_path / "new").exists()
 
 
 def test_an_interruption_that_unwinds_in_time_ends_nothing(
