@@ -51,7 +51,7 @@ def test_equal_planets_keep_every_third_line_by_their_phases() -> None:
         order = harmonic * RING + carrier_turns(line)
         assert line.is_suppressed == (order % 3 != 0)
         assert line.phasing == pytest.approx(0.0 if line.is_suppressed else 1.0, abs=1e-10)
-        assert line.kind == ("carrier sideband" if line.is_suppressed else "planet pass")
+        assert line.kind == ("sideband" if line.is_suppressed else "planet pass")
 
 
 def test_planets_at_unequal_angles_suppress_no_line() -> None:
@@ -65,7 +65,7 @@ def test_planets_at_unequal_angles_suppress_no_line() -> None:
         assert line.frequency == pytest.approx(at, rel=1e-12)
         off = carrier_turns(line)
         assert line.cause(machine).endswith(f" {'+' if off > 0 else '-'} {abs(off)}× carrier")
-        assert line.kind == "carrier sideband"
+        assert line.kind == "sideband"
         assert line.ideal_phasing is None
 
 

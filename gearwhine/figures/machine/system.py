@@ -61,7 +61,7 @@ KIND_COLORS = {
     "pedestal": SERIES[7],
     "residual": "#c9ced3",
 }
-LINE_COLORS = {"mesh harmonic": INK, "planet pass": BLUE, "carrier sideband": RED}
+LINE_COLORS = {"mesh harmonic": INK, "planet pass": BLUE, "sideband": RED}
 """Colours of lines by their place beside a mesh harmonic."""
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # height of the panel [mm]
