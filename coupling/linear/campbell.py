@@ -13,6 +13,10 @@ other, modes that veer change their shapes little by little, and those that cros
 
 The crossing of an excitation order with a coupled mode (critical speed) is refined between two speeds of a branch to
 ten digits.
+
+Where directions turn with planet carriers, branches and crossings are those of frozen carriers. Beside them stand, at
+some of the speeds, the Floquet exponents of the machine as it turns
+(:mod:`gearwhine.coupling.linear.floquet_exponents`), and the frequencies at which fixed sensors see their motions.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,7 +30,9 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.eigenpairs import refine_pair
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
+from gearwhine.coupling.linear.floquet_exponents import floquet_exponents, observed_frequencies
 from gearwhine.coupling.linear.frozen_directions import frozen_warnings
+from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.numerics.branch_following import (
@@ -51,6 +57,8 @@ _CROSSING = 1e-10  # relative tolerance of a crossing's frequency
 _STEPS = 40
 _RESIDUAL = 1e-9
 _AT_REST = 1e-6  # part of the highest speed in place of zero, to separate forward and backward whirl
+_TURNING_SPEEDS = 9  # speeds at which exponents with turning carriers are solved, at most
+_TURNING_MODES = 24  # modes whose exponents are solved at each, the lowest
 _ABOVE = 1.15  # factor on the limit up to which modes are followed, as some dip below the limit
 
 
@@ -230,6 +238,12 @@ class SystemCampbell:
         Highest frequency that was followed [rad/s].
     warnings : tuple of dict
         Warnings: that its branches are those of frozen carriers.
+    exponents : ndarray of complex, shape (s, b), or None
+        Floquet exponents of the machine as its carriers turn [1/s], NaN where they are not solved; None where no
+        directions turn.
+    observed : ndarray, shape (s, b), or None
+        Frequencies at which the machine's sensors, which stand still, see these motions most [rad/s]; None without
+        sensors too.
     """
 
     speeds: FloatArray
@@ -243,6 +257,23 @@ class SystemCampbell:
     unsettled: tuple[str, ...]
     limit: float
     warnings: tuple[ResultWarning, ...] = ()
+    exponents: ComplexArray | None = None
+    observed: FloatArray | None = None
+
+    @property
+    def turning_frequencies_hz(self) -> FloatArray | None:
+        """Damped frequencies Im λ / 2π of the exponents [Hz], shape (s, b)."""
+        return None if self.exponents is None else np.asarray(self.exponents.imag / (2.0 * np.pi))
+
+    @property
+    def turning_damping_ratios(self) -> FloatArray | None:
+        """-Re λ / |λ| of the exponents, shape (s, b)."""
+        return None if self.exponents is None else np.asarray(-self.exponents.real / np.abs(self.exponents))
+
+    @property
+    def observed_hz(self) -> FloatArray | None:
+        """Frequencies at which fixed sensors see the motions of the exponents most [Hz], shape (s, b)."""
+        return None if self.observed is None else np.asarray(self.observed / (2.0 * np.pi))
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -343,6 +374,10 @@ def system_campbell(
                 at = left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
                 crossings.append(SystemCrossing(speed, line, value, branch, *named))
+    exponents, observed, effect = None, None, None
+    if machine.system.turns:
+        exponents, observed = _turning(machine, points, table, kinds, state, frequency_limit)
+        effect = _error_of_frozen_carriers(leading_speeds, eigenvalues, exponents)
     return SystemCampbell(
         speeds=leading_speeds,
         eigenvalues=eigenvalues,
@@ -354,7 +389,51 @@ def system_campbell(
         crossings=tuple(sorted(crossings, key=lambda one: (abs(one.speed), one.line.order))),
         unsettled=tuple(unsettled),
         limit=frequency_limit,
-        warnings=frozen_warnings(machine.system, "the natural frequencies of the Campbell diagram, and its crossings,"),
+        warnings=frozen_warnings(
+            machine.system, "the natural frequencies of the Campbell diagram, and its crossings,", effect
+        ),
+        exponents=exponents,
+        observed=observed,
+    )
+
+
+def _turning(
+    machine: CoupledMachine,
+    points: Sequence["_Described"],
+    table: IndexArray,
+    kinds: npt.NDArray[np.str_],
+    contact: ContactState,
+    limit: float,
+) -> tuple[ComplexArray, FloatArray | None]:
+    """Exponents of the lowest modes at some of the speeds, and at which frequencies sensors see them."""
+    exponents = np.full(table.shape, np.nan, dtype=np.complex128)
+    observed = np.full(table.shape, np.nan)
+    sensors = np.array(list(machine.sensor_rows.values()))
+    for number in np.unique(np.linspace(0, len(points) - 1, _TURNING_SPEEDS).astype(int)):
+        modes = points[number].modes
+        values = along_branches(table[[number]], [modes.values], complex(np.nan, np.nan))[0]
+        proper = ~np.isin(kinds[number], ("", "residual", "rigid")) & (np.abs(values) < limit)
+        lowest = np.flatnonzero(proper)
+        lowest = lowest[np.argsort(np.abs(values[lowest]), kind="stable")][:_TURNING_MODES]
+        own = table[number, lowest]
+        model = TurningResponse(machine.at_speed(modes.speed).system, contact)
+        found = floquet_exponents(model, modes.values[own], modes.right[own], modes.left[own])
+        exponents[number, lowest] = found
+        if sensors.size:
+            observed[number, lowest] = observed_frequencies(model, found, modes.right[own], sensors)
+    return exponents, observed if sensors.size else None
+
+
+def _error_of_frozen_carriers(speeds: FloatArray, frozen: ComplexArray, exponents: ComplexArray) -> str | None:
+    """Return the largest error of a frozen frequency in words; None where no exponent is solved."""
+    if np.all(np.isnan(exponents)):
+        return None
+    errors = np.abs(frozen) / np.abs(exponents) - 1.0
+    at, branch = np.unravel_index(int(np.nanargmax(np.abs(errors))), errors.shape)
+    return (
+        f"beside them stand the exponents with turning carriers at {np.count_nonzero(~np.isnan(errors).all(axis=1))} "
+        f"speeds, from which the largest error of a frequency is {100.0 * errors[at, branch]:+.2g} %, of the mode at "
+        f"{abs(exponents[at, branch]) / (2.0 * np.pi):.5g} Hz and {abs(speeds[at]) * 60.0 / (2.0 * np.pi):.0f} rpm"
     )
 
 

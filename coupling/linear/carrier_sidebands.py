@@ -27,7 +27,7 @@ from gearwhine.coupling.statics.mean_mesh import ContactState
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-LINE_KINDS = ("mesh harmonic", "planet pass", "carrier sideband")
+LINE_KINDS = ("mesh harmonic", "planet pass", "sideband")
 """Kinds of lines by their place beside a mesh harmonic."""
 
 _SAME_SPEED = 1e-9  # relative difference of speeds that are one
@@ -55,7 +55,7 @@ class Sideband:
         """One of `LINE_KINDS`: in a planet pass, off the harmonic, equal planets add."""
         if not self.turns:
             return "mesh harmonic"
-        return "planet pass" if self.ideal == 1.0 else "carrier sideband"
+        return "planet pass" if self.ideal == 1.0 else "sideband"
 
     @property
     def words(self) -> str:

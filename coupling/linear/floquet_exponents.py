@@ -7,6 +7,9 @@ frequencies ω = λ / i. Its receptance from a load b at the order 0 to a motion
 its poles there. Of a mode of the machine with its carriers frozen, with the eigenvalue λ₀ and the vectors b right and c
 left, the secant method finds the zero of 1/g from λ₀ / i: the exponent of the family of this mode that is nearest, as b
 and c hardly meet the others. It is the mode's own where the machine turns slowly or is nearly alike all round.
+
+A fixed observer sees the motion of an exponent at all frequencies Im λ + m·f, in proportion to the parts q_m that its
+sensors have of it. Next to its pole the response is that motion, whatever the load.
 """
 
 from dataclasses import dataclass
@@ -14,12 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwhine.coupling.linear.turning_response import TurningResponse
-from gearwhine.numerics.arrays import ComplexArray
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _FIRST_STEP = 1e-5  # first step of the secant method, relative
 _CONVERGED = 1e-6  # relative step from which the next one is rounding: the order of the secant method is 1.6
 _ITERATIONS = 20
 _FARTHEST = 3.0  # largest distance of an exponent from the frozen eigenvalue, over the largest rate of turning
+_BESIDE_POLE = 1e-6  # relative distance from an exponent at which the response is all but its motion
 _SAME = 1e-7  # relative distance within which two exponents are one
 
 
@@ -72,6 +76,36 @@ def floquet_exponents(
                     continue
                 found[first if distance[first] > distance[second] else second] = np.nan
     return found
+
+
+def observed_frequencies(
+    model: TurningResponse, exponents: ComplexArray, right: ComplexArray, sensors: FloatArray
+) -> FloatArray:
+    """Frequencies at which sensors that stand still see the motions of exponents most.
+
+    Parameters
+    ----------
+    model : TurningResponse
+    exponents : ndarray of complex, shape (m,)
+        λ [1/s]; NaN is left so.
+    right : ndarray of complex, shape (m, n)
+        Vectors of the modes with frozen carriers.
+    sensors : ndarray, shape (s, n)
+        Motion of each sensor by the coordinates; one or more.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        |Im λ + m·f| of the order with the largest acceleration, the powers of all sensors added [rad/s].
+    """
+    seen = np.full(len(exponents), np.nan)
+    for number in np.flatnonzero(~np.isnan(exponents)):
+        frequency = complex(exponents[number]) / 1j * (1.0 + _BESIDE_POLE)
+        motion = model.respond(frequency, [({model.still: right[number]}, {})])
+        at = {order: frequency + model.shift(order) for order in motion}
+        size = {order: abs(at[order]) ** 2 * float(np.linalg.norm(sensors @ q[0])) for order, q in motion.items()}
+        seen[number] = abs(at[max(size, key=lambda order: size[order])].real)
+    return seen
 
 
 def _nearest(receptance: _Receptance, eigenvalue: complex) -> complex:

@@ -15,6 +15,9 @@ import numpy as np
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 
+FROZEN_CARRIER = "carrier frozen"
+"""Name of the warning."""
+
 FROZEN_MODES = "natural modes, damping ratios and stability"
 """Subject of the warning of natural modes."""
 
@@ -56,4 +59,4 @@ def frozen_warnings(
         + f" at {slowest:.4g} Hz against parts that are not alike all round"
         + (f"; {effect}" if effect else "")
     )
-    return (warning("carrier frozen", message, turning=names, turning_hz=slowest, **figures),)
+    return (warning(FROZEN_CARRIER, message, turning=names, turning_hz=slowest, **figures),)

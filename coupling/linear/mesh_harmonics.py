@@ -78,11 +78,9 @@ class Response:
 
     @property
     def kind(self) -> str:
-        """Kind of the line: ``mesh harmonic``, ``planet pass`` or ``carrier sideband``."""
+        """Kind of the line: ``mesh harmonic``, ``planet pass`` or ``sideband``."""
         kinds = [one.kind for one in self.sidebands]
-        return next(
-            (kind for kind in ("mesh harmonic", "planet pass") if kind in kinds or not kinds), "carrier sideband"
-        )
+        return next((kind for kind in ("mesh harmonic", "planet pass") if kind in kinds or not kinds), "sideband")
 
     @property
     def harmonic(self) -> int | None:

@@ -7,7 +7,8 @@ machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sideba
 orders of the carrier. Orders of a shaft and their sidebands count where something
 excites them (:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to
 the line. A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given
-apart from the cause.
+apart from the cause. A line that is near no mode either, whole turns of a carrier off a harmonic of its planets'
+meshes, is one of their far sidebands, which parts that hand a motion on to each other leave.
 """
 
 from collections.abc import Mapping, Sequence
@@ -143,6 +144,8 @@ def line_names(
             named.append(LineName("shaft", whole, order, mode))
         elif modes is not None and mode is not None:
             named.append(LineName("mode", _label(modes, mode), order, mode))
+        elif far := _far_sideband(machine, frequency, within):
+            named.append(LineName("sideband", far, order, None))
         else:
             named.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
     return named
@@ -180,3 +183,21 @@ def _whole_order(
         if multiple in excited[name] and abs(frequency - multiple * rotation_frequency) <= tolerance:
             orders.append((multiple, f"{multiple}× {name}"))
     return min(orders)[1] if orders else None
+
+
+def _far_sideband(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
+    """Return the nearest harmonic of planets' meshes from which a line is off by whole turns of their carrier."""
+    found = []
+    for carrier in dict.fromkeys(mesh.carrier for mesh in machine.meshes if mesh.carrier is not None):
+        turn = abs(machine.speeds[carrier]) / (2.0 * np.pi)
+        # Every line is near some multiple of a very slow carrier.
+        if turn <= 2.5 * tolerance:
+            continue
+        for number, mesh in zip(machine.loaded_contacts, machine.meshes, strict=True):
+            rate = abs(machine.system.contacts[number].mesh_frequency)
+            harmonic = round(frequency / rate) if mesh.carrier == carrier and rate > 0.0 else 0
+            turns = round((frequency - harmonic * rate) / turn)
+            if harmonic > 0 and abs(frequency - harmonic * rate - turns * turn) <= tolerance:
+                sense = "-" if turns < 0 else "+"
+                found.append(f"{harmonic}× {mesh.name} {sense} {abs(turns)}× {carrier}")
+    return joined_causes(machine, found) or None

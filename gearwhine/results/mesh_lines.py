@@ -216,6 +216,6 @@ def _turning_columns(*, short: bool) -> tuple[Column, ...]:
     """Columns of lines with sidebands; with one mesh frequency and one carrier their places in short."""
     place = Column("line", "cause", shown=_beside_harmonic) if short else Column("harmonic", "cause")
     phasing = Column("phasing", "phasing", shown=_phasing, numbers=("ideal_phasing",))
-    kind = Column("kind", "kind", shown=lambda row: str(row["kind"]).removeprefix("carrier "))
+    kind = Column("kind", "kind")
     frequency = Column("Hz", "frequency_hz", ".1f")
     return (_LINE_COLUMNS[0], frequency, place, kind, phasing, *_LINE_COLUMNS[3:])

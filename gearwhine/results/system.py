@@ -423,6 +423,12 @@ def _diagram(name: str, of: Getter, unit: str, long_name: str = "") -> Quantity:
     return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name=long_name)
 
 
+def _turning_diagram(name: str, of: str, unit: str, long_name: str) -> Quantity:
+    """Declare a quantity of the exponents of every branch over speed, for the file; absent where no directions turn."""
+    dimensions = ("system_speed", "system_branch")
+    return Quantity("", of, f"system_campbell_turning_{name}", dimensions, unit, long_name=long_name, optional=True)
+
+
 class _Campbell(NamedTuple):
     """Campbell diagram, and the speed of operation [rad/s]."""
 
@@ -437,10 +443,23 @@ class _Branch(NamedTuple):
     branch: int
 
 
+def _along_branch(attribute: str) -> Getter:
+    """Return the getter of a figure of the exponents along a branch: absent where no directions turn."""
+
+    def figures(row: _Branch) -> Any:
+        values = getattr(row.diagram, attribute)
+        return ABSENT if values is None else values[:, row.branch]
+
+    return figures
+
+
 CAMPBELL = (
     Quantity("speeds_rpm", "diagram.speeds", "system_campbell_speed", ("system_speed",)),
     _diagram("frequency", "diagram.frequencies_hz", "Hz", "damped frequency of the coupled modes over speed"),
     _diagram("damping_ratio", "diagram.damping_ratios", "1", "damping ratio of the coupled modes over speed"),
+    _turning_diagram("frequency", "diagram.turning_frequencies_hz", "Hz", "damped frequency with turning carriers"),
+    _turning_diagram("damping_ratio", "diagram.turning_damping_ratios", "1", "damping ratio with turning carriers"),
+    _turning_diagram("observed", "diagram.observed_hz", "Hz", "frequency at which fixed sensors see the mode most"),
     _diagram("whirl", "diagram.whirl", "1", "sense of the rotor that bends most, 1 counter-clockwise"),
     _diagram("teeth", "diagram.teeth", "1"),
     _diagram("kind", lambda row: row.diagram.kinds.astype(str), "", "kind"),
@@ -451,6 +470,9 @@ CAMPBELL = (
         (
             Quantity("frequency_hz", lambda row: row.diagram.frequencies_hz[:, row.branch]),
             Quantity("damping_ratio", lambda row: row.diagram.damping_ratios[:, row.branch]),
+            Quantity("turning_frequency_hz", _along_branch("turning_frequencies_hz")),
+            Quantity("turning_damping_ratio", _along_branch("turning_damping_ratios")),
+            Quantity("observed_hz", _along_branch("observed_hz")),
             Quantity("kind", lambda row: row.diagram.kinds[:, row.branch]),
             Quantity("where", lambda row: row.diagram.where[:, row.branch]),
         ),

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
+from gearwhine.coupling.linear.frozen_directions import FROZEN_CARRIER
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
 from gearwhine.output.dataset import PHASE_CONVENTION
@@ -454,13 +455,21 @@ def _settings(keys: Sequence[SweptKey], swept_point: Solved) -> dict[str, str]:
 
 
 def _warnings(swept: Sequence[Solved]) -> list[dict[str, Any]]:
-    """Warnings of the points' housings, each once."""
-    by_message: dict[str, dict[str, Any]] = {}
+    """Warnings of the points' housings, each once; that of frozen carriers, whose figures follow the speed, too."""
+    kept: dict[str, dict[str, Any]] = {}
+    points: dict[str, int] = {}
     for swept_point in swept:
         if isinstance(swept_point.outcome, PointResult):
             for warning in swept_point.outcome.document.get("warnings", ()):
-                by_message.setdefault(warning["message"], warning)
-    return list(by_message.values())
+                frozen = warning["name"] == FROZEN_CARRIER
+                key = " ".join([FROZEN_CARRIER, *warning["turning"]]) if frozen else warning["message"]
+                kept.setdefault(key, warning)
+                points[key] = points.get(key, 0) + frozen
+    several = {key for key, count in points.items() if count > 1}
+    return [
+        one | {"message": f"{one['message']} (the first of {points[key]} points)"} if key in several else one
+        for key, one in kept.items()
+    ]
 
 
 def _unit(unit: str, long_name: str) -> dict[str, str]:

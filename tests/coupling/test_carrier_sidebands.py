@@ -14,6 +14,7 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
+from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.coupling.signals.spectrum import decibels
 from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, find_resonances
 from gearwhine.coupling.time.histories import histories, transient_outputs
@@ -51,7 +52,7 @@ def test_equal_planets_keep_every_third_line_by_their_phases() -> None:
         order = harmonic * RING + carrier_turns(line)
         assert line.is_suppressed == (order % 3 != 0)
         assert line.phasing == pytest.approx(0.0 if line.is_suppressed else 1.0, abs=1e-10)
-        assert line.kind == ("carrier sideband" if line.is_suppressed else "planet pass")
+        assert line.kind == ("sideband" if line.is_suppressed else "planet pass")
 
 
 def test_planets_at_unequal_angles_suppress_no_line() -> None:
@@ -65,7 +66,7 @@ def test_planets_at_unequal_angles_suppress_no_line() -> None:
         assert line.frequency == pytest.approx(at, rel=1e-12)
         off = carrier_turns(line)
         assert line.cause(machine).endswith(f" {'+' if off > 0 else '-'} {abs(off)}× carrier")
-        assert line.kind == "carrier sideband"
+        assert line.kind == "sideband"
         assert line.ideal_phasing is None
 
 
@@ -251,3 +252,23 @@ def test_sweep_has_each_sideband_and_its_level_where_it_meets_a_mode() -> None:
         assert resonances.outputs[place] == sensor
         assert found == pytest.approx(expected, abs=0.2)
         assert found > resonances.line_levels[place, kept[0]] + 1.0
+
+
+def test_far_sidebands_are_named_by_the_nearest_harmonic() -> None:
+    """The mesh frequency is 83 turns of the carrier: 20 and 41 are nearest to the first harmonic, 42 to the second."""
+    machine = turning_machine((900.0, 1300.0))
+    turn = machine.speeds["carrier"] / (2.0 * np.pi)
+    orders = [83 + 20, 83 - 20, 83 + 41, 83 + 42, 4 * 83 + 30, 20, 83 + 20.4]
+    names = line_names(machine, [order * turn for order in orders], 1e-3 * turn)
+    assert [(one.kind, one.name) for one in names[:5]] == [
+        ("sideband", "1× planets' meshes + 20× carrier"),
+        ("sideband", "1× planets' meshes - 20× carrier"),
+        ("sideband", "1× planets' meshes + 41× carrier"),
+        ("sideband", "2× planets' meshes - 41× carrier"),
+        ("sideband", "4× planets' meshes + 30× carrier"),
+    ]
+    # Below half the mesh frequency, and between whole turns, there is no such line.
+    assert [one.kind for one in names[5:]] == ["other", "other"]
+    # Where turns cannot be told apart, none is named.
+    (vague,) = line_names(machine, [103 * turn], 0.45 * turn)
+    assert vague.kind == "other"

@@ -8,8 +8,9 @@ from scipy.linalg import expm
 
 from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.assembly import assemble_machine
+from gearwhine.coupling.linear.campbell import system_campbell
 from gearwhine.coupling.linear.complex_modes import coupled_modes
-from gearwhine.coupling.linear.floquet_exponents import floquet_exponents
+from gearwhine.coupling.linear.floquet_exponents import floquet_exponents, observed_frequencies
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
@@ -110,6 +111,60 @@ def test_frozen_coordinates_of_the_carrier_are_exact_where_all_is_alike_all_roun
     assert error(turning) > 0.05
     assert not coupled_modes(constant).warnings
     assert coupled_modes(turning).warnings[0]["name"] == "carrier frozen"
+
+
+@pytest.mark.slow
+def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordinates() -> None:
+    """Equal planets on isotropic supports: in the frame of the carrier nothing turns, and eigenvalues are exact."""
+    frame, still = (isotropic_machine(1500.0, standing=standing) for standing in (False, True))
+    assert frame.leading_rotor == still.leading_rotor
+    ratio = abs(frame.speeds["carrier"] / frame.speed)
+    speeds = np.array([1000.0, 1060.0]) / ratio
+    exact = system_campbell(frame, speeds, frequency_limit=1.8e4)
+    diagram = system_campbell(still, speeds, frequency_limit=1.2e4)
+    assert exact.exponents is None
+    assert diagram.exponents is not None
+    assert diagram.observed is None  # as nothing has a sensor
+    assert diagram.turning_frequencies_hz == pytest.approx(diagram.exponents.imag / (2.0 * np.pi), nan_ok=True)
+    checked = 0
+    for number, speed in enumerate((ratio * speeds).tolist()):
+        families = (exact.eigenvalues[number][:, None] + 1j * speed * np.arange(-4, 5)).ravel()
+        families = families[~np.isnan(families)]
+        for value, frozen in zip(diagram.exponents[number], diagram.eigenvalues[number], strict=True):
+            if not np.isnan(value):
+                assert np.abs(families - value).min() < 1e-4 * abs(value)
+                checked += np.abs(families - frozen).min() > 1e-3 * abs(frozen)
+    assert checked > 5  # that no frozen picture has
+    (told,) = diagram.warnings
+    assert "exponents with turning carriers at 2 speeds, from which the largest error" in str(told["message"])
+
+
+@pytest.mark.parametrize("turn", [0.4, 1.1])
+def test_a_fixed_sensor_sees_a_mode_of_a_turning_frame_beside_its_frequency(turn: float) -> None:
+    """z = R(Ωt) z_r e^{λt} is (z_x ± i z_y)/2 at λ ± iΩ: both are seen along x, and the larger acceleration counts."""
+    ground, springs = 30.0 * np.eye(2), np.array([[40.0, 0.0], [0.0, 90.0]])
+    dashpots = np.array([[0.2, 0.0], [0.0, 0.5]])
+    quarter, zeros = np.array([[0.0, -1.0], [1.0, 0.0]]), np.zeros((2, 2))
+    held = LinearConnector("springs", np.eye(2), springs, dashpots, turning=(TurningPart(turn, np.eye(2), quarter),))
+    system = CoupledSystem((Component("body", ("rotor",) * 2, ground, zeros, zeros),), (0.0,), (held,))
+    state = np.zeros((4, 4))
+    state[:2, 2:] = np.eye(2)
+    state[2:, :2] = turn**2 * np.eye(2) - ground - springs
+    state[2:, 2:] = -dashpots - 2.0 * turn * quarter
+    rotating, vectors = np.linalg.eig(state)
+    expected = []
+    for value, (x, y) in zip(rotating, vectors[:2].T, strict=True):
+        if value.imag > 0.0:
+            at = {value + 1j * turn: abs(x + 1j * y), value - 1j * turn: abs(x - 1j * y)}
+            expected.append(abs(max(at, key=lambda one: abs(one) ** 2 * at[one]).imag))
+    modes = coupled_modes(system)
+    model = TurningResponse(system, mean_contact(system))
+    chosen = modes.eigenvalues.imag > 0.0
+    exponents = floquet_exponents(model, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen])
+    seen = observed_frequencies(model, exponents, modes.shapes[chosen], np.array([[1.0, 0.0]]))
+    assert sorted(seen) == pytest.approx(sorted(expected), rel=1e-5)
+    unsolved = observed_frequencies(model, np.array([np.nan + 0j]), modes.shapes[:1], np.array([[1.0, 0.0]]))
+    assert np.isnan(unsolved).all()
 
 
 @pytest.mark.slow

@@ -2,14 +2,17 @@
 
 Table 5-1 has an internal gear of 24 teeth with a pinion of 16, module 3 mm, 20 degrees, shift coefficients 0 and 0.5
 (outward, so -0.5 after ISO 21771, which gives a ring negative teeth). Equations are repeated here with lengths that are
-positive, as the tables have them.
+positive, as the tables have them. Measures between pins and balls, spans and the contact ratio have no printed example
+of a ring: they are held against the printed equations and against distances from drawn flanks.
 """
 
 import math
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 import pytest
+from scipy.optimize import minimize
 
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.errors import InterferenceError
@@ -18,6 +21,8 @@ from gearwhine.coupling.gears.geometry.pair import backlash_free_pressure_angle,
 from gearwhine.coupling.gears.geometry.path_of_contact import path_of_contact
 from gearwhine.coupling.gears.geometry.profile import gear_outline
 from gearwhine.coupling.gears.geometry.thickness import over_balls, span_measurement
+
+FloatArray = npt.NDArray[np.float64]
 
 MM = 1e-3
 ALPHA = math.radians(20.0)
@@ -116,3 +121,64 @@ def test_span_of_a_ring_is_over_spaces() -> None:
     part = (-ring.base_radius - y[level]) / (y[level + 1] - y[level])
     places = x[level] + part * (x[level + 1] - x[level])
     assert np.abs(places - 0.5 * span.length).min() < 1e-7 or np.abs(np.abs(places) - 0.5 * span.length).min() < 1e-7
+
+
+HELIX = math.radians(15.0)
+HELICAL_PINION = Gear("pinion", 20, 2 * MM, ALPHA, 25 * MM, helix_angle=HELIX, profile_shift=0.3)
+HELICAL_RING = Gear("ring", -63, 2 * MM, ALPHA, 25 * MM, helix_angle=HELIX, profile_shift=-0.2, addendum=0.8)
+
+
+def test_helical_pair_with_shifts_by_lengths_that_are_positive() -> None:
+    """The equations of the tables above in transverse terms: no printed example of a helical ring is at hand."""
+    pair = GearPairGeometry(HELICAL_PINION, HELICAL_RING)
+    transverse = math.atan(math.tan(ALPHA) / math.cos(HELIX))
+    module = 2.0 / math.cos(HELIX)
+    # Outward shifts are 0.3 and 0.2; the working angle by bisection.
+    wanted = inv(transverse) + 2.0 * math.tan(ALPHA) * (0.2 - 0.3) / 43.0
+    low, high = 0.0, 1.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if inv(middle) < wanted else (low, middle)
+    distance = 0.5 * 43.0 * module * math.cos(transverse) / math.cos(low)
+    assert pair.working_pressure_angle == pytest.approx(low, rel=1e-10)
+    assert -pair.working_centre_distance / MM == pytest.approx(distance, rel=1e-10)
+    # Tips: of the pinion 1 + 0.3 modules outside its reference circle, of the ring 0.8 - 0.2 inside its own.
+    tips = 0.5 * 20.0 * module + 2.0 * 1.3, 0.5 * 63.0 * module - 2.0 * 0.6
+    assert 2.0 * HELICAL_PINION.tip_radius / MM == pytest.approx(2.0 * tips[0], rel=1e-12)
+    assert -2.0 * HELICAL_RING.tip_radius / MM == pytest.approx(2.0 * tips[1], rel=1e-12)
+    bases = [0.5 * z * module * math.cos(transverse) for z in (20.0, 63.0)]
+    first, second = (math.sqrt(tip**2 - base**2) for tip, base in zip(tips, bases, strict=True))
+    base_pitch = math.pi * module * math.cos(transverse)
+    expected = (first - second + distance * math.sin(low)) / base_pitch
+    assert pair.contact_ratio == pytest.approx(expected, rel=1e-9)
+    assert pair.overlap_ratio == pytest.approx(25.0 * math.sin(HELIX) / (2.0 * math.pi), rel=1e-12)
+
+
+@pytest.mark.parametrize("teeth", [-63, -64])
+def test_a_ball_between_helical_flanks_touches_both(teeth: int) -> None:
+    """The distance from its centre to the helicoid, minimised over the surface, is its radius."""
+    ring = replace(HELICAL_RING, teeth=teeth)
+    ball = over_balls(ring)
+    count, base = abs(teeth), -ring.base_radius / MM
+    lead = math.pi * count * 2.0 / math.sin(HELIX)
+    transverse = math.atan(math.tan(ALPHA) / math.cos(HELIX))
+    # Half the width of a space at the base circle, as an angle: e = pi m / 2 + 2 x m tan(alpha) outward in the normal.
+    reference = 0.5 * count * 2.0 / math.cos(HELIX)
+    space = 0.5 * math.pi + 2.0 * 0.2 * math.tan(ALPHA)
+    half = 0.5 * space * 2.0 / math.cos(HELIX) / reference + inv(transverse)
+
+    def distance(place: FloatArray) -> float:
+        roll, z = place
+        # The flank of a space closes inwards on the middle: the involute of an external tooth of the same space.
+        angle = half - (roll - math.atan(roll)) + 2.0 * math.pi * z / lead
+        radius = base * math.hypot(1.0, roll)
+        x, y = radius * math.cos(angle), radius * math.sin(angle)
+        return math.sqrt((x - centre) ** 2 + y**2 + z**2)
+
+    centre = -ball.centre_radius / MM
+    found = minimize(
+        distance, [math.tan(transverse), 0.0], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12}
+    )
+    assert found.fun == pytest.approx(0.5 * ball.diameter / MM, rel=1e-8)
+    spread = 1.0 if count % 2 == 0 else math.cos(math.pi / (2.0 * count))
+    assert ball.length / MM == pytest.approx(2.0 * centre * spread - ball.diameter / MM, rel=1e-12)

@@ -61,11 +61,12 @@ KIND_COLORS = {
     "pedestal": SERIES[7],
     "residual": "#c9ced3",
 }
-LINE_COLORS = {"mesh harmonic": INK, "planet pass": BLUE, "carrier sideband": RED}
+LINE_COLORS = {"mesh harmonic": INK, "planet pass": BLUE, "sideband": RED}
 """Colours of lines by their place beside a mesh harmonic."""
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # height of the panel [mm]
 _LARGEST_MARK_AREA = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
+_SAME_PLACE = 5e-3  # part of the diagram's height within which two marks are one
 _MICROMETRE = 1e-6
 _RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # height of a panel and gap between two [mm]
 _DECADES = 4.0  # decades of amplitude that a panel shows at most
@@ -96,6 +97,9 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     )
     if any(line.kind == "sideband" for line in campbell.lines):
         note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
+    if campbell.exponents is not None:
+        note += "; lines of modes: carriers frozen; +: exponents with turning carriers"
+        note += "" if campbell.observed is None else "; ×: where fixed sensors see them most"
     speeds = RPM * np.abs(campbell.speeds)
     top, low, high = campbell.limit / HERTZ, float(speeds[0]), float(speeds[-1])
     # Orders that leave the panel at its top are named above it, the others beside its right end.
@@ -117,6 +121,7 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     axes.set(xlim=(speeds[0], speeds[-1]), ylim=(0.0, top))
     axes.set(xlabel="speed of the first driver [rpm]", ylabel="damped frequency [Hz]")
     met = _draw_branches(axes, speeds, campbell)
+    _mark_exponents(axes, speeds, campbell)
     for line in campbell.lines:
         _draw_line(axes, line, high)
     draw_row(axes, row, _HEIGHT + 1.0)
@@ -140,6 +145,19 @@ def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> 
                     speeds[run], frequency[run], color=KIND_COLORS.get(kind, INK), lw=1.1, zorder=3, label="branch"
                 )
     return [kind for kind in KIND_COLORS if kind in met]
+
+
+def _mark_exponents(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> None:
+    """Mark the exponents with turning carriers, and where fixed sensors see their motions elsewhere."""
+    turning, observed = campbell.turning_frequencies_hz, campbell.observed_hz
+    if turning is None:
+        return
+    at = np.broadcast_to(speeds[:, None], turning.shape)
+    style = {"ls": "", "color": INK, "ms": 4.0, "mew": 0.8, "zorder": 4}
+    axes.plot(at.ravel(), turning.ravel(), marker="+", label="turning", **style)  # type: ignore[arg-type]
+    if observed is not None:
+        apart = np.where(np.abs(observed - turning) > _SAME_PLACE * campbell.limit / HERTZ, observed, np.nan)
+        axes.plot(at.ravel(), apart.ravel(), marker="x", label="observed", **style)  # type: ignore[arg-type]
 
 
 def _draw_line(axes: Axes, line: ExcitationLine, last: float) -> None:

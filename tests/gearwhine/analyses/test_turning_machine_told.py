@@ -9,6 +9,7 @@ import xarray as xr
 import gearwhine as gw
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
+from gearwhine.figures.machine.system import draw_system_campbell
 from gearwhine.results.system import sections
 from tests.machines.turning_set import TEETH, turning_machine, turning_set
 
@@ -33,6 +34,22 @@ def test_analyses_that_freeze_the_carriers_warn_of_it() -> None:
 def test_a_campbell_diagram_over_frozen_carriers_warns_of_it() -> None:
     diagram = turning_set(NATURAL).campbell([280.0, 300.0], frequency_limit=4000.0)
     assert [told["name"] for told in diagram.warnings] == ["carrier frozen"]
+    turning, observed = diagram.turning_frequencies_hz, diagram.observed_hz
+    assert turning is not None
+    assert observed is not None
+    solved = ~np.isnan(turning)
+    assert np.count_nonzero(solved) > 4
+    # Sensors on the housing see a mode at its exponent's frequency and whole turns of the carrier beside it.
+    for number, speed in enumerate((280.0, 300.0)):
+        carrier = turning_machine(NATURAL).speeds["carrier"] / 300.0 * speed / (2.0 * np.pi)
+        plus, minus = ((observed + sign * turning)[number][solved[number]] / carrier for sign in (1.0, -1.0))
+        off = [np.abs(turns - np.round(turns)) for turns in (plus, minus)]
+        assert np.minimum(*off).max() < 1e-4
+    figure = draw_system_campbell("Coupled modes over speed", diagram)
+    (axes,) = figure.axes
+    marks = {line.get_label(): line for line in axes.lines if line.get_label() in ("turning", "observed")}
+    assert np.count_nonzero(~np.isnan(marks["turning"].get_ydata())) == np.count_nonzero(solved)
+    assert 0 < np.count_nonzero(~np.isnan(marks["observed"].get_ydata())) <= np.count_nonzero(solved)
 
 
 @pytest.mark.slow
