@@ -56,11 +56,14 @@ class Ranks:
     def __init__(self, folder: pathlib.Path, comm: Any) -> None:
         self._folder, self._comm = folder, comm
         self._eps: Any = None
+        self._matrices: tuple[Any, ...] = ()
 
     def factor(self, shift: float) -> dict[str, object]:
         """Factor K - σM; SLEPc's spectral transformation holds the factor, for modes and solutions."""
-        if self._eps is None:
-            self._eps = self._solver()
+        # A transformation that has a factor does not always make another for another shift (SLEPc 3.18).
+        if self._eps is not None:
+            self._eps.destroy()
+        self._eps = self._solver()
         transformation = self._eps.getST()
         transformation.setShift(shift)
         self._eps.setTarget(shift)
@@ -135,7 +138,8 @@ class Ranks:
         options["st_mat_mumps_icntl_24"] = 1  # pivots that vanish are found, which would be an inertia of chance
         options["st_mat_mumps_icntl_14"] = 50  # per cent of memory beyond the estimate, for delayed pivots
         eps = SLEPc.EPS().create(PETSc.COMM_WORLD)
-        eps.setOperators(self._matrix("stiffness"), self._matrix("mass"))
+        self._matrices = self._matrices or (self._matrix("stiffness"), self._matrix("mass"))
+        eps.setOperators(*self._matrices)
         eps.setProblemType(SLEPc.EPS.ProblemType.GHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
         eps.setTolerances(1e-11, 200)

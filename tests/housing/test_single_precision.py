@@ -13,6 +13,7 @@ from gearwhine.housing.fem import factorization, memory
 from gearwhine.housing.fem.factorization import Factorizer, RslabSolver, UnprovedInertiaError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.modes.eigensolver import block_lanczos
 from gearwhine.meshes import Mesh
 
 pytest.importorskip("rslab")
@@ -227,3 +228,32 @@ def test_precisions_that_are_not_there_are_named() -> None:
         Factorizer(precision="half")  # type: ignore[arg-type]
     with pytest.raises(FactorizationError, match="superlu factors in double precision only; single needs rslab"):
         Factorizer(backend="superlu", precision="single")
+
+
+@pytest.mark.parametrize("above", [True, False])
+def test_companions_are_the_next_modes_on_the_upper_side_of_the_shift(cube: tuple[Mesh, Matrices], above: bool) -> None:
+    """Across the shift from modes below it, and behind the wanted ones above it, the nearest first."""
+    _, matrices = cube
+    values = dense_values(matrices)
+    mass = matrices.mass.toarray()
+    place = next(place for place in range(30, 60) if values[place] > 1.01 * values[place - 1])
+    shift, count = 0.5 * (values[place - 1] + values[place]), place if above else 4
+    inverse = np.linalg.inv(matrices.shifted(shift).toarray())
+    found, vectors = block_lanczos(
+        lambda right: inverse @ right,
+        mass,
+        shift,
+        count,
+        above=above,
+        precision="single",
+        tolerance=1e-4,
+        companion_tolerance=1e-2,
+    )
+    wanted, companions = found[:count], found[count:]
+    first = 0 if above else place
+    np.testing.assert_allclose(wanted[wanted > 1e7], values[first : first + count][wanted > 1e7], rtol=1e-4)
+    assert len(companions) >= 3
+    assert vectors.shape == (195, len(found))
+    behind = values[place if above else place + count :]
+    np.testing.assert_allclose(companions[0], behind[0], rtol=1e-3)
+    assert (np.diff(companions) > -1e-3 * companions[1:]).all()

@@ -13,7 +13,7 @@ from scipy import linalg, sparse
 from gearwhine.housing import HousingError, solve_modes
 from gearwhine.housing.errors import FactorizationError, IncompleteModesError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
-from gearwhine.housing.fem.matrices import FreeSystem, Matrices
+from gearwhine.housing.fem.matrices import Additions, FreeSystem, Matrices, NodeBlocks
 from gearwhine.housing.fem.slepc import COMMAND, SlepcRanks, SlepcUnavailableError
 from gearwhine.meshes import Mesh
 
@@ -73,6 +73,7 @@ def test_inertia_modes_and_solutions_of_a_chain() -> None:
         np.testing.assert_allclose(found, expected, rtol=1e-11)
         np.testing.assert_allclose(vectors.T @ vectors, np.eye(8), atol=1e-10)
         np.testing.assert_allclose(stiffness @ vectors, vectors * found, atol=1e-10)
+    assert ranks.factor(3.0).negative == np.count_nonzero(values < 3.0)
     right = np.random.default_rng(1).standard_normal((50, 3))
     exact = np.linalg.solve(stiffness.full().toarray() - shift * np.eye(50), right)
     np.testing.assert_allclose(factor.solve(right), exact, rtol=1e-9, atol=1e-9)
@@ -131,7 +132,13 @@ def test_what_the_ranks_cannot_do_is_said(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_a_mass_on_the_pattern_of_the_stiffness(box_matrices: Matrices) -> None:
-    system = FreeSystem(box_matrices.held(np.arange(30)))
+    """With a mass attached to two nodes that share an element."""
+    first, second = 0, int(box_matrices.neighbors[1])
+    block = 5.0 * np.eye(3) + 1.0
+    nodes = np.array([first, first, second, second]), np.array([first, second, first, second])
+    attached = NodeBlocks(*nodes, np.array([2.0 * block, block, block, 2.0 * block]))
+    loaded = box_matrices.plus(Additions(mass=attached))
+    system = FreeSystem(loaded.held(np.arange(30, 60)))
     stiffness, mass = system.assembled_pair()
     vectors = np.random.default_rng(2).standard_normal((system.size, 2))
     assert mass.rows is stiffness.rows
