@@ -225,7 +225,8 @@ class SignalResponse:
     lack_of_fit : float or None
         Probability by chance of means of equal sizes that lie farther from the line (F-test); None without repeats.
     unequal_scatter : float or None
-        Probability by chance of scatters of equal sizes that differ more (Brown and Forsythe 1974); None without repeats.
+        Probability by chance of scatters of the sizes that differ more (Brown and Forsythe 1974); None without
+        repeats.
     slope_significance : float
         Probability by chance of a line that rises more steeply.
     likelihood : float

@@ -151,7 +151,8 @@ def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:
         found,
         f"{INDICATORS[indicator].title} over the size of the fault",
         f"{shortened(title, 40)}; dots: gearboxes, at 0 healthy ones; red: threshold of a false-alarm rate of "
-        f"{found.monitor.false_alarm:g} with its 95 % interval as far as it has ends; blue: median, and line where one is fitted.",
+        f"{found.monitor.false_alarm:g} with its 95 % interval, as far as it has ends; blue: median, and "
+        "line where one is fitted.",
         FOOT,
     )
     for axes, sensor in zip(panels, sensors, strict=True):
