@@ -45,6 +45,7 @@ LEAST_SIGNIFICANCE = 0.01
 _DETECTED = 0.9
 _GRID = 201
 _LEAST_RESPONSES = 4
+_LEAST_REPEATS = 2
 _NODES = 80
 _FAR = 9.0  # standard deviations beyond which a normal distribution has nothing
 _MOST_ROUNDS = 100
@@ -223,6 +224,9 @@ class SignalResponse:
         Whether the line is one of the logarithms.
     lack_of_fit : float or None
         Probability by chance of means of equal sizes that lie farther from the line (F-test); None without repeats.
+    unequal_scatter : float or None
+        Probability by chance of scatters of the sizes that differ more (Brown and Forsythe 1974); None without
+        repeats.
     slope_significance : float
         Probability by chance of a line that rises more steeply.
     likelihood : float
@@ -237,14 +241,16 @@ class SignalResponse:
     log_size: bool
     log_response: bool
     lack_of_fit: float | None
+    unequal_scatter: float | None
     slope_significance: float
     likelihood: float = 0.0
 
     @property
     def is_sound(self) -> bool:
-        """Whether the line rises, and the values do not contradict it."""
-        straight = self.lack_of_fit is None or self.lack_of_fit >= LEAST_SIGNIFICANCE
-        return straight and self.slope_significance < LEAST_SIGNIFICANCE
+        """Whether the line rises, and the values do not contradict it or its even scatter."""
+        tests = (self.lack_of_fit, self.unequal_scatter)
+        holds = all(test is None or test >= LEAST_SIGNIFICANCE for test in tests)
+        return holds and self.slope_significance < LEAST_SIGNIFICANCE
 
     def _row(self, size: float) -> FloatArray:
         return np.array([1.0, math.log(size) if self.log_size else size])
@@ -314,6 +320,7 @@ def signal_response(
         log_size,
         log_response,
         _lack_of_fit(x, values, squares),
+        _unequal_scatter(x, values),
         float(stats.t.sf(slope, freedom)),
         # A density of logarithms is one of the responses over these.
         -0.5 * len(values) * math.log(squares / len(values)) - (float(values.sum()) if log_response else 0.0),
@@ -328,6 +335,15 @@ def _lack_of_fit(sizes: FloatArray, values: FloatArray, squares: float) -> float
     if between < 1 or within < 1 or pure <= 0.0:
         return None
     return float(stats.f.sf((squares - pure) / between / (pure / within), between, within))
+
+
+def _unequal_scatter(sizes: FloatArray, values: FloatArray) -> float | None:
+    """Probability of the test of Brown and Forsythe of the scatters of equal sizes; None without repeats."""
+    groups = [values[sizes == size] for size in np.unique(sizes)]
+    repeated = [group for group in groups if len(group) > _LEAST_REPEATS]
+    if len(repeated) < 2 or not any(np.ptp(group) > 0.0 for group in repeated):
+        return None
+    return float(stats.levene(*repeated, center="median").pvalue)
 
 
 @dataclass(frozen=True, eq=False)

@@ -151,7 +151,8 @@ def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:
         found,
         f"{INDICATORS[indicator].title} over the size of the fault",
         f"{shortened(title, 40)}; dots: gearboxes, at 0 healthy ones; red: threshold of a false-alarm rate of "
-        f"{found.monitor.false_alarm:g} with its 95 % interval; blue: median, and line where one is fitted.",
+        f"{found.monitor.false_alarm:g} with its 95 % interval, as far as it has ends; blue: median, and "
+        "line where one is fitted.",
         FOOT,
     )
     for axes, sensor in zip(panels, sensors, strict=True):
@@ -174,8 +175,10 @@ def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:
             axes.plot(factor * grid, np.exp(values) if line.log_response else values, color=BLUE, lw=1.0)
         if one.threshold is not None:
             axes.axhline(one.threshold.value, color=RED, lw=1.1)
-            shown = [*healthy, *one.responses[np.isfinite(one.responses)]]
-            low, high = (end if np.isfinite(end) else max(shown) for end in (one.threshold.low, one.threshold.high))
+            # An end that the samples do not bound is none to draw.
+            low, high = (
+                end if np.isfinite(end) else one.threshold.value for end in (one.threshold.low, one.threshold.high)
+            )
             axes.axhspan(low, high, color=RED, alpha=0.12, lw=0.0)
         axes.yaxis.set_major_locator(MaxNLocator(5))
         name = _axis_of(found, indicator)

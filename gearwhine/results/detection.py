@@ -64,8 +64,8 @@ DETECTION = (
     Quantity("sizes", lambda found: list(found.severities)),
     Quantity("shown_unit", "shown_unit.0"),
     Quantity("shown_factor", "shown_unit.1"),
-    Quantity("sensors", "monitor.sensors"),
-    Quantity("indicators", "monitor.indicators"),
+    Quantity("sensor_names", "monitor.sensors"),
+    Quantity("indicator_names", "monitor.indicators"),
     Quantity("sensor_noise_m_per_s2", "monitor.sensor_noise"),
     Quantity("averages", "monitor.averages"),
     Quantity("false_alarm", "monitor.false_alarm"),
@@ -210,7 +210,7 @@ def _content(document: Document) -> Iterator[str | Table]:
 
     matrix = [rows | {"indicator": INDICATORS[name].title} for name, rows in by_indicator.items()]
     yield from table_of(
-        (Column("indicator", "indicator"), *(of_sensor(sensor) for sensor in document["sensors"])),
+        (Column("indicator", "indicator"), *(of_sensor(sensor) for sensor in document["sensor_names"])),
         matrix,
         f"Size that is found with a probability of 0.9, a90 (a90/95){unit}: {document['fault']}",
     )

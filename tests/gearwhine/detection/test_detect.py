@@ -106,6 +106,9 @@ def test_the_command_finds_writes_and_resumes_a_study(tmp_path: Path, capsys: py
     assert set(document["files"]) >= names
     # The gearbox without the fault twice, as the reference and as a healthy one, and one for each size.
     assert (document["samples"], document["resumed"], document["failed"]) == (4, 0, [])
+    with xr.open_dataset(out / "detect.nc") as data:
+        of_size = data["faulty"].sel(sensor="top", indicator="difference_rms_m_per_s2")
+        grown = float(of_size[data["fault_size"].values == 1e-3].mean())
     assert run_command([*command, "--set", "detection.sensor_noise=2 m/s^2", "--json"]) == 0
     noisy = json.loads(capsys.readouterr().out)
     assert noisy["resumed"] == 4
@@ -120,9 +123,6 @@ def test_the_command_finds_writes_and_resumes_a_study(tmp_path: Path, capsys: py
     found = sound.solved.indicators(["difference_rms"]).gears[0].sensors[0].values["difference_rms"]
     assert found is not None
     rows = {(one["sensor"], one["indicator"]): one for one in document["detectability"]}
-    with xr.open_dataset(out / "detect" / "detect.nc" if (out / "detect").is_dir() else out / "detect.nc") as data:
-        of_size = data["faulty"].sel(sensor="top", indicator="difference_rms_m_per_s2")
-        grown = float(of_size[data["fault_size"].values == 1e-3].mean())
     noise = 0.02 / np.sqrt(100.0)
     assert rows["top", "difference_rms"]["healthy_mean"] == pytest.approx(1.0, abs=0.2)
     assert grown == pytest.approx(np.hypot(single, noise) / np.hypot(found, noise), rel=0.1)

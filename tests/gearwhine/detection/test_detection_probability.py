@@ -145,6 +145,10 @@ def test_a_response_in_powers_is_a_line_of_logarithms() -> None:
     assert line.is_sound
     bent = signal_response(sizes, responses, 0.5, log_size=False)
     assert not bent.is_sound
+    # A scatter that grows with the size is none of a line of one scatter, and one of its logarithms.
+    uneven = sizes * (1.0 + 0.2 * np.random.default_rng(11).normal(size=sizes.size))
+    assert not signal_response(sizes, uneven, 1.0, log_size=False).is_sound
+    assert signal_response(sizes, uneven, 1.0, log_size=True, log_response=True).is_sound
     falling = signal_response(sizes, 7.0 - 2.0 * sizes + 0.1 * np.sin(40.0 * sizes * np.arange(300)), 4.0)
     assert not falling.is_sound
 
