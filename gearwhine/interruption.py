@@ -7,7 +7,6 @@ within two seconds, that thread clears away what is half-written and ends the pr
 from running, too, a small process beside does that.
 """
 
-import multiprocessing
 import os
 import select
 import shutil
@@ -118,8 +117,10 @@ def _end_when_deaf(relayed: int, left: threading.Event, say: Callable[[list[str]
             for clear in reversed(_clearances):
                 with suppress(Exception):
                     notes.append(clear())
-            for process in multiprocessing.active_children():
-                process.kill()
+            # Workers, where there are any: the module takes time to import.
+            if (multiprocessing := sys.modules.get("multiprocessing")) is not None:
+                for process in multiprocessing.active_children():
+                    process.kill()
             say([note for note in notes if note])
             os._exit(INTERRUPTED)
 
