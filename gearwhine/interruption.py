@@ -129,7 +129,8 @@ def _guard(command: int, heard: int, relay: int, told: int, say: Callable[[list[
     """Relay signals to the thread, and kill the command where that does not end it; until the command ends."""
     for number in _NUMBERS:
         signal.signal(number, signal.SIG_IGN)
-    texts, limit = b"", None
+    texts: bytes = b""
+    limit: float | None = None
     while True:
         wait = None if limit is None else max(limit - time.monotonic(), 0.0)
         ready = select.select([heard, told], [], [], wait)[0]
@@ -137,9 +138,9 @@ def _guard(command: int, heard: int, relay: int, told: int, say: Callable[[list[
             if not (text := os.read(told, 4096)):
                 return
             texts += text
-        if heard in ready and (number := os.read(heard, 1)):
-            os.write(relay, number)
-            if number[0] in _NUMBERS and limit is None:
+        if heard in ready and (signalled := os.read(heard, 1)):
+            os.write(relay, signalled)
+            if signalled[0] in _NUMBERS and limit is None:
                 limit = time.monotonic() + _GUARDS_PATIENCE
         if not ready:
             os.kill(command, signal.SIGKILL)
