@@ -7,7 +7,6 @@ within two seconds, that thread clears away what is half-written and ends the pr
 from running, too, a small process beside does that.
 """
 
-import multiprocessing
 import os
 import select
 import shutil
@@ -118,8 +117,10 @@ def _end_when_deaf(relayed: int, left: threading.Event, say: Callable[[list[str]
             for clear in reversed(_clearances):
                 with suppress(Exception):
                     notes.append(clear())
-            for process in multiprocessing.active_children():
-                process.kill()
+            # Workers, where there are any: the module takes time to import.
+            if (multiprocessing := sys.modules.get("multiprocessing")) is not None:
+                for process in multiprocessing.active_children():
+                    process.kill()
             say([note for note in notes if note])
             os._exit(INTERRUPTED)
 
@@ -128,7 +129,8 @@ def _guard(command: int, heard: int, relay: int, told: int, say: Callable[[list[
     """Relay signals to the thread, and kill the command where that does not end it; until the command ends."""
     for number in _NUMBERS:
         signal.signal(number, signal.SIG_IGN)
-    texts, limit = b"", None
+    texts: bytes = b""
+    limit: float | None = None
     while True:
         wait = None if limit is None else max(limit - time.monotonic(), 0.0)
         ready = select.select([heard, told], [], [], wait)[0]
@@ -136,9 +138,9 @@ def _guard(command: int, heard: int, relay: int, told: int, say: Callable[[list[
             if not (text := os.read(told, 4096)):
                 return
             texts += text
-        if heard in ready and (number := os.read(heard, 1)):
-            os.write(relay, number)
-            if number[0] in _NUMBERS and limit is None:
+        if heard in ready and (signalled := os.read(heard, 1)):
+            os.write(relay, signalled)
+            if signalled[0] in _NUMBERS and limit is None:
                 limit = time.monotonic() + _GUARDS_PATIENCE
         if not ready:
             os.kill(command, signal.SIGKILL)
