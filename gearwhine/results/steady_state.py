@@ -358,6 +358,7 @@ CURVE = (
         },
     ),
     Quantity("stable", "curve.stable", "branch_stable", _POINT, long_name="whether no small disturbance grows"),
+    Quantity("stability", lambda solved: [motion.floquet.stability for motion in solved.curve.responses]),
     Quantity("ending", "curve.ending"),
     Quantity(
         "piece",
@@ -551,10 +552,11 @@ def _decay(multiplier: float, period: float) -> str:
 def curve_sentences(curve: Document) -> Iterator[str | Table]:
     """Yield sentences on a branch over speed: its range, largest forces, loudest points of sensors, bifurcations."""
     speeds = curve["speed_rpm"]
-    unstable = sum(not stable for stable in curve["stable"])
+    undecided = curve.get("stability", []).count("not decided")
+    unstable = sum(not stable for stable in curve["stable"]) - undecided
     yield (
         f"Followed from {speeds[0]:.0f} to {speeds[-1]:.0f} rpm in {counted(len(speeds), 'point')}, "
-        f"{unstable} of them unstable"
+        f"{unstable} of them unstable" + (f", {undecided} not decided" if undecided else "")
     )
     if curve["ending"] != "end":
         yield f"Left before the end of the range: {curve['account']}"

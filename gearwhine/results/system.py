@@ -448,7 +448,9 @@ def _along_branch(attribute: str) -> Getter:
 
     def figures(row: _Branch) -> Any:
         values = getattr(row.diagram, attribute)
-        return ABSENT if values is None else values[:, row.branch]
+        if values is None:
+            return ABSENT
+        return [None if np.isnan(value) else float(value) for value in values[:, row.branch]]
 
     return figures
 

@@ -104,7 +104,8 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
     met = {event.kind for event in curve.bifurcations}
     lines_of = [Line2D([], [], color=INK, lw=1.2, label="stable")]
     if not curve.stable.all():
-        lines_of.append(Line2D([], [], color=INK, lw=1.2, ls=_UNSTABLE, label="unstable"))
+        label = "unstable or not decided" if curve.settled else "unstable"
+        lines_of.append(Line2D([], [], color=INK, lw=1.2, ls=_UNSTABLE, label=label))
     marks = [
         Line2D([], [], ls="", marker=marker, color=color, mfc=inside, ms=4, label=kind)
         for kind, (marker, color, inside) in _MARKS.items()

@@ -97,9 +97,6 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     )
     if any(line.kind == "sideband" for line in campbell.lines):
         note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
-    if campbell.exponents is not None:
-        note += "; lines of modes: carriers frozen; +: exponents with turning carriers"
-        note += "" if campbell.observed is None else "; ×: where fixed sensors see them most"
     speeds = RPM * np.abs(campbell.speeds)
     top, low, high = campbell.limit / HERTZ, float(speeds[0]), float(speeds[-1])
     # Orders that leave the panel at its top are named above it, the others beside its right end.
@@ -115,7 +112,14 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     width = SHEET_WIDTH - LEFT - column_width(beside)
     row = arrange(above, [(label.x - low) / (high - low) * width for label in above], width)
     kinds = {kind for row_of_kinds in campbell.kinds for kind in row_of_kinds if kind}
-    foot = FOOT + legend_height(len(kinds) + (operating_speed is not None), _CAMPBELL_COLUMNS)
+    # Branches are of frozen carriers where these turn.
+    marks = [("+", "turning carriers", campbell.exponents), ("x", "seen by sensors", campbell.observed)]
+    turning = [
+        Line2D([], [], ls="", marker=marker, color=INK, ms=4.0, mew=0.8, label=label)
+        for marker, label, values in marks
+        if values is not None
+    ]
+    foot = FOOT + legend_height(len(kinds) + len(turning) + (operating_speed is not None), _CAMPBELL_COLUMNS)
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + foot, title, note)
     axes = panel(figure, foot, _HEIGHT, width=width)
     axes.set(xlim=(speeds[0], speeds[-1]), ylim=(0.0, top))
@@ -128,6 +132,7 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     draw_column(axes, beside)
     _mark_crossings(axes, campbell)
     handles = [Line2D([], [], color=KIND_COLORS.get(kind, INK), lw=1.4, label=kind) for kind in met]
+    handles += turning
     if operating_speed is not None:
         handles.append(mark_operation(axes, operating_speed, "-."))
     legend_below(figure, handles, _CAMPBELL_COLUMNS)

@@ -1,10 +1,12 @@
 """Results of `steady` of a machine whose carriers turn: period, proofs, and lines of the turns of the carrier."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from gearwhine.coupling.analyses.steady_state import solve_steady
-from gearwhine.results.steady_state import sections, steady_document
+from gearwhine.results.steady_state import curve_sentences, sections, steady_document
 from tests.machines.turning_set import TEETH, turning_machine
 
 
@@ -36,3 +38,18 @@ def test_a_settled_motion_has_its_period_and_proofs() -> None:
     open_ = motion | {"stable": False, "stability": "not decided", "instability": None}
     (section,) = sections(document | {"motions": [open_]})
     assert any(isinstance(part, str) and "stability not decided (largest" in part for part in section.content)
+
+
+def test_points_over_speed_whose_stability_is_open_are_counted_apart() -> None:
+    curve: dict[str, Any] = {
+        "speed_rpm": [1000.0, 1500.0, 2000.0, 2500.0],
+        "stable": [True, False, False, False],
+        "stability": ["stable", "not decided", "unstable", "not decided"],
+        "ending": "end",
+        "gear_pairs": [],
+        "bifurcations": [],
+    }
+    (sentence,) = curve_sentences(curve)
+    assert sentence == "Followed from 1000 to 2500 rpm in 4 points, 1 of them unstable, 2 not decided"
+    (sentence,) = curve_sentences(curve | {"stability": ["stable", "unstable", "unstable", "unstable"]})
+    assert sentence == "Followed from 1000 to 2500 rpm in 4 points, 3 of them unstable"
