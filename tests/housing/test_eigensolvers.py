@@ -1,7 +1,7 @@
 """Choice of the eigensolver: scipy's eigsh and block Lanczos give the same certified modes, double ones included."""
 
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +12,8 @@ from gearwhine.housing.modes import eigensolver
 from gearwhine.housing.modes.eigensolver import Solver, arpack_modes
 from gearwhine.meshes import ElementBlock, Mesh
 
-SOLVERS = pytest.mark.parametrize("solver", get_args(Solver))
+IN_ONE_PROCESS: tuple[Solver, ...] = ("lanczos", "eigsh")
+SOLVERS = pytest.mark.parametrize("solver", IN_ONE_PROCESS)
 SIDE, WALL, LENGTH, CELLS, SLICES = 0.1, 0.01, 0.3, 6, 6
 
 
@@ -48,7 +49,7 @@ def test_double_modes_of_a_square_tube_are_complete(
 
 @pytest.mark.parametrize("asked", [{"count": 24}, {"frequency_limit": 2 * np.pi * 12000.0}])
 def test_both_solvers_give_the_same_modes(square_tube: Matrices, asked: dict[str, Any]) -> None:
-    one, other = (solve_modes(square_tube, solver=solver, **asked) for solver in get_args(Solver))
+    one, other = (solve_modes(square_tube, solver=solver, **asked) for solver in IN_ONE_PROCESS)
     np.testing.assert_allclose(one.frequencies, other.frequencies, rtol=1e-9)
     # Within a double mode any rotation will do, so spaces are compared: every mode lies in the span of the others'.
     first, second = (modes.shapes.reshape(len(modes.shapes), -1) for modes in (one, other))
