@@ -17,7 +17,7 @@ from gearwhine.coupling.analyses.condition_record import condition_record
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solve.machine import plan_of
@@ -86,7 +86,7 @@ class DetectionCase:
         """
         case = self.case(point)
         machine, plan = self.varied.machine(case), plan_of(case)
-        load = find_load(machine, is_needed=case.parts.needs_operating_point)[0] if machine.is_loaded else None
+        load = load_or_reason(machine, is_needed=case.parts.needs_operating_point)[0] if machine.is_loaded else None
         loaded = load_machine(machine, None if load is None else load.point, plan.run)
         record = condition_record(solve_transient(loaded.coupled, plan))
         gear = next(one for one in record.gears if one.gear == self.gear)

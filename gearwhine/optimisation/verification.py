@@ -16,7 +16,7 @@ from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.coupling.linear.lines_over_speed import sensor_rms
-from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.variation.quantities import level_of
 from gearwhine.variation.samples import Failure
@@ -94,7 +94,7 @@ def motion_of(machine: Machine, plan: TransientPlan, speeds: Sequence[float], *,
     gearwhine.coupling.CouplingError, gearwhine.coupling.TransientError, ...
         Where the machine cannot be solved.
     """
-    load = find_load(machine, is_needed=needs_load)[0] if machine.is_loaded else None
+    load = load_or_reason(machine, is_needed=needs_load)[0] if machine.is_loaded else None
     housing = machine.housing_component
     limit = None if housing is None else housing.complete_below
     linear, motion = dict[str, float](), dict[str, float]()

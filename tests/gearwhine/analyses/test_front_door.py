@@ -54,7 +54,8 @@ def test_command_has_one_thread_of_blas_unless_told_otherwise(given: dict[str, s
     code = (
         "import os, sys, gearwhine.cli\n"
         "from gearwhine.__main__ import main\n"
-        "gearwhine.cli.run_command = lambda *_, **__: print('numpy' in sys.modules, os.environ.get('OPENBLAS_NUM_THREADS'))\n"
+        "def told(*_, **__): print('numpy' in sys.modules, os.environ.get('OPENBLAS_NUM_THREADS'))\n"
+        "gearwhine.cli.run_command = told\n"
         "main()"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
