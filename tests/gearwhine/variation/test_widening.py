@@ -37,7 +37,7 @@ force = [
     { rotor = "shaft", at = "400 mm", x = "500 N" },
 ]
 [variation]
-samples = 512
+samples = 256
 [variation.vary]
 "operation.force[0].x" = { uniform = ["900 N", "1100 N"] }
 "operation.force[1].x" = { uniform = ["100 N", "900 N"] }
@@ -58,7 +58,7 @@ def _within(first: float, second: float, limit: float) -> float:
 def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     place = tmp_path_factory.mktemp("widened")
     (place / "shaft.toml").write_text(SHAFT)
-    return gw.load(place / "shaft.toml").vary(512, widen=1.5, folder=place / "out", workers=1).document
+    return gw.load(place / "shaft.toml").vary(256, widen=1.5, folder=place / "out", workers=1).document
 
 
 def test_the_yield_with_a_wider_force_is_that_of_the_closed_form(found: dict[str, object]) -> None:
@@ -72,7 +72,7 @@ def test_the_yield_with_a_wider_force_is_that_of_the_closed_form(found: dict[str
         assert row["yield"]["share"] == pytest.approx(after, abs=0.01)
         assert row["change"]["low"] <= after - before <= row["change"]["high"]
         assert row["change"]["difference"] == pytest.approx(after - before, abs=0.01)
-        assert row["change"]["high"] - row["change"]["low"] < 0.1
+        assert row["change"]["high"] - row["change"]["low"] < 0.13
 
 
 def test_the_scatter_with_a_wider_force_is_that_of_the_sum(found: dict[str, object]) -> None:
@@ -82,8 +82,8 @@ def test_the_scatter_with_a_wider_force_is_that_of_the_sum(found: dict[str, obje
         assert quantity["std_before"] == pytest.approx(np.hypot(80.0, 80.0) / np.sqrt(3.0), rel=0.01)
         assert quantity["quantile"] > quantity["quantile_before"]
     # The table of distributions is of the gearboxes as they are.
-    assert found["samples"] == 3 * 512
-    assert found["representative"] == 512
+    assert found["samples"] == 3 * 256
+    assert found["representative"] == 256
     (left,) = [one for one in found["quantities"] if one["name"] == LEFT]
     assert left["std"] == pytest.approx(np.hypot(80.0, 80.0) / np.sqrt(3.0), rel=0.01)
 
