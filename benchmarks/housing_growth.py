@@ -9,7 +9,6 @@ alone, from the assembly to the certificate: the largest resident set, as the op
 
 import argparse
 import json
-import pickle
 import resource
 import subprocess
 import sys
@@ -22,6 +21,7 @@ from benchmark_box import STEEL, Problem, benchmark_box
 from timing import machine, timed
 
 from gearwhine.housing import assemble, solve_modes
+from gearwhine.meshes import ElementBlock, Mesh
 
 
 def solve(problem: Problem, limit: float, precision: str | None, threads: int) -> dict[str, object]:
@@ -52,6 +52,19 @@ def solve(problem: Problem, limit: float, precision: str | None, threads: int) -
     }
 
 
+def write_problem(file: Path, problem: Problem) -> None:
+    """Write a problem as plain arrays."""
+    (block,) = problem.mesh.blocks
+    np.savez(file, points=problem.mesh.points, kind=block.kind, nodes=block.nodes, fixed=problem.fixed)
+
+
+def read_problem(file: Path) -> Problem:
+    """Read a problem that :func:`write_problem` wrote."""
+    with np.load(file, allow_pickle=False) as arrays:
+        block = ElementBlock(str(arrays["kind"]), arrays["nodes"])
+        return Problem(Mesh(arrays["points"], (block,)), arrays["fixed"])
+
+
 def separately(*words: str) -> str:
     """Output of this program in a process of its own."""
     return subprocess.run([sys.executable, __file__, *words], check=True, capture_output=True, text=True).stdout
@@ -67,11 +80,10 @@ def main() -> None:
     parser.add_argument("--solve", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.mesh is not None:
-        options.mesh.write_bytes(pickle.dumps(benchmark_box(1e-3 * options.mesh_size[0])))
+        write_problem(options.mesh, benchmark_box(1e-3 * options.mesh_size[0]))
         return
     if options.solve is not None:
-        problem = pickle.loads(options.solve.read_bytes())  # noqa: S301 - written by this program
-        print(json.dumps(solve(problem, options.limit, options.precision, options.threads)))
+        print(json.dumps(solve(read_problem(options.solve), options.limit, options.precision, options.threads)))
         return
     print(f"{machine()}; all modes below {options.limit:.0f} Hz, {options.threads} threads\n")
     columns = [
@@ -89,7 +101,7 @@ def main() -> None:
     rows = []
     for size in options.mesh_size:
         with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "mesh"
+            file = Path(folder) / "mesh.npz"
             separately(str(size), "--mesh", str(file))
             words = ["--solve", str(file), "--limit", str(options.limit), "--threads", str(options.threads)]
             precision = [] if options.precision is None else ["--precision", options.precision]

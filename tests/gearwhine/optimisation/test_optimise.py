@@ -14,33 +14,11 @@ from gearwhine.cli import run_command
 from gearwhine.failures import MissingExtraError
 from gearwhine.numerics.distributions import Discrete, Normal, Uniform
 from gearwhine.variation.samples import FOLDER
+from tests.machines.belted_shaft import BELTED_SHAFT
 
-SHAFT = """
-title = "A shaft with two belts"
-[material.steel]
-youngs_modulus = "207 GPa"
-poisson_ratio = 0.3
-density = "7850 kg/m^3"
-[[rotor]]
-name = "shaft"
-material = "steel"
-segments = [{ length = "500 mm", diameter = "30 mm" }]
-[[bearing]]
-name = "left"
-rotor = "shaft"
-at = "0 mm"
-stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
-[[bearing]]
-name = "right"
-rotor = "shaft"
-at = "500 mm"
-stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
-[operation]
-speed = "1000 rpm"
-force = [
-    { rotor = "shaft", at = "100 mm", x = "1000 N" },
-    { rotor = "shaft", at = "400 mm", x = "500 N" },
-]
+SHAFT = (
+    BELTED_SHAFT
+    + """
 [optimisation]
 evaluations = 50
 [optimisation.design]
@@ -51,7 +29,7 @@ evaluations = 50
 [optimisation.limit]
 "bearing.left.force_n" = { at_least = 1000 }
 """
-"""The left bearing carries 0.8 F1 + 0.2 F2, the right one 0.2 F1 + 0.8 F2."""
+)
 LEFT, RIGHT = "bearing.left.force_n", "bearing.right.force_n"
 LIMIT = '"bearing.left.force_n" = { at_least = 1000 }'
 KEYS = ("operation.force[0].x", "operation.force[1].x")

@@ -15,33 +15,11 @@ from gearwhine.cli import run_command
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
 from gearwhine.variation.samples import FOLDER
+from tests.machines.belted_shaft import BELTED_SHAFT
 
-SHAFT = """
-title = "A shaft with two belts"
-[material.steel]
-youngs_modulus = "207 GPa"
-poisson_ratio = 0.3
-density = "7850 kg/m^3"
-[[rotor]]
-name = "shaft"
-material = "steel"
-segments = [{ length = "500 mm", diameter = "30 mm" }]
-[[bearing]]
-name = "left"
-rotor = "shaft"
-at = "0 mm"
-stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
-[[bearing]]
-name = "right"
-rotor = "shaft"
-at = "500 mm"
-stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
-[operation]
-speed = "1000 rpm"
-force = [
-    { rotor = "shaft", at = "100 mm", x = "1000 N" },
-    { rotor = "shaft", at = "400 mm", x = "500 N" },
-]
+SHAFT = (
+    BELTED_SHAFT
+    + """
 [variation]
 samples = 256
 [variation.vary]
@@ -50,6 +28,7 @@ samples = 256
 [variation.limit]
 "bearing.left.force_n" = { at_most = 940 }
 """
+)
 LEFT = "bearing.left.force_n"
 TE = "gear_pair.pinion-wheel.transmission_error_peak_to_peak_m"
 

@@ -9,33 +9,11 @@ import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.numerics.distributions import Discrete, Measured, Normal, Rayleigh, Triangular, Uniform, widened
 from gearwhine.variation.statistics import Difference
+from tests.machines.belted_shaft import BELTED_SHAFT
 
-SHAFT = """
-title = "A shaft with two belts"
-[material.steel]
-youngs_modulus = "207 GPa"
-poisson_ratio = 0.3
-density = "7850 kg/m^3"
-[[rotor]]
-name = "shaft"
-material = "steel"
-segments = [{ length = "500 mm", diameter = "30 mm" }]
-[[bearing]]
-name = "left"
-rotor = "shaft"
-at = "0 mm"
-stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
-[[bearing]]
-name = "right"
-rotor = "shaft"
-at = "500 mm"
-stiffness = { xx = "1e8 N/m", yy = "1e8 N/m" }
-[operation]
-speed = "1000 rpm"
-force = [
-    { rotor = "shaft", at = "100 mm", x = "1000 N" },
-    { rotor = "shaft", at = "400 mm", x = "500 N" },
-]
+SHAFT = (
+    BELTED_SHAFT
+    + """
 [variation]
 samples = 256
 [variation.vary]
@@ -45,6 +23,7 @@ samples = 256
 [variation.limit]
 "bearing.left.force_n" = { at_most = 1000 }
 """
+)
 LEFT = "bearing.left.force_n"
 
 
