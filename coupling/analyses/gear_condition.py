@@ -51,6 +51,8 @@ class WatchedSignal:
         What the average is not sure of; None where that is known to be nothing.
     healthy : SynchronousAverage or None
         Average of an earlier record, without a fault; None where the record is the first one.
+    tone_hz : float
+        Frequency at which the envelope is taken, as that of a spall of a bearing; 0 for the turns of the shaft.
     """
 
     average: SynchronousAverage
@@ -61,6 +63,7 @@ class WatchedSignal:
     is_steady: bool = True
     unsettled: SynchronousAverage | None = None
     healthy: SynchronousAverage | None = None
+    tone_hz: float = 0.0
 
     @cached_property
     def no_residual(self) -> str:
@@ -191,8 +194,8 @@ INDICATORS: dict[str, Indicator] = {
     ),
     "envelope": Indicator(
         "envelope",
-        "envelope at the turn",
-        lambda one: envelope_at(one.signal, one.interval, one.limit_hz, one.turn_hz),
+        "envelope line",
+        lambda one: envelope_at(one.signal, one.interval, one.limit_hz, one.tone_hz or one.turn_hz),
         of_time=True,
     ),
     "change_rms": Indicator(

@@ -30,7 +30,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import (
     driving_frequencies,
-    element_passes,
+    frequencies_of_elements,
     least_sampling_rate,
     varies_within,
 )
@@ -298,8 +298,8 @@ def _power_of_two(least: float) -> int:
 
 def _driving_orders(system: CoupledSystem, revolution: float) -> list[float]:
     """Driving frequencies, with those of rolling elements, over that of the first driver."""
-    passes = [frequency for frequencies in element_passes(system).values() for frequency in frequencies]
-    return sorted({revolution * frequency for frequency in [*driving_frequencies(system).values(), *passes]})
+    frequencies = [*driving_frequencies(system).values(), *frequencies_of_elements(system)]
+    return sorted({revolution * frequency for frequency in frequencies})
 
 
 def _whole_stretch(

@@ -7,6 +7,9 @@ ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
+Over a spall an element drops by d (:mod:`gearwhine.rotors.rolling_bearings.spalls`): its approach is as much less, and
+the energy changes by -Q d' more, Q the element's load.
+
 The outer ring of a floating bearing takes the place along z at which the elements have no axial force; forces and
 tangent are condensed over it, see :mod:`gearwhine.rotors.rolling_bearings.equilibrium`. As the energy is least there,
 its slope over ψ is that at the place held.
@@ -32,10 +35,45 @@ _SEATING_STEPS = 100
 
 
 @inner()
-def _balls(
-    shape: FloatArray, count: int, angle: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+def _drop(
+    bearings: Bearings, row: int, element: int, azimuth: float, nominal_time: float, place: float
 ) -> tuple[float, float]:
-    """Add the forces and tangent of a row of balls; returns its energy [J] and that energy's cage-angle slope."""
+    """Drop of an element at an azimuth into the spalls of its row [m], and its rate by the nominal time [m/s].
+
+    ``place`` is that of a slice of a roller over half its length, from the middle.
+    """
+    total, rate = 0.0, 0.0
+    for number in range(bearings.first_spall[row], bearings.first_spall[row + 1]):
+        spall = bearings.spalls[number]
+        angle, turning = spall[1] + spall[2] * nominal_time, spall[2]
+        if spall[0] < 0.0:
+            angle, turning = azimuth - angle, bearings.cage[row, 1] - turning
+        elif spall[0] != element:
+            continue
+        angle -= 2.0 * math.pi * math.floor(0.5 * angle / math.pi + 0.5)
+        inside = spall[3] - abs(angle)
+        if inside <= 0.0 or abs(place) > spall[8]:
+            continue
+        damaged, other, slope, deep, steep = spall[4], spall[5], spall[6], spall[7], 0.0
+        edge = slope * inside
+        across = damaged * math.sin(edge)
+        if abs(across) < abs(other):
+            root = math.copysign(math.sqrt(other * other - across * across), other)
+            on_edge = 2.0 * damaged * math.sin(0.5 * edge) ** 2 + across * across / (other + root)
+            if on_edge < deep:
+                deep, steep = on_edge, across * (1.0 + damaged * math.cos(edge) / root)
+        total += deep
+        rate -= (slope if angle > 0.0 else -slope) * steep * turning
+    return total, rate
+
+
+@inner()
+def _balls(
+    bearings: Bearings, row: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+) -> tuple[float, float]:
+    """Add the forces and tangent of a row of balls; returns its energy [J] and its slope by the nominal time [J/s]."""
+    shape, count, cage_rate = bearings.shape[row], bearings.elements[row], bearings.cage[row, 1]
+    angle = bearings.cage[row, 0] + cage_rate * nominal_time
     distance, start_r, start_z, before = shape[0], shape[1], shape[2], shape[3]
     reach, place, stiffness = shape[4], shape[5], shape[6]
     energy, slope = 0.0, 0.0
@@ -48,7 +86,8 @@ def _balls(
         length = math.sqrt(v_r * v_r + v_z * v_z)
         # |v|² - A² by its terms: |v| - A itself would lose the digits that A has and the approach has not.
         excess = before + 2.0 * (moved_r * start_r + moved_z * start_z) + moved_r * moved_r + moved_z * moved_z
-        deep = excess / (length + distance)
+        drop, drop_rate = _drop(bearings, row, ball, azimuth, nominal_time, 0.0)
+        deep = excess / (length + distance) - drop
         if deep <= 0.0:
             continue
         n_r, n_z = v_r / length, v_z / length
@@ -65,21 +104,22 @@ def _balls(
             for j in range(5):
                 tangent[i, j] += by_r * across[j] + by_z * along[j]
         energy += 0.4 * load * deep
-        slope += f_r * (q[1] * c - q[0] * s + place * swing) - f_z * reach * swing
+        slope += cage_rate * (f_r * (q[1] * c - q[0] * s + place * swing) - f_z * reach * swing) - load * drop_rate
     return energy, slope
 
 
 @inner()
 def _rollers(
-    shape: FloatArray,
-    slices: FloatArray,
-    count: int,
-    angle: float,
-    q: FloatArray,
-    force: FloatArray,
-    tangent: FloatArray,
+    bearings: Bearings, row: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
     """Add the forces and tangent of a row of rollers in slices (n, 2): arm of the normal, gap of the profile."""
+    shape, slices, count, cage_rate = (
+        bearings.shape[row],
+        bearings.slices[row],
+        bearings.elements[row],
+        bearings.cage[row, 1],
+    )
+    angle = bearings.cage[row, 0] + cage_rate * nominal_time
     free, stiffness, number, across, along = shape[0], shape[1], int(shape[2]), shape[3], shape[4]
     energy, slope = 0.0, 0.0
     for roller in range(count):
@@ -88,9 +128,14 @@ def _rollers(
         level, tilt = across * (q[0] * c + q[1] * s) + along * q[2] + free, q[4] * c - q[3] * s
         level_slope, tilt_slope = across * (q[1] * c - q[0] * s), -q[4] * s - q[3] * c
         load, moment, k, k_place, k_square = 0.0, 0.0, 0.0, 0.0, 0.0
+        # All spalls are in the middle: where it has no drop no slice has one.
+        dropped = _drop(bearings, row, roller, azimuth, nominal_time, 0.0)[0] > 0.0
         for slice_number in range(number):
-            place = slices[slice_number, 0]
-            deep = level + place * tilt - slices[slice_number, 1]
+            place, drop, drop_rate = slices[slice_number, 0], 0.0, 0.0
+            if dropped:
+                along_roller = (2.0 * slice_number + 1.0 - number) / number
+                drop, drop_rate = _drop(bearings, row, roller, azimuth, nominal_time, along_roller)
+            deep = level + place * tilt - slices[slice_number, 1] - drop
             if deep <= 0.0:
                 continue
             root = stiffness * deep ** (1.0 / 9.0)
@@ -101,9 +146,10 @@ def _rollers(
             k_place += steep * place
             k_square += steep * place * place
             energy += (9.0 / 19.0) * push * deep
+            slope -= push * drop_rate
         if k == 0.0:
             continue
-        slope += load * level_slope + moment * tilt_slope
+        slope += cage_rate * (load * level_slope + moment * tilt_slope)
         # A roller feels its approach in the middle, by x, y and z, and its tilt, by the rotations.
         middle, turn = (across * c, across * s, along), (-s, c)
         for i in range(3):
@@ -154,16 +200,15 @@ def _rows(
             tangent[i, j] = 0.0
     energy, slope = 0.0, 0.0
     for row in range(bearings.first_row[number], bearings.first_row[number + 1]):
-        kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
-        angle = bearings.cage[row, 0] + bearings.cage[row, 1] * nominal_time
+        kind = bearings.kind[row]
         if kind == BALLS:
-            added, by_angle = _balls(shape, count, angle, q, force, tangent)
+            added, by_time = _balls(bearings, row, nominal_time, q, force, tangent)
         elif kind == ROLLERS:
-            added, by_angle = _rollers(shape, bearings.slices[row], count, angle, q, force, tangent)
+            added, by_time = _rollers(bearings, row, nominal_time, q, force, tangent)
         else:
-            added, by_angle = _gap(shape, q, force, tangent), 0.0
+            added, by_time = _gap(bearings.shape[row], q, force, tangent), 0.0
         energy += added
-        slope += by_angle * bearings.cage[row, 1]
+        slope += by_time
     return energy, slope
 
 

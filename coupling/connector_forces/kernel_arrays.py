@@ -10,6 +10,7 @@ Rolling-bearing and gap laws are plain arrays too.
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import astuple
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.connectors import NonlinearConnector
-from gearwhine.rotors.rolling_bearings import BallRow
+from gearwhine.rotors.rolling_bearings import BallRow, spall_contacts
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -36,7 +37,7 @@ IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
 BEARING_ENERGY, BEARING_POWER = (0, 0), (0, 1)
 
 _SHAPE = 7
-Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray]
+Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray, list[tuple[float, ...]]]
 
 
 class Dynamics(NamedTuple):
@@ -145,6 +146,8 @@ class Bearings(NamedTuple):
     shape: FloatArray  # (w, 7) geometry and stiffness, by the kind
     cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the nominal time
     slices: FloatArray  # (w, slices, 2) place and gap of the slices of rollers
+    first_spall: IntArray  # (w + 1,)
+    spalls: FloatArray  # (f, 9) contacts with the spalls of the rows: `gearwhine.rotors.rolling_bearings.SpallContact`
 
 
 class Segments(NamedTuple):
@@ -299,19 +302,24 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         shape=shape,
         cage=np.array([row[3] for row in rows], dtype=np.float64).reshape(-1, 2),
         slices=slices,
+        first_spall=np.cumsum([0, *(len(row[5]) for row in rows)]),
+        spalls=np.array([spall for row in rows for spall in row[5]], dtype=np.float64).reshape(-1, 9),
     )
 
 
 def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
-    """Kind, count, numbers, cage and slices of every row of a law."""
+    """Kind, count, numbers, cage, slices and spalls of every row of a law."""
     none = np.zeros((0, 2))
     if isinstance(law, GapLaw):
-        yield GAP, 0, (law.force, law.depth, law.exponent, law.gap), (0.0, 0.0), none
+        yield GAP, 0, (law.force, law.depth, law.exponent, law.gap), (0.0, 0.0), none, []
         return
-    for row in law.state.bearing.rows:
+    bearing = law.state.bearing
+    for number, row in enumerate(bearing.rows):
         cage = law.cage_angle, row.cage_speed(speed)
+        of_row = [spall for spall in law.spalls if spall.row == number]
+        spalls = [tuple(map(float, astuple(one))) for spall in of_row for one in spall_contacts(spall, bearing, speed)]
         if isinstance(row, BallRow):
-            yield BALLS, row.count, _ball_shape(row), cage, none
+            yield BALLS, row.count, _ball_shape(row), cage, none, spalls
         else:
             angle = row.contact_angle
             shape = (
@@ -321,7 +329,7 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
                 math.cos(angle),
                 row.direction * math.sin(angle),
             )
-            yield ROLLERS, row.count, shape, cage, np.column_stack([row.tilt_arms, 2.0 * row.slice_drops])
+            yield ROLLERS, row.count, shape, cage, np.column_stack([row.tilt_arms, 2.0 * row.slice_drops]), spalls
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:

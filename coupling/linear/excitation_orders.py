@@ -9,6 +9,7 @@ m f_mesh ± k (f_s - f_c) ± n f_c (Feng & Zuo, J. Sound Vib. 331 (2012) 4919, f
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Literal
 
 from gearwhine.coupling.assembly import CoupledMachine
@@ -16,6 +17,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.carrier_sidebands import Sideband
 from gearwhine.coupling.machine.base_motion import BaseHarmonic
 from gearwhine.coupling.machine.driving_frequencies import element_passes as passing_frequencies
+from gearwhine.coupling.machine.driving_frequencies import spall_strikes
 from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.machine.mounted_parts import GearMesh
 
@@ -91,7 +93,8 @@ def excitation_lines(
         Number of sidebands on either side of each mesh harmonic, spaced by the speed of either gear's shaft, or by the
         frequency of a load where loads count. One below zero is folded to its size, one at zero left out.
     element_passes : sequence of int
-        Multiples of the passing of rolling elements over the ring at rest, of bearings whose law follows them.
+        Multiples of the passing of rolling elements over the ring at rest, of bearings whose law follows them, and of
+        the strikes of their spalls.
     load_multiples : sequence of int
         Multiples of harmonic torques and of harmonic motions of the base, whose frequency may be constant.
     excited : mapping of str to ExcitedOrders, optional
@@ -172,6 +175,16 @@ def excitation_lines(
         for frequency in frequencies
         for multiple in element_passes
     ]
+    for strikes in spall_strikes(machine.system):
+        steps_beside = [0, *_signed(sidebands)] if strikes.turning else [0]
+        for multiple, number in product(element_passes, steps_beside):
+            order = abs(multiple * strikes.frequency + number * strikes.turning_frequency) * _TWO_PI / leading
+            text = f"{multiple}× {strikes.name}"
+            if number == 0:
+                lines.append(ExcitationLine(text, "bearing", order))
+            elif order > _STANDSTILL:
+                beside = _in_words([(strikes.turning, strikes.turning_frequency, number)])
+                lines.append(ExcitationLine(f"{text} {beside}", "sideband", order, abs(number)))
     return tuple(lines)
 
 

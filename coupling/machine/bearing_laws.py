@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors.rolling_bearings import FourPointRow, RollerRow, RollingState
+from gearwhine.rotors.rolling_bearings import FourPointRow, RollerRow, RollingSpall, RollingState, spall_contacts
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,18 +29,26 @@ class RollingLaw:
         in which the shaft cannot move.
     cage_angle : float
         Azimuth of the first element of every row at t = 0 [rad].
+    spalls : tuple of RollingSpall
+        Damage of the raceways and elements, over which the elements drop; see
+        :mod:`gearwhine.rotors.rolling_bearings.spalls`.
 
     Raises
     ------
     CouplingError
         Balls in four-point contact, or cylindrical rollers with flanges, which have no law in the time domain.
+    gearwhine.rotors.RotorError
+        A spall that the bearing cannot have.
     """
 
     state: RollingState
     cage_angle: float = 0.0
+    spalls: tuple[RollingSpall, ...] = ()
 
     def __post_init__(self) -> None:
-        """Require rows whose elements have a law in the time domain."""
+        """Require rows whose elements have a law in the time domain, and spalls that they can have."""
+        for spall in self.spalls:
+            spall_contacts(spall, self.state.bearing, 0.0)
         for row in self.state.bearing.rows:
             flanged = isinstance(row, RollerRow) and row.flanges != "none"
             if flanged or isinstance(row, FourPointRow):

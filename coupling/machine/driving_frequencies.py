@@ -10,6 +10,7 @@ which is small against its range beyond a frequency that follows from that.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -60,6 +61,62 @@ def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
     return passes
 
 
+@dataclass(frozen=True)
+class SpallStrikes:
+    """Strikes of a bearing's spall.
+
+    Attributes
+    ----------
+    name : str
+        Damaged part and bearing.
+    frequency : float
+        Strikes in a second [Hz].
+    turning : str
+        What carries the spall through the loaded zone; empty where it stands still there.
+    turning_frequency : float
+        Turns of that in a second [Hz].
+    """
+
+    name: str
+    frequency: float
+    turning: str = ""
+    turning_frequency: float = 0.0
+
+
+def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
+    """Return the strikes of all spalls of rolling bearings, alike ones once.
+
+    Elements pass a raceway's spall, which its ring carries through the loaded zone where it turns; an element strikes
+    either raceway once in each turn of its own, and the cage carries it.
+    """
+    found = list[SpallStrikes]()
+    for connector in system.nonlinear:
+        if not isinstance(connector.law, RollingLaw):
+            continue
+        for spall in connector.law.spalls:
+            row = connector.law.state.bearing.rows[spall.row]
+            frequency = spall.tone(row, connector.speed) / _TWO_PI
+            part = "rolling element" if spall.on == "element" else f"{spall.on} raceway"
+            name = f"{part} of {connector.name}"
+            if spall.on == "element":
+                cage = abs(row.cage_speed(connector.speed)) / _TWO_PI
+                found.append(SpallStrikes(name, frequency, f"cage of {connector.name}", cage))
+            elif (spall.on == "outer") == row.outer_turns:
+                turn = abs(connector.speed) / _TWO_PI
+                found.append(SpallStrikes(name, frequency, f"{spall.on} ring of {connector.name}", turn))
+            else:
+                found.append(SpallStrikes(name, frequency))
+    return tuple(dict.fromkeys(one for one in found if one.frequency > 0.0))
+
+
+def frequencies_of_elements(system: CoupledSystem) -> list[float]:
+    """Return the frequencies of rolling elements [Hz]: their passing, strikes of spalls and turns of these."""
+    frequencies = [frequency for passes in element_passes(system).values() for frequency in passes]
+    for strikes in spall_strikes(system):
+        frequencies += [one for one in (strikes.frequency, strikes.turning_frequency) if one > 0.0]
+    return frequencies
+
+
 def least_sampling_rate(
     system: CoupledSystem, begin: float = 0.0, end: float = 0.0, *, fastest: float = 1.0
 ) -> tuple[float, float]:
@@ -87,9 +144,8 @@ def _sampling_rates(system: CoupledSystem, begin: float, end: float, fastest: fl
     for contact in system.contacts:
         frequency = fastest * abs(contact.mesh_frequency)
         yield _SAMPLES_PER_MESH * frequency, frequency
-    for passes in element_passes(system).values():
-        for frequency in passes:
-            yield _SAMPLES_PER_MESH * fastest * frequency, fastest * frequency
+    for frequency in frequencies_of_elements(system):
+        yield _SAMPLES_PER_MESH * fastest * frequency, fastest * frequency
     for load in system.timed_loads if end > begin else ():
         inside = _inside(load.times, begin, end)
         times = np.concatenate([[begin], load.times[inside], [end]])

@@ -29,6 +29,7 @@ from gearwhine.coupling.linear.excitation_orders import (
     joined_causes,
     rotations,
 )
+from gearwhine.coupling.machine.driving_frequencies import spall_strikes
 
 LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 
@@ -103,12 +104,15 @@ def line_names(
     # A sideband below the highest line may belong to a harmonic above it.
     off = [sum(number * abs(machine.speeds[carrier]) for carrier, number in one.turns) for one in by_carriers or ()]
     highest += max(map(abs, off), default=0.0) / (2.0 * np.pi)
+    # The strikes of a spall are short, with harmonics as far as a record reaches.
+    strikes = [one.frequency for one in spall_strikes(machine.system)]
+    passes = max([_ELEMENT_PASSES, *(1 + int(highest / frequency) for frequency in strikes)])
     lines = excitation_lines(
         machine,
         shaft_orders=range(1, _SHAFT_ORDERS + 1),
         mesh_harmonics=range(1, 2 + int(highest / min(meshes))) if meshes else (),
         sidebands=_SIDEBANDS,
-        element_passes=range(1, _ELEMENT_PASSES + 1),
+        element_passes=range(1, passes + 1),
         load_multiples=range(1, _LOAD_MULTIPLES + 1),
         excited=excited,
         by_carriers=by_carriers,

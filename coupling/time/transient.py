@@ -13,7 +13,6 @@ import struct
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.connector_forces.kernel_arrays import APART, IMPULSE, PEAK
 from gearwhine.coupling.errors import CouplingError, TransientError
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-from gearwhine.coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
+from gearwhine.coupling.machine.driving_frequencies import driving_frequencies, frequencies_of_elements, varies_within
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum, whole_period_samples
 from gearwhine.coupling.time.condensation import condensed, with_static_attachments
@@ -403,7 +402,7 @@ class Motion:
         """
         values = self.dataset[quantity].sel({self.dataset[quantity].dims[0]: signal}).values
         interval, system = float(self.histories.times[1] - self.histories.times[0]), self.machine.system
-        frequencies = [*driving_frequencies(system).values(), *chain.from_iterable(element_passes(system).values())]
+        frequencies = [*driving_frequencies(system).values(), *frequencies_of_elements(system)]
         whole = whole_period_samples(len(values), interval, frequencies)
         if whole is None or varies_within(system, *self.histories.times[[0, -1]].tolist()):
             return amplitude_spectrum(values, interval, "hann")

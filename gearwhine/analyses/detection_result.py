@@ -14,6 +14,7 @@ import numpy as np
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, require
+from gearwhine.case.bearings import Bearing
 from gearwhine.case.detection import MOST_GEARBOXES, Detection
 from gearwhine.case.errors import UNSAID, key_of
 from gearwhine.case.model import lacking
@@ -33,6 +34,7 @@ from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import sobol_points
 from gearwhine.results.detection import detection_dataset, detection_document
+from gearwhine.rotors.rolling_bearings import RollingSpall
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
@@ -67,6 +69,8 @@ class PlannedDetection:
         Change that makes a healthy gearbox.
     gear : str
     monitor : Monitor
+    spall : (str, RollingSpall) or None
+        Name of the bearing, and its spall, where that is the fault.
     """
 
     case: Case
@@ -78,6 +82,7 @@ class PlannedDetection:
     without: str
     gear: str
     monitor: Monitor
+    spall: tuple[str, RollingSpall] | None = None
 
 
 def plan_detection(source: CaseSource) -> PlannedDetection:
@@ -108,8 +113,10 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     table = case.housing or case.reduced_housing
     sensors = _sensors(() if table is None else tuple(sensor.name for sensor in table.sensor), settings)
     shafts = {one.name: one.rotor for one in case.gear}
-    gear = _gear(list(shafts), case.gear_pair[0].driver, settings)
     without = _healthy_change(case_document(case), settings)
+    bearing, spall = _spall(case, settings)
+    beside = [one.name for one in case.gear if bearing is not None and one.rotor == bearing.rotor]
+    gear = _gear(list(shafts), next(iter(beside), case.gear_pair[0].driver), settings)
     plain = replace(source, written={key: table for key, table in source.written.items() if key not in _OWN})
     plain = replace(plain, changes=tuple(text for text in source.changes if text.partition(".")[0] not in _OWN))
     _require_severities(plain, settings, without)
@@ -125,7 +132,8 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
         settings.baseline == "own",
     )
     between = _between(source, variation, settings, inputs)
-    return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor)
+    struck = None if bearing is None or spall is None else (bearing.name, spall)
+    return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor, struck)
 
 
 _OWN = ("detection", "variation")
@@ -173,7 +181,7 @@ def solve_detection(
             varied, housing=reduce_housing(case, housing), housing_key=housing_key(given_housing(case, "detect"))
         )
     written = {size: _text(value) for size, value in zip(settings.sizes, settings.severities, strict=True)}
-    study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear)
+    study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear, planned.spall)
     # Gearboxes that are all alike have one record, and as many noises.
     is_varied = bool(planned.inputs)
     healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
@@ -302,6 +310,18 @@ def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
     return chosen
 
 
+def _spall(case: Case, settings: Detection) -> tuple[Bearing | None, RollingSpall | None]:
+    """Return the bearing whose spall is the fault, with that; twice None where it is another fault."""
+    steps = parse_key_path(settings.fault) or ()
+    if steps[:1] != ("bearing",) or steps[2:3] != ("fault",):
+        return None, None
+    named = {one.name: one for one in case.bearing} | {
+        str(number): one for number, one in enumerate(case.bearing) if str(number) == steps[1]
+    }
+    number = int(steps[3]) if steps[3].isdecimal() else 0
+    return named[steps[1]], named[steps[1]].fault[number].build()
+
+
 def _healthy_change(document: Mapping[str, Any], settings: Detection) -> str:
     """Return the change that takes the fault from the case; empty where its key is of no damaged tooth."""
     steps = parse_key_path(settings.fault) or ()
@@ -321,7 +341,10 @@ def _healthy_change(document: Mapping[str, Any], settings: Detection) -> str:
     return ".".join(f'"{step}"' if "." in step else step for step in steps[:end]) + "="
 
 
-_KEYS = 'such as "gear.pinion.fault.depth" of fault = { kind = "crack", tooth = 5, depth = "1 mm" }'
+_KEYS = (
+    'such as "gear.pinion.fault.depth" of fault = { kind = "crack", tooth = 5, depth = "1 mm" }, or '
+    '"bearing.left.fault.length" of fault = { on = "outer", length = "1 mm", depth = "0.1 mm" }'
+)
 
 
 def _require_severities(source: CaseSource, settings: Detection, without: str) -> None:

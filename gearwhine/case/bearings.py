@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     from gearwhine.coupling import GapLaw
     from gearwhine.rotors import Pedestal as BuiltPedestal
-    from gearwhine.rotors.rolling_bearings import RollingBearing, Row
+    from gearwhine.rotors.rolling_bearings import RollingBearing, RollingSpall, Row
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
 # The types of `gearwhine.rotors.rolling_bearings.catalogue`, as a test verifies: a case is read without numpy, which
@@ -676,6 +676,39 @@ class RollingStiffness(Table):
     """Rolling bearing, by its geometry or by a catalogue's main dimensions."""
 
 
+class BearingFault(Table):
+    """A spall of a rolling bearing with `law = "nonlinear"`: material that broke out of a raceway or an element."""
+
+    on: Literal["outer", "inner", "element"]
+    """Damaged raceway, or a rolling element."""
+    length: PositiveLength
+    """Length along the rolling direction: the elements drop by what its edges let them, and strike the far one."""
+    depth: PositiveLength
+    """Depth of the floor, which no element drops beyond."""
+    azimuth: Annotated[float, Quantity(units.ANGLE)] = 0.0
+    """Azimuth of the middle at the start: on a ring from x towards y, on an element from its line to the inner
+    raceway."""
+    row: Annotated[int, Whole(0, 7)] = 0
+    """Number of the row of elements, from 0."""
+    element: Annotated[int, Whole(0, 999)] = 0
+    """Number of the damaged element, from 0."""
+    width: PositiveLength | None = None
+    """Width across the rolling direction, in the middle of rollers. Default: all of their length; of balls that of
+    their contact."""
+
+    @model_validator(mode="after")
+    def _of_its_part(self) -> BearingFault:
+        if self.on != "element" and self.element:
+            raise wrong("0 of a raceway, which all elements pass", "element")
+        return self
+
+    def build(self) -> RollingSpall:
+        """Build the spall."""
+        from gearwhine.rotors.rolling_bearings import RollingSpall
+
+        return RollingSpall(**{key: getattr(self, key) for key in type(self).model_fields})
+
+
 class StopStiffness(Table):
     """No stiffness, but a stop that the shaft may strike; linear analyses see its slope under the bearing's load."""
 
@@ -736,6 +769,20 @@ class Bearing(Table):
     """Mean force of the shaft on a rolling bearing or stop. Default: of a rolling bearing that of the static
     equilibrium, in a case with an operation where gear pairs, a force, gravity or an `axial_offset` on its rotor load
     it; of a stop none."""
+    fault: Annotated[tuple[BearingFault, ...], Field(max_length=100)] = ()
+    """Spalls of a rolling bearing in the transient: one table, or a list."""
+
+    @field_validator("fault", mode="before")
+    @classmethod
+    def _one_or_more(cls, value: object) -> object:
+        return [value] if isinstance(value, dict) else value
+
+    @model_validator(mode="after")
+    def _faulty(self) -> Bearing:
+        by_elements = isinstance(self.stiffness, RollingStiffness) and self.stiffness.rolling.law == "nonlinear"
+        if self.fault and not by_elements:
+            raise wrong('none, or rolling = { …, law = "nonlinear" }, which follows every element', "fault")
+        return self
 
     @property
     def follows_own_law(self) -> bool:

@@ -281,7 +281,9 @@ class Parts:
         law: BearingLaw | None = None
         if entry.stiffness.rolling.law == "nonlinear":
             # A bearing whose load is left to the operating point is undeflected until then.
-            law = RollingLaw(rolling.rolling_state(mounted.rolling, np.zeros(5)) if state is None else state)
+            undeflected = rolling.rolling_state(mounted.rolling, np.zeros(5))
+            spalls = tuple(fault.build() for fault in entry.fault)
+            law = RollingLaw(undeflected if state is None else state, spalls=spalls)
         if state is None:
             return mounted if law is None else replace(mounted, law=law)
         try:

@@ -68,6 +68,7 @@ def watched_signal(
         limit,
         numbers["steady"] == 1.0,
         healthy=healthy,
+        tone_hz=numbers.get("tone_hz", 0.0),
     )
 
 

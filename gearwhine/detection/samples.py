@@ -20,6 +20,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.rotors.rolling_bearings import RollingSpall
 from gearwhine.solve.machine import plan_of
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Outcome, VariedCase, outcome_of
@@ -48,6 +49,8 @@ class DetectionCase:
         Sizes as the case writes them, by their value in SI.
     gear : str
         Gear by whose shaft signals are averaged.
+    spall : (str, RollingSpall) or None
+        Name of the bearing, and its spall, where that is the fault.
     """
 
     varied: VariedCase
@@ -55,6 +58,7 @@ class DetectionCase:
     without: str
     written: dict[float, str]
     gear: str
+    spall: tuple[str, RollingSpall] | None = None
 
     def case(self, point: FloatArray) -> Case:
         """Return the case of a sample at a point (2 + d,).
@@ -100,6 +104,12 @@ class DetectionCase:
             "steady": float(record.is_steady),
             "turns": float(gear.turns),
         }
+        if self.spall is not None:
+            name, spall = self.spall
+            mounted = next(one for one in machine.bearings if one.bearing.name == name)
+            if mounted.rolling is not None:
+                row = mounted.rolling.rows[spall.row]
+                numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted)) / (2.0 * np.pi)
         numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
         curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}
         curves |= {f"{AVERAGE}{name}": _rounded(record.averages[gear.shaft, name]) for name in record.sensors}

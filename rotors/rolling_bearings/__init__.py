@@ -33,6 +33,7 @@ from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, stati
 from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
 from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
+from gearwhine.rotors.rolling_bearings.spalls import RollingSpall, SpallContact, spall_contacts
 
 __all__ = [
     "COORDINATES",
@@ -48,8 +49,10 @@ __all__ = [
     "RollerRow",
     "RollingBearing",
     "RollingElements",
+    "RollingSpall",
     "RollingState",
     "Row",
+    "SpallContact",
     "SphericalRollerRow",
     "TaperedRollerRow",
     "catalogue_bearing",
@@ -64,6 +67,7 @@ __all__ = [
     "preload_offset",
     "rolling_equilibrium",
     "rolling_state",
+    "spall_contacts",
     "spherical_groove",
     "standing_rows",
     "static_rating",

@@ -270,16 +270,23 @@ def _of_discs(index: int, rotor: Rotor, materials: Mapping[str, Material]) -> It
 
 
 def _of_elements(index: int, entry: Bearing) -> Iterator[Finding]:
-    """Yield a rolling bearing that cannot be built."""
+    """Yield a rolling bearing that cannot be built, and spalls that it cannot have."""
     from gearwhine.rotors.errors import RotorError
+    from gearwhine.rotors.rolling_bearings import spall_contacts
 
     if not isinstance(entry.stiffness, RollingStiffness):
         return
     try:
-        entry.stiffness.rolling.build(entry.name)
+        rolling = entry.stiffness.rolling.build(entry.name)
     except RotorError as error:
         expected = f"a bearing that can be built; {error}"
         yield Finding(("bearing", index, "stiffness", "rolling"), expected, UNSAID)
+        return
+    for number, fault in enumerate(entry.fault):
+        try:
+            spall_contacts(fault.build(), rolling, 0.0)
+        except RotorError as error:
+            yield Finding(("bearing", index, "fault", number), f"a spall that the bearing can have; {error}", UNSAID)
 
 
 def _of_pairs(parts: Parts) -> Iterator[Finding]:
