@@ -109,9 +109,9 @@ def bearing_tones(machine: Machine) -> dict[str, float]:
 
 def _bearing_tones(machine: Machine) -> Iterator[tuple[str, float]]:
     for mounted in machine.bearings:
-        if mounted.rolling is None:
+        if mounted.elements is None:
             continue
-        found = frequencies_in_seat(mounted.rolling.rows[0], machine.bearing_speed(mounted)).named()
+        found = frequencies_in_seat(mounted.elements.rows[0], machine.bearing_speed(mounted)).named()
         for name in ("outer raceway", "inner raceway", "rolling element"):
             if found[name] > 0.0:
                 yield f"{mounted.bearing.name}: {name}", found[name] / _TWO_PI

@@ -142,7 +142,7 @@ class TransientPlan:
     modal_coordinates : int
         Number of modes of each shaft, torsional and bending, and of the housing, that are recorded.
     indicators : bool
-        Whether the results have condition indicators of a machine without damaged teeth, too.
+        Whether the results have condition indicators of a machine without damage, too.
     """
 
     revolutions: float | None = None

@@ -169,13 +169,16 @@ def excitation_lines(
                 if order > _STANDSTILL * teeth:
                     text = f"{harmonic}× {name} {_in_words(parts)}"
                     lines.append(ExcitationLine(text, "sideband", order, _count(parts)))
+    struck = spall_strikes(machine.system)
     lines += [
         ExcitationLine(f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading)
         for name, frequencies in passing_frequencies(machine.system).items()
         for frequency in frequencies
+        # Elements pass a spall of the ring at rest as often as any place of it.
+        if not any(one.bearing == name and math.isclose(one.frequency, frequency) for one in struck)
         for multiple in element_passes
     ]
-    for strikes in spall_strikes(machine.system):
+    for strikes in struck:
         steps_beside = [0, *_signed(sidebands)] if strikes.turning else [0]
         for multiple, number in product(element_passes, steps_beside):
             order = abs(multiple * strikes.frequency + number * strikes.turning_frequency) * _TWO_PI / leading

@@ -10,7 +10,7 @@ which is small against its range beyond a frequency that follows from that.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -67,8 +67,8 @@ class SpallStrikes:
 
     Attributes
     ----------
-    name : str
-        Damaged part and bearing.
+    part, bearing : str
+        Damaged part, and name of the bearing.
     frequency : float
         Strikes in a second [Hz].
     turning : str
@@ -77,10 +77,16 @@ class SpallStrikes:
         Turns of that in a second [Hz].
     """
 
-    name: str
+    part: str
+    bearing: str
     frequency: float
     turning: str = ""
     turning_frequency: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Damaged part of the bearing."""
+        return f"{self.part} of {self.bearing}"
 
 
 def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
@@ -97,15 +103,14 @@ def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
             row = connector.law.state.bearing.rows[spall.row]
             frequency = spall.tone(row, connector.speed) / _TWO_PI
             part = "rolling element" if spall.on == "element" else f"{spall.on} raceway"
-            name = f"{part} of {connector.name}"
+            strikes = SpallStrikes(part, connector.name, frequency)
             if spall.on == "element":
                 cage = abs(row.cage_speed(connector.speed)) / _TWO_PI
-                found.append(SpallStrikes(name, frequency, f"cage of {connector.name}", cage))
+                strikes = replace(strikes, turning=f"cage of {connector.name}", turning_frequency=cage)
             elif (spall.on == "outer") == row.outer_turns:
                 turn = abs(connector.speed) / _TWO_PI
-                found.append(SpallStrikes(name, frequency, f"{spall.on} ring of {connector.name}", turn))
-            else:
-                found.append(SpallStrikes(name, frequency))
+                strikes = replace(strikes, turning=f"{spall.on} ring of {connector.name}", turning_frequency=turn)
+            found.append(strikes)
     return tuple(dict.fromkeys(one for one in found if one.frequency > 0.0))
 
 

@@ -17,7 +17,7 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 from gearwhine.rotors import Bearing
-from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
+from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing, RollingSpall
 
 
 @dataclass(frozen=True)
@@ -120,6 +120,11 @@ class MountedBearing:
         if self.rolling is None and isinstance(self.law, RollingLaw):
             return self.law.state.bearing
         return self.rolling
+
+    @property
+    def spalls(self) -> tuple[RollingSpall, ...]:
+        """Damage of its raceways and elements."""
+        return self.law.spalls if isinstance(self.law, RollingLaw) else ()
 
     @property
     def needs_load(self) -> bool:

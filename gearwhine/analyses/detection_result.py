@@ -123,7 +123,7 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     _require_turns(plan_of(case), shafts[gear] or "", case.parts.train.ratios)
     monitor = Monitor(
         sensors,
-        settings.indicators or (tuple(INDICATORS) if settings.baseline == "own" else OF_ONE_RECORD),
+        settings.indicators or _indicators(settings, of_bearing=bearing is not None),
         settings.sensor_noise,
         settings.averages,
         settings.false_alarm,
@@ -137,6 +137,13 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
 
 
 _OWN = ("detection", "variation")
+
+
+def _indicators(settings: Detection, *, of_bearing: bool) -> tuple[str, ...]:
+    """Return the indicators by default: of a bearing, whose strikes no average keeps, those of the signal."""
+    if of_bearing:
+        return tuple(name for name, indicator in INDICATORS.items() if indicator.of_time)
+    return tuple(INDICATORS) if settings.baseline == "own" else OF_ONE_RECORD
 
 
 def solve_detection(

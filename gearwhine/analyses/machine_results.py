@@ -273,11 +273,12 @@ def steady_result(machine: MachineUnderLoad, solved: SolvedSteady, progress: Pro
 
 
 def condition_of(machine: MachineUnderLoad, motion: MachineMotion) -> MachineCondition | None:
-    """Return the condition indicators of a machine where a tooth of it is damaged or its plan asks for them."""
-    plan, damaged = motion.transient.plan, any(gear.gear.faults for gear in machine.loaded.machine.gears)
-    if not (plan.indicators or damaged) or not motion.transient.sensor_spectra:
+    """Return the condition indicators of a machine where a part of it is damaged or its plan asks for them."""
+    described = machine.loaded.machine
+    damaged = any(one.gear.faults for one in described.gears) or any(one.spalls for one in described.bearings)
+    if not (motion.transient.plan.indicators or damaged) or not motion.transient.sensor_spectra:
         return None
-    return machine_condition(condition_record(motion.transient, bearing_tones(machine.loaded.machine)))
+    return machine_condition(condition_record(motion.transient, bearing_tones(described)))
 
 
 def motion_document(

@@ -18,17 +18,19 @@ class Detection(Table):
     """`[detection]`: a fault that grows, and what is told of it at the sensors."""
 
     fault: KeyPath
-    """Key of the fault's size, such as "gear.driver.fault.depth". Of a damaged tooth a healthy gearbox is without this
-    fault; else, as of an unbalance, it has the value of the case."""
+    """Key of the fault's size, such as "gear.driver.fault.depth" or "bearing.left.fault.length". Of a damaged tooth or
+    bearing a healthy gearbox is without this fault; else, as of an unbalance, it has the value of the case."""
     severities: Annotated[tuple[Amount, ...], Field(min_length=2, max_length=1000)]
     """Sizes of the fault, ascending."""
     gear: Name | None = None
-    """Gear by whose shaft signals are averaged. Default: the one of `fault`, else the first driver."""
+    """Gear by whose shaft signals are averaged. Default: the one of `fault`, or one on the shaft of the bearing, else
+    the first driver."""
     sensors: Annotated[tuple[Name, ...], Field(max_length=1000)] = ()
     """Names of sensors. Default: all."""
     indicators: Annotated[tuple[Annotated[str, Field(max_length=100)], ...], Field(max_length=100)] = ()
     """Condition indicators: rms, residual_rms, difference_rms, fm0, fm4, m6a, m8a, na4, energy_ratio, sideband_index,
-    sideband_level_factor, spectral_kurtosis, envelope, change_rms. Default: all."""
+    sideband_level_factor, spectral_kurtosis, envelope, change_rms. Default: all; of a bearing's fault those of the
+    signal over time, spectral_kurtosis and envelope."""
     baseline: Literal["own", "fleet"] = "own"
     """What a record is compared with: "own", an earlier record of the same gearbox without the fault, by the ratios of
     the indicators (of spectral_kurtosis by the difference), NA4 and change_rms by its average; or "fleet", the records

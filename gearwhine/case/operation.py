@@ -460,7 +460,7 @@ class Transient(Table):
     """Number of each rotor's torsional and bending modes, and of the housing's, to record and draw in time and
     frequency."""
     indicators: StrictBool = False
-    """Condition indicators of gears and bearings at the sensors. Default: where a tooth is damaged."""
+    """Condition indicators of gears and bearings at the sensors. Default: where a tooth or a bearing is damaged."""
 
     @model_validator(mode="after")
     def _something_left(self) -> Transient:

@@ -107,8 +107,8 @@ class DetectionCase:
         if self.spall is not None:
             name, spall = self.spall
             mounted = next(one for one in machine.bearings if one.bearing.name == name)
-            if mounted.rolling is not None:
-                row = mounted.rolling.rows[spall.row]
+            if mounted.elements is not None:
+                row = mounted.elements.rows[spall.row]
                 numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted)) / (2.0 * np.pi)
         numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
         curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}

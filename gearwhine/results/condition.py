@@ -70,7 +70,7 @@ CONDITION = (
     Rows(
         "tones",
         "tones",
-        (Quantity("tone"), Quantity("frequency_hz"), Quantity("envelope", "amplitudes")),
+        (Quantity("tone"), Quantity("frequency_hz", "frequency_hz"), Quantity("envelope", "amplitudes")),
     ),
     Quantity("", _in_file("gears"), "watched_gear", ("watched_gear",)),
     Quantity("", _in_file("sensors"), "condition_sensor", ("condition_sensor",)),

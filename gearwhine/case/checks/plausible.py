@@ -165,6 +165,7 @@ def _of_machine(case: Case) -> Iterator[Finding]:
         yield from (found for index, rotor in enumerate(case.rotor) for found in _of_discs(index, rotor, case.material))
         yield from (found for index, bearing in enumerate(case.bearing) for found in _of_elements(index, bearing))
         return
+    yield from (found for index, one in enumerate(case.bearing) if one.fault for found in _of_elements(index, one))
     if not all(finding.warns for finding in densities):
         return
     numbers: dict[str, dict[str, int]] = {

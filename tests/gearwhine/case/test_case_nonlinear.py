@@ -13,10 +13,12 @@ from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.results.run import transient_document
+from gearwhine.rotors.rolling_bearings import RollingSpall
 from gearwhine.solve.machine import plan_of
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
 DEEP_GROOVE = {"count": 9, "element_diameter": "9 mm", "pitch_diameter": "46 mm", "clearance": "6 um"}
+SPALL = {"on": "outer", "length": "1 mm", "depth": "40 um", "azimuth": "90 deg"}
 STOP = {"force": "1 kN", "depth": "10 um", "exponent": 1.5, "gap": "50 um"}
 
 
@@ -69,12 +71,48 @@ def test_laws_of_bearings() -> None:
         ({"stiffness": {"stop": STOP | {"depth": "0 um"}}}, "bearing[0].stiffness.stop.depth"),
         ({"stiffness": {"stop": STOP | {"exponent": 0.5}}}, "bearing[0].stiffness.stop.exponent"),
         ({"stiffness": {"stop": STOP | {"gap": "-1 um"}}}, "bearing[0].stiffness.stop.gap"),
+        (rolling("linear") | {"fault": SPALL}, "bearing[0].fault"),
+        ({"fault": SPALL}, "bearing[0].fault"),
+        (rolling("nonlinear") | {"fault": SPALL | {"on": "cage"}}, "bearing[0].fault[0].on"),
+        (rolling("nonlinear") | {"fault": SPALL | {"element": 2}}, "bearing[0].fault[0].element"),
+        (rolling("nonlinear") | {"fault": SPALL | {"depth": "0 mm"}}, "bearing[0].fault[0].depth"),
     ],
 )
 def test_what_cannot_be_is_refused_by_its_key(changes: dict[str, Any], key: str) -> None:
     with pytest.raises(CaseError) as caught:
         spur_pair(**changes)
     assert key in str(caught.value)
+
+
+def test_spalls_are_those_of_the_law_under_its_load() -> None:
+    """One table or a list, in SI; written as they were read."""
+    case = spur_pair(**rolling("nonlinear"), fault=SPALL)
+    law = case.parts.bearings[0].law
+    assert isinstance(law, RollingLaw)
+    np.testing.assert_allclose(law.state.load[:2], [300.0, 800.0])
+    assert law.spalls == (RollingSpall("outer", 1e-3, 40e-6, 0.5 * np.pi),)
+    assert case.parts.bearings[0].spalls == law.spalls
+    assert parse_case(tomllib.loads(dump_case(case))).bearing == case.bearing
+    of_ball = {"on": "element", "length": "2 mm", "depth": "0.1 mm", "element": 4}
+    several = spur_pair(**rolling("nonlinear"), fault=[SPALL, of_ball]).parts.bearings[0].spalls
+    assert several[1] == RollingSpall("element", 2e-3, 1e-4, element=4)
+
+
+@pytest.mark.parametrize(
+    ("fault", "key", "said"),
+    [
+        ([SPALL, SPALL | {"row": 1}], "bearing[0].fault[1]", "row of a spall"),
+        (SPALL | {"on": "element", "element": 9}, "bearing[0].fault[0]", "one of 9"),
+        (SPALL | {"length": "50 mm"}, "bearing[0].fault[0]", "a quarter of the circumference"),
+        (SPALL | {"width": "1 mm"}, "bearing[0].fault[0]", "none under balls"),
+    ],
+)
+def test_a_spall_that_the_bearing_cannot_have_is_refused(fault: Any, key: str, said: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        spur_pair(**rolling("nonlinear"), fault=fault)
+    (problem,) = caught.value.problems
+    assert problem.key == key
+    assert said in problem.expected
 
 
 def test_all_of_it_moves_together() -> None:

@@ -134,6 +134,39 @@ def test_the_command_finds_writes_and_resumes_a_study(tmp_path: Path, capsys: py
 
 
 @pytest.mark.slow
+def test_a_spalled_bearing_is_heard_at_its_tone(tmp_path: Path) -> None:
+    """The study takes the envelope at the tone of the damaged part, and has the value that `simulate` shows there.
+
+    The cage turns at ½ (1 - 7/41) of 5500 rpm, and 11 balls pass a point of the outer raceway: 418.1 Hz.
+    """
+    rolling = (
+        'element = "ball", count = 11, element_diameter = "7 mm", pitch_diameter = "41 mm", clearance = "5 um", '
+        'law = "nonlinear"'
+    )
+    changes = [
+        f"bearing.input-back.stiffness={{ rolling = {{ {rolling} }} }}",
+        'bearing.input-back.fault={ on = "outer", length = "1 mm", depth = "0.1 mm", azimuth = "-60 deg" }',
+        *SHORT,
+        "detection.fault=bearing.input-back.fault.length",
+        'detection.severities=["0.2 mm", "1 mm"]',
+        "detection.baseline=fleet",
+    ]
+    study = gw.load(_case(tmp_path), changes, folder=tmp_path / "out")
+    found = study.detect(folder=tmp_path / "out", workers=1)
+    assert set(found.dataset["indicator"].values.tolist()) == {"spectral_kurtosis", "envelope"}
+    run = study.simulate()
+    tones = {one["tone"]: one for one in run.document["condition"]["tones"]}
+    assert tones["input-back: outer raceway"]["frequency_hz"] == pytest.approx(5500.0 / 60.0 * 5.5 * (1.0 - 7.0 / 41.0))
+    for sensor in ("top", "right wall"):
+        heard = found.dataset["faulty"].sel(sensor=sensor, indicator="envelope")
+        heard = float(heard[found.dataset["fault_size"].values == 1e-3].mean())
+        assert heard == pytest.approx(tones["input-back: outer raceway"]["envelope"][sensor], rel=0.02)
+        assert heard > 3.0 * tones["input-back: inner raceway"]["envelope"][sensor]
+    tones = run.document["sensors"][0]["peaks"]
+    assert any("outer raceway of input-back" in line["name"] for line in tones if "name" in line), tones
+
+
+@pytest.mark.slow
 def test_a_fault_of_one_gear_is_in_the_average_of_its_shaft_and_not_of_the_other(tmp_path: Path) -> None:
     """27 and 29 teeth: a cracked tooth of the pinion repeats with its turns, 29 of which fill a hunting period."""
     changes = [
