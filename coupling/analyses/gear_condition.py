@@ -268,11 +268,17 @@ class MachineCondition:
         Frequency up to which the signals are taken.
     gears : tuple of GearCondition
     tones : tuple of ToneCondition
+    envelope_hz : ndarray, shape (f,)
+        Frequencies of the envelope spectra; empty without rolling bearings, and where the speed varies.
+    envelopes : dict of str to ndarray, shape (f,)
+        Amplitudes of the squared envelope over its mean, under Hann's window, by sensor.
     """
 
     limit_hz: float
     gears: tuple[GearCondition, ...]
     tones: tuple[ToneCondition, ...]
+    envelope_hz: FloatArray = field(default_factory=lambda: np.empty(0))
+    envelopes: dict[str, FloatArray] = field(default_factory=dict)
 
 
 def averaged_gear(gear: MonitoredGear, samples: FloatArray, limit_hz: float) -> SynchronousAverage:
@@ -302,7 +308,19 @@ def machine_condition(record: ConditionRecord, indicators: Sequence[str] = OF_ON
         ToneCondition(tone, frequency, {name: _of_tone(record, name, frequency) for name in record.sensors})
         for tone, frequency in record.tones_hz.items()
     )
-    return MachineCondition(record.limit_hz, gears, tones)
+    frequencies, envelopes = _envelopes(record) if tones and record.is_steady else (np.empty(0), {})
+    return MachineCondition(record.limit_hz, gears, tones, frequencies, envelopes)
+
+
+def _envelopes(record: ConditionRecord) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return the envelope spectra of the sensors over their means, up to the width of the band."""
+    frequencies, found = np.empty(0), dict[str, FloatArray]()
+    for name, signal in record.signals.items():
+        all_of, lines = envelope_spectrum(signal, record.interval, (0.5 * record.limit_hz, record.limit_hz), hann=True)
+        within = all_of <= 0.5 * record.limit_hz
+        frequencies = all_of[within]
+        found[name] = lines[within] / lines[0] if lines[0] > 0.0 else np.zeros(len(frequencies))
+    return frequencies, found
 
 
 def _of_gear(record: ConditionRecord, gear: MonitoredGear, indicators: Sequence[str]) -> list[SensorCondition]:

@@ -33,6 +33,7 @@ from gearwhine.numerics.findings import Finding, Number, attribute_findings, ref
 _NOTHING = 1e-9
 """Rms of a residual signal over that of the average up to which it is rounding."""
 _SHAFT_ORDERS = (1, 2)
+_PADDING = 4  # length of a record with the zeros after it, over its own
 
 
 def synchronous_average(samples: FloatArray, samples_per_turn: int) -> FloatArray:
@@ -255,7 +256,9 @@ def spectral_kurtosis(samples: FloatArray, interval: float, window: int) -> tupl
     return np.asarray(transform.f), np.asarray(np.where(mean > 0.0, kurtosis, -1.0))
 
 
-def envelope_spectrum(samples: FloatArray, interval: float, band: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+def envelope_spectrum(
+    samples: FloatArray, interval: float, band: tuple[float, float], *, hann: bool = False
+) -> tuple[FloatArray, FloatArray]:
     """Envelope spectrum of a signal in a band: frequencies [Hz], amplitudes of the squared envelope, shape (f,) both.
 
     The signal is taken as periodic over its record; its mean square in the band is the line at 0.
@@ -267,6 +270,9 @@ def envelope_spectrum(samples: FloatArray, interval: float, band: tuple[float, f
         Time between samples [s].
     band : tuple of float
         Ends of the band [Hz].
+    hann : bool
+        Take the varying part under Hann's window, at four times as many frequencies: for a record that holds no whole
+        periods, whose tones then have their height within 1 %.
 
     Raises
     ------
@@ -282,6 +288,12 @@ def envelope_spectrum(samples: FloatArray, interval: float, band: tuple[float, f
     lines = np.fft.fft(np.asarray(samples, dtype=np.float64))
     frequencies = np.fft.fftfreq(count, interval)
     analytic = np.fft.ifft(np.where((frequencies >= low) & (frequencies <= high), 2.0 * lines, 0.0))
-    spectrum = np.fft.rfft(np.abs(analytic) ** 2) / count
-    spectrum[1:] *= 2.0
-    return np.asarray(np.fft.rfftfreq(count, interval)), np.abs(spectrum)
+    squared = np.abs(analytic) ** 2
+    mean, padded = float(squared.mean()), count
+    varying = squared - mean
+    if hann:
+        padded = _PADDING * count
+        varying = varying * (1.0 - np.cos(2.0 * np.pi * np.arange(count) / count))
+    spectrum = 2.0 * np.abs(np.fft.rfft(varying, n=padded)) / count
+    spectrum[0] = mean
+    return np.asarray(np.fft.rfftfreq(padded, interval)), np.asarray(spectrum)

@@ -127,6 +127,8 @@ class RunSolution:
 
         if self.pairs:
             yield from figures.draw_gear_pairs(self.pairs, progress)
+        if self.condition is not None and self.condition.envelopes:
+            yield "envelope", figures.draw_envelopes(title, self.condition)
         if self.load is not None:
             yield from figures.draw_load(self.load)
         if self.system is not None:

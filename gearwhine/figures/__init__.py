@@ -19,6 +19,7 @@ from gearwhine.figures.housing import (
     draw_mac_matrix,
     draw_measured_shapes,
 )
+from gearwhine.figures.machine.condition import draw_envelopes
 from gearwhine.figures.machine.operating_point import draw_load
 from gearwhine.figures.machine.run_up import draw_run
 from gearwhine.figures.machine.sound import draw_sound
@@ -44,6 +45,7 @@ __all__ = [
     "draw_comparison_figures",
     "draw_coordinate_criteria",
     "draw_critical_map",
+    "draw_envelopes",
     "draw_gear_pairs",
     "draw_lateral_modes",
     "draw_load",

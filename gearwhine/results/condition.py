@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gearwhine.coupling.analyses.gear_condition import INDICATORS
 from gearwhine.output.quantity import Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, table_of
@@ -25,8 +27,6 @@ def _in_file(part: str) -> Any:
     """Return the function that lists the values of all gears by sensor and indicator."""
 
     def of(condition: "MachineCondition") -> Any:
-        import numpy as np
-
         rows = [one for one in condition.gears if one.sensors]
         if not rows:
             return None
@@ -82,6 +82,23 @@ CONDITION = (
         _WHERE,
         "1",
         "condition indicator of the gear at the sensor, in the unit at the end of its name",
+    ),
+    Quantity("", lambda row: list(row.envelopes) or None, "envelope_sensor", ("envelope_sensor",)),
+    Quantity(
+        "",
+        lambda row: row.envelope_hz if row.envelopes else None,
+        "envelope_frequency",
+        ("envelope_frequency",),
+        "Hz",
+        "frequency of the envelope spectra",
+    ),
+    Quantity(
+        "",
+        lambda row: np.array(list(row.envelopes.values())) if row.envelopes else None,
+        "envelope",
+        ("envelope_sensor", "envelope_frequency"),
+        "1",
+        "amplitude of the squared envelope of the upper half of the band over its mean",
     ),
 )
 """Quantities of a machine's condition; the object is a

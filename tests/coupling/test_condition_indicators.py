@@ -128,3 +128,18 @@ def test_an_envelope_has_the_lines_of_its_modulation() -> None:
 def test_averages_that_cannot_be_are_refused(samples: np.ndarray, teeth: int, said: str) -> None:
     with pytest.raises(CouplingError, match=said):
         SynchronousAverage(samples, teeth)
+
+
+def test_the_envelope_under_hanns_window_has_the_height_of_a_tone_between_lines() -> None:
+    """A carrier of depth m modulated at f: the squared envelope 1 + 2 m cos + m² cos² has a line of 2 m at f.
+
+    No whole number of periods of 123.7 Hz lies in the record; its mean is 1 + m²/2 but for a part of a period.
+    """
+    rate, depth, tone = 16384.0, 0.4, 123.7
+    times = np.arange(4000) / rate
+    signal = (1.0 + depth * np.cos(2.0 * np.pi * tone * times)) * np.cos(2.0 * np.pi * 2500.0 * times)
+    frequencies, lines = envelope_spectrum(signal, 1.0 / rate, (2000.0, 3000.0), hann=True)
+    highest = int(np.argmax(lines[1:])) + 1
+    assert frequencies[highest] == pytest.approx(tone, abs=0.6 * rate / 16000)
+    assert lines[highest] == pytest.approx(2.0 * depth, rel=0.02)
+    assert lines[0] == pytest.approx(1.0 + 0.5 * depth**2, rel=0.02)

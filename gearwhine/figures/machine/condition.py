@@ -1,0 +1,67 @@
+"""Figure of a machine's condition: envelope spectra of the sensors with the tones of rolling bearings."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from gearwhine.coupling.analyses.gear_condition import MachineCondition
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    HEAD,
+    SERIES,
+    legend_below,
+    legend_height,
+    name_in_legend,
+    panel,
+    panel_title,
+    sheet,
+    shortened,
+)
+
+_HEIGHT, _GAP = 34.0, 9.0  # of a panel, and between two [mm]
+_MOST_SENSORS, _MOST_TONES = 8, 6
+_HARMONICS = 3  # multiples of a tone that are marked
+_SHOWN = 1.1  # shown frequencies over the highest one that is marked
+
+
+def draw_envelopes(title: str, condition: MachineCondition) -> Figure:
+    """Draw the envelope spectra of up to eight sensors, with the highest tones of bearings and their multiples."""
+    sensors = list(condition.envelopes)[:_MOST_SENSORS]
+
+    def height(tone: str) -> float:
+        found = next(one for one in condition.tones if one.tone == tone)
+        return max((value or 0.0 for value in found.amplitudes.values()), default=0.0)
+
+    tones = sorted((one.tone for one in condition.tones), key=height, reverse=True)[:_MOST_TONES]
+    frequency = {one.tone: one.frequency_hz for one in condition.tones}
+    low = legend_height(len(tones), 3)
+    size = HEAD + 5.0 + FOOT + low + len(sensors) * _HEIGHT + (len(sensors) - 1) * _GAP
+    note = (
+        f"{shortened(title, 40)}; squared envelope of {0.5 * condition.limit_hz:.0f} to {condition.limit_hz:.0f} Hz "
+        "over its mean; dotted: multiples of the bearings' tones, which a damaged part raises"
+    )
+    figure = sheet(size, "Envelope spectra", note)
+    end = min(float(condition.envelope_hz[-1]), _SHOWN * _HARMONICS * max(frequency[tone] for tone in tones))
+    within = (condition.envelope_hz > 0.0) & (condition.envelope_hz <= end)
+    for number, sensor in enumerate(sensors):
+        axes = panel(figure, FOOT + low + (len(sensors) - 1 - number) * (_HEIGHT + _GAP), _HEIGHT)
+        for color, tone in zip(SERIES[1:], tones, strict=False):
+            for multiple in range(1, _HARMONICS + 1):
+                axes.axvline(multiple * frequency[tone], color=color, lw=1.0, ls=":", zorder=1)
+        values = np.where(within, condition.envelopes[sensor], 0.0)
+        axes.plot(condition.envelope_hz[within], values[within], color=BLUE, lw=1.1, zorder=2)
+        axes.set_xlim(0.0, end)
+        axes.set_ylim(0.0, 1.1 * max(float(values.max()), 1e-12))
+        axes.yaxis.set_major_locator(MaxNLocator(4))
+        axes.set_ylabel("line / mean")
+        panel_title(axes, shortened(sensor, 48))
+        if number == len(sensors) - 1:
+            axes.set_xlabel("modulation frequency [Hz]")
+    marks = [
+        Line2D([], [], color=color, lw=1.0, ls=":", label=f"{name_in_legend(tone, 36)}, {frequency[tone]:.1f} Hz")
+        for color, tone in zip(SERIES[1:], tones, strict=False)
+    ]
+    legend_below(figure, marks, columns=3)
+    return figure
