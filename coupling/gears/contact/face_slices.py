@@ -64,6 +64,7 @@ _NO_SPAN = 1e-6
 """Span of a line of contact along the path below which it counts as one point [base pitches]."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
+_UNSETTLED = "the iteration for the touching slices of the face does not converge; take fewer slices"
 _UNBOUNDED = "the slices of the face yield without bound; check the stiffness of the teeth"
 
 
@@ -146,6 +147,17 @@ class FaceSlices:
         degrees = min(len(self.shared), n - 1)
         polynomials, triangle = np.linalg.qr(np.polynomial.legendre.legvander(2.0 * self.z / self.face_width, degrees))
         return np.asarray(math.sqrt(n) * (polynomials * np.sign(np.diagonal(triangle)))[:, 1:])
+
+    @cached_property
+    def common_motions(self) -> tuple[FloatArray, FloatArray]:
+        """Motions of the pairs in contact at once: ones and `shapes`, (n, 1 + k), and what `shared` has of them."""
+        k = self.shapes.shape[1]
+        return np.column_stack([np.ones(self.z.size), self.shapes]), np.ascontiguousarray(self.shared[:k, :k])
+
+    @property
+    def link(self) -> float:
+        """T over the square of a slice's width [N/m per m]."""
+        return self.coupling / self.width**2
 
     @property
     def half_span(self) -> float:
@@ -326,7 +338,7 @@ def face_loads(
             return _loads(slices, gap, touching, compression[:, None], fixed, rising)
         touching[unsettled] = touches
         fixed[unsettled], rising[unsettled] = _even(slices, base[unsettled], gap[unsettled], touches)
-    raise ContactAccuracyError("the iteration for the touching slices of the face does not converge; take fewer slices")
+    raise ContactAccuracyError(_UNSETTLED)
 
 
 def face_equilibrium(
@@ -357,102 +369,42 @@ def face_equilibrium(
     ContactAccuracyError
         Where the set of touching slices does not converge, or the loads do not balance to rounding.
     """
-    meshes = force.size
-    nearest = np.full(meshes, np.inf)
-    np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
-    if touching is None:
-        touching = _touching_alone(slices, base, gap, meeting, owner, force)
-    touching = touching & meeting
-    # Motions y of a mesh over its face: its compression, then minus the shared deflections over `shapes`.
-    motions = np.column_stack([np.ones(slices.z.size), slices.shapes])
-    size = motions.shape[1]
-    shared = slices.shared[: size - 1, : size - 1]
-    loaded = np.zeros((meshes, size))
-    loaded[:, 0] = force
-    # Loads of each pair per motion, and at zero motion: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w_0).
-    slopes, constants = np.zeros((owner.size, size, size)), np.zeros((owner.size, size))
-    fields = np.zeros((*gap.shape, 1 + size))
-    changed = unsettled = np.arange(owner.size)
-    first = np.searchsorted(owner, np.arange(meshes))
-    for _ in range(_MOST_ROUNDS):
-        _find_fields(slices, changed, base, gap, touching, motions, fields, slopes, constants)
-        stiffness = slices.width * np.add.reduceat(slopes, first, axis=0)
-        resisting, apart = stiffness.copy(), stiffness[:, 0, 0] <= 0.0
-        right = loaded + slices.width * np.add.reduceat(constants, first, axis=0)
-        # The shared deflections are the shared compliance times the loads on them.
-        resisting[:, 1:] = shared @ stiffness[:, 1:]
-        resisting[:, 1:, 1:] += np.eye(size - 1)
-        right[:, 1:] = right[:, 1:] @ shared
-        resisting[apart] = np.eye(size)
-        motion: FloatArray = np.asarray(np.linalg.solve(resisting, right[..., None])[..., 0], dtype=np.float64)
-        motion[apart] = 0.0
-        motion[apart, 0] = nearest[apart]
-        # Pairs of meshes without a change keep their solution.
-        whose = owner[unsettled]
-        deep = motion[whose] @ motions.T
-        yielding = _deflection(fields[unsettled], motion[whose])
-        touches = meeting[unsettled] & (deep - gap[unsettled] - yielding > 0.0)
-        # At least the nearest slice carries.
-        none = np.bincount(whose, touches.any(axis=1), meshes) == 0
-        if none[whose].any():
-            touches |= none[whose, None] & meeting[unsettled] & (gap[unsettled] <= nearest[whose, None])
-        different = (touches != touching[unsettled]).any(axis=1)
-        if not different.any():
-            break
-        changed = unsettled[different]
-        touching[changed] = touches[different]
-        affected = np.zeros(meshes, dtype=np.bool_)
-        affected[owner[changed]] = True
-        unsettled = np.nonzero(affected[owner])[0]
-    else:
-        raise ContactAccuracyError(
-            "the iteration for the touching slices of the face does not converge; take fewer slices"
-        )
-    unit = np.zeros((meshes, size, 1))
-    unit[:, 0] = 1.0
-    softness = np.linalg.solve(resisting, unit)[..., 0]
-    rate: FloatArray = np.asarray(softness / softness[:, :1], dtype=np.float64)
-    flat = np.where(touching, slices.flattening, 0.0)
-    deep = motion[owner] @ motions.T
-    load = flat * (deep - gap - _deflection(fields, motion[owner]))
-    tangent = flat * (rate[owner] @ motions.T - _combined(fields[:, :, 1:], rate[owner]))
+    # Imported here: numba is not needed to read a case.
+    from gearwhine.coupling.gears.contact.face_slice_kernels import balance_meshes
+
+    first = np.searchsorted(owner, np.arange(force.size + 1))
+    motions, shared = slices.common_motions
+    rounds = _MOST_ROUNDS, _ALONE_ROUNDS if touching is None else 0
+    touching = np.empty(gap.shape, dtype=np.bool_) if touching is None else touching.copy()
+    load, tangent = np.empty(gap.shape), np.empty(gap.shape)
+    compression, stiffness = np.empty(force.size), np.empty(force.size)
+    failure = balance_meshes(
+        first,
+        base,
+        gap,
+        meeting,
+        touching,
+        slices.flattening,
+        slices.link,
+        slices.width,
+        motions,
+        shared,
+        force,
+        rounds,
+        load,
+        tangent,
+        compression,
+        stiffness,
+    )
+    if failure:
+        raise ContactAccuracyError(_UNSETTLED if failure == 1 else _UNBOUNDED)
     width = slices.width
     loads = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touching)
-    carried = np.bincount(owner, loads.force, meshes)
-    rounding = 1e-9 * (force + stiffness[:, 0, 0] * np.abs(motion[:, 0])) + 1e-300
-    if np.any(np.abs(carried - force) > rounding) or np.any(loads.line_load < -rounding.max()):
+    carried = np.bincount(owner, loads.force, force.size)
+    rounding = 1e-9 * (force + stiffness * np.abs(compression)) + 1e-300
+    if np.any(np.abs(carried - force) > rounding) or np.any(load < -rounding.max()):
         raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
-    return motion[:, 0], loads
-
-
-def _deflection(fields: FloatArray, motion: FloatArray) -> FloatArray:
-    """Return the deflection (p, n) of pairs with fields (p, n, 1 + m) at motions y (p, m)."""
-    return np.asarray(fields[:, :, 0] + _combined(fields[:, :, 1:], motion))
-
-
-def _combined(fields: FloatArray, parts: FloatArray) -> FloatArray:
-    """Sum m fields of each pair, (p, n, m), by parts (p, m)."""
-    return np.asarray((fields @ parts[:, :, None])[:, :, 0])
-
-
-def _touching_alone(
-    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IndexArray, force: FloatArray
-) -> BoolArray:
-    """Slices that touch when uncoupled: a close first guess of the slices that touch when coupled."""
-    spring = meeting / (1.0 / base + 1.0 / slices.flattening)
-    pushed = spring * gap
-    touching = meeting
-    for _ in range(_ALONE_ROUNDS):
-        stiffness = np.bincount(owner, (spring * touching).sum(axis=1), force.size)
-        offset = np.bincount(owner, (pushed * touching).sum(axis=1), force.size)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            compression = np.where(stiffness > 0.0, (force / slices.width + offset) / stiffness, 0.0)
-        # The set shrinks from every slice that could touch to those in contact.
-        touches = meeting & (gap < compression[owner, None])
-        if (touches == touching).all():
-            break
-        touching = touches
-    return touching
+    return compression, loads
 
 
 def _loads(
@@ -488,14 +440,18 @@ def _find_fields(
     # Imported here: numba is not needed to read a case.
     from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_under_motions
 
-    link = slices.coupling / slices.width**2
-    arrays = base, gap, touching, slices.flattening, link, motions, fields, slopes, constants
+    arrays = base, gap, touching, slices.flattening, slices.link, motions, fields, slopes, constants
     if not deflect_under_motions(pairs, *arrays):
         raise ContactAccuracyError(_UNBOUNDED)
 
 
-def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads: FloatArray) -> FloatArray:
-    """Deflections w of p tooth pairs under m fields of load per width, ``(k_b + k_h) w - T w'' = q``.
+def approach_tangents(
+    slices: FaceSlices, base: FloatArray, touching: BoolArray, owner: IndexArray, meshes: int, basis: FloatArray
+) -> FloatArray:
+    """Sum ``w Bᵀ k_h (B - W)`` over the touching slices of the pairs of each mesh, (meshes, m, m).
+
+    W are the deflections by ``(k_b + k_h) W - T W'' = k_h B``. The shapes of the shared deflection are approaches too,
+    and are condensed.
 
     Parameters
     ----------
@@ -504,25 +460,29 @@ def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads:
         k_b of each slice [N/m per m].
     touching : ndarray of bool, shape (p, n)
         Slices in contact, which have k_h in addition.
-    loads : ndarray, shape (p, n, m)
-        q [N/m].
-
-    Returns
-    -------
-    ndarray, shape (p, n, m)
-        [m]
+    owner : ndarray of int, shape (p,)
+        Mesh of each pair, ascending.
+    meshes : int
+    basis : ndarray, shape (p, n, m)
+        B, the approaches of each pair.
 
     Raises
     ------
     ContactAccuracyError
         Where the slices yield without bound.
     """
-    from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_all
+    from gearwhine.coupling.gears.contact.face_slice_kernels import add_tangents
 
-    fields = np.array(loads, dtype=np.float64, order="C")
-    if not deflect_all(base, touching, slices.flattening, slices.coupling / slices.width**2, fields):
+    size, shapes = basis.shape[2], slices.shapes
+    first = np.searchsorted(owner, np.arange(meshes + 1))
+    whole = np.empty((meshes, size + shapes.shape[1], size + shapes.shape[1]))
+    if not add_tangents(first, base, touching, slices.flattening, slices.link, slices.width, basis, shapes, whole):
         raise ContactAccuracyError(_UNBOUNDED)
-    return fields
+    by_shapes, shared = whole[:, size:, :size], slices.common_motions[1]
+    resisting = np.eye(len(shared)) + shared @ whole[:, size:, size:]
+    return np.asarray(
+        whole[:, :size, :size] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
+    )
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

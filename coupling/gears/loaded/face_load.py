@@ -44,7 +44,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
-from gearwhine.coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield, lagrange
+from gearwhine.coupling.gears.contact.face_slices import FaceLoads, approach_tangents, face_equilibrium, lagrange
 from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
@@ -420,23 +420,9 @@ class FaceContact:
         return self._contact.unloaded_mean_mesh_stiffness * beyond
 
     def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
-        """Sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m).
-
-        The shapes of the shared deflection are approaches too, and are condensed.
-        """
-        faces, size = self._faces, self.size
-        shapes = np.broadcast_to(faces.shapes, (len(touching), *faces.shapes.shape))
-        motions = np.concatenate([prepared.basis, shapes], axis=2)
-        flat = np.where(touching, faces.flattening, 0.0)
-        pushed = flat[:, :, None] * motions
-        yielding = face_yield(faces, prepared.base, touching, pushed)
-        tangents_of_slices = faces.width * (pushed.swapaxes(1, 2) @ (motions - yielding))
-        whole = np.add.reduceat(tangents_of_slices, prepared.first, axis=0)
-        by_shapes = whole[:, size:, :size]
-        shared = faces.shared[: faces.shapes.shape[1], : faces.shapes.shape[1]]
-        resisting = np.eye(len(shared)) + shared @ whole[:, size:, size:]
-        return np.asarray(
-            whole[:, :size, :size] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
+        """Derivatives of the loads of each phase by the approach, (n, m, m)."""
+        return approach_tangents(
+            self._faces, prepared.base, touching, prepared.owner, prepared.phases.size, prepared.basis
         )
 
     @cached_property
