@@ -16,10 +16,11 @@ def deflect(
     flattening: float,
     link: float,
     pair: int,
+    row: int,
     fields: FloatArray,
     factors: FloatArray,
 ) -> bool:
-    """Turn the fields of load per width of a pair, ``fields[pair]`` (n, m), into its deflections.
+    """Turn the fields of load per width of a pair, ``fields[row]`` (n, m), into its deflections.
 
     ``link`` is T over the square of a slice's width. The matrix is tridiagonal, symmetric and diagonally dominant, so
     that elimination needs no pivots; ``factors`` (2, n) takes those of its rows. Returns whether it is positive
@@ -32,22 +33,23 @@ def deflect(
         if i > 0:
             pivot -= link * factors[1, i - 1]
             for k in range(m):
-                fields[pair, i, k] += factors[1, i - 1] * fields[pair, i - 1, k]
+                fields[row, i, k] += factors[1, i - 1] * fields[row, i - 1, k]
         if not pivot > 0.0:
             return False
         factors[0, i] = 1.0 / pivot
         factors[1, i] = link * factors[0, i]
     for k in range(m):
-        fields[pair, n - 1, k] *= factors[0, n - 1]
+        fields[row, n - 1, k] *= factors[0, n - 1]
     for i in range(n - 2, -1, -1):
         for k in range(m):
-            fields[pair, i, k] = factors[0, i] * fields[pair, i, k] + factors[1, i] * fields[pair, i + 1, k]
+            fields[row, i, k] = factors[0, i] * fields[row, i, k] + factors[1, i] * fields[row, i + 1, k]
     return True
 
 
 @inner(fastmath=FUSED)
 def deflect_pair(
     pair: int,
+    row: int,
     base: FloatArray,
     gap: FloatArray,
     touching: BoolArray,
@@ -59,27 +61,33 @@ def deflect_pair(
     constants: FloatArray,
     factors: FloatArray,
 ) -> bool:
-    """Find the row of one pair in the last arrays, see `deflect_under_motions`."""
-    n, m = motions.shape
+    """Find a row of the last arrays for one pair, see `deflect_under_motions`."""
+    n, m = motions.shape[1], motions.shape[2]
+    own = pair if motions.shape[0] > 1 else 0
     for i in range(n):
         flat = flattening if touching[pair, i] else 0.0
-        fields[pair, i, 0] = -flat * gap[pair, i]
+        fields[row, i, 0] = -flat * gap[pair, i]
         for k in range(m):
-            fields[pair, i, 1 + k] = flat * motions[i, k]
-    if not deflect(base, touching, flattening, link, pair, fields, factors):
+            fields[row, i, 1 + k] = flat * motions[own, i, k]
+    if not deflect(base, touching, flattening, link, pair, row, fields, factors):
         return False
     for j in range(m):
-        constants[pair, j] = 0.0
-        for k in range(m):
-            slopes[pair, j, k] = 0.0
+        constants[row, j] = 0.0
+        for k in range(j + 1):
+            slopes[row, j, k] = 0.0
     for i in range(n):
+        fields[row, i, 0] = -gap[pair, i] - fields[row, i, 0]
+        for k in range(m):
+            fields[row, i, 1 + k] = motions[own, i, k] - fields[row, i, 1 + k]
         if touching[pair, i]:
-            apart = gap[pair, i] + fields[pair, i, 0]
             for j in range(m):
-                moved = flattening * motions[i, j]
-                constants[pair, j] += moved * apart
-                for k in range(m):
-                    slopes[pair, j, k] += moved * (motions[i, k] - fields[pair, i, 1 + k])
+                moved = flattening * motions[own, i, j]
+                constants[row, j] += moved * fields[row, i, 0]
+                for k in range(j + 1):
+                    slopes[row, j, k] += moved * fields[row, i, 1 + k]
+    for j in range(m):
+        for k in range(j):
+            slopes[row, k, j] = slopes[row, j, k]
     return True
 
 
@@ -106,21 +114,22 @@ def deflect_under_motions(
         See :func:`gearwhine.coupling.gears.contact.face_slices.face_loads`.
     flattening, link : float
         k_h, and T over the square of a slice's width [N/m per m].
-    motions : ndarray, shape (n, m)
+    motions : ndarray, shape (p, n, m) or (1, n, m)
+        Motions of each pair, or of all.
     fields : ndarray, shape (p, n, 1 + m)
-        Takes the deflection without motion w_0, then that of each motion W, ``w = w_0 + W y``.
+        Takes what the flattening yields without motion, ``-gap - w_0``, then that of each motion, B - W.
     slopes, constants : ndarray, shape (p, m, m) and (p, m)
-        Take Bᵀ k_h (B - W) and Bᵀ k_h (gap + w_0), sums over the touching slices [N/m per m].
+        Take Bᵀ k_h (B - W), symmetric, and -Bᵀ k_h (gap + w_0), sums over the touching slices [N/m per m].
 
     Returns
     -------
     bool
         Whether the deflections are bounded.
     """
-    factors = np.empty((2, motions.shape[0]))
+    factors = np.empty((2, gap.shape[1]))
     for place in range(pairs.size):
         arrays = (base, gap, touching, flattening, link, motions, fields, slopes, constants, factors)
-        if not deflect_pair(pairs[place], *arrays):
+        if not deflect_pair(pairs[place], pairs[place], *arrays):
             return False
     return True
 
@@ -152,6 +161,29 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
 
 
 @inner(fastmath=FUSED)
+def shaped_gap(
+    begin: int,
+    end: int,
+    gap: FloatArray,
+    meeting: BoolArray,
+    motions: FloatArray,
+    shape: FloatArray,
+    shaped: FloatArray,
+) -> float:
+    """Set the gap of a mesh's pairs less an approach, and return the least where slices meet; infinite without any."""
+    nearest = np.inf
+    for pair in range(begin, end):
+        own = pair if motions.shape[0] > 1 else 0
+        for i in range(gap.shape[1]):
+            shaped[pair, i] = gap[pair, i]
+            for j in range(shape.size):
+                shaped[pair, i] -= motions[own, i, j] * shape[j]
+            if meeting[pair, i] and shaped[pair, i] < nearest:
+                nearest = shaped[pair, i]
+    return nearest
+
+
+@inner(fastmath=FUSED)
 def touch_alone(
     begin: int,
     end: int,
@@ -176,7 +208,7 @@ def touch_alone(
         for pair in range(begin, end):
             for i in range(n):
                 if touching[pair, i]:
-                    spring = 1.0 / (1.0 / base[pair, i] + 1.0 / flattening)
+                    spring = base[pair, i] * flattening / (base[pair, i] + flattening)
                     stiffness += spring
                     offset += spring * gap[pair, i]
         compression = (line_force + offset) / stiffness if stiffness > 0.0 else 0.0
@@ -201,13 +233,21 @@ def balance_meshes(
     link: float,
     width: float,
     motions: FloatArray,
+    even: FloatArray,
+    shape: FloatArray,
     shared: FloatArray,
     force: FloatArray,
     rounds: tuple[int, int],
+    known: BoolArray,
+    fields: FloatArray,
+    slopes: FloatArray,
+    constants: FloatArray,
     line_load: FloatArray,
     line_tangent: FloatArray,
     compression: FloatArray,
-    whole_stiffness: FloatArray,
+    stiffness: FloatArray,
+    loads: FloatArray,
+    energy: FloatArray,
 ) -> int:
     """Find the slices that touch in m meshes under their loads, one mesh after the other.
 
@@ -216,177 +256,170 @@ def balance_meshes(
     first : ndarray of int, shape (m + 1,)
         First pair of each mesh, and the number of pairs p.
     base, gap, meeting, touching : ndarray, shape (p, n)
-        See :func:`gearwhine.coupling.gears.contact.face_slices.face_equilibrium`. ``touching`` is where the search
-        starts unless it has rounds of `touch_alone`, and takes the slices in contact.
+        See :class:`gearwhine.coupling.gears.contact.face_slices.SlicedMeshes`. ``touching`` is where the search starts
+        unless it has rounds of `touch_alone`, and takes the slices in contact.
     flattening, link, width : float
         k_h, T over the square of a slice's width [N/m per m], and that width [m].
-    motions : ndarray, shape (n, 1 + k)
-        B: ones, and the shapes of the shared deflections.
+    motions : ndarray, shape (p, n, a + k) or (1, n, a + k)
+        B: approaches of each pair, or of all, and the shapes of the shared deflections.
+    even, shape : ndarray, shape (a,)
+        Approach that is 1 all over the face, and the approach but for the compression [m].
     shared : ndarray, shape (k, k)
         Shared compliance [m/N].
     force : ndarray, shape (m,)
         Loads [N].
     rounds : tuple of int
-        Most rounds of the search, and those of `touch_alone` before it.
+        Most rounds of the search, and those of `touch_alone` before it. Then a mesh starts from the one before, where
+        it has as many pairs.
+    known : ndarray of bool, shape (p,)
+        Pairs whose rows of the next three arrays are those of ``touching``.
+    fields, slopes, constants : ndarray
+        See `deflect_under_motions`; of as many pairs as a mesh has at most, where they are not kept.
     line_load, line_tangent : ndarray, shape (p, n)
         Take the load per width and its derivative by compression, as of `FaceLoads`.
-    compression, whole_stiffness : ndarray, shape (m,)
+    compression, stiffness : ndarray, shape (m,)
         Take the compression [m], and the stiffness without shared deflections [N/m].
+    loads : ndarray, shape (m, a + k)
+        Takes the loads conjugate to the motions [N, N m].
+    energy : ndarray, shape (m,)
+        Takes the energy of teeth and shared deflections [J].
 
     Returns
     -------
     int
         0, 1 where the slices do not settle, or 2 where they yield without bound.
     """
-    n, size = motions.shape
-    pairs = gap.shape[0]
-    fields, factors = np.empty((pairs, n, 1 + size)), np.empty((2, n))
-    slopes, constants = np.empty((pairs, size, size)), np.empty((pairs, size))
-    changed = np.ones(pairs, dtype=np.bool_)
-    stiffness, resisting, answer = np.empty((size, size)), np.empty((size, size)), np.empty((size, 2))
-    constant = np.empty(size)
+    n, all_motions, own_motions = gap.shape[1], motions.shape[2], shape.size
+    size = 1 + all_motions - own_motions
+    kept = fields.shape[0] >= gap.shape[0]
+    factors = np.empty((2, n))
+    whole, resisting, answer = np.empty((size, size)), np.empty((size, size)), np.empty((size, 2))
+    total, at_rest = np.empty((all_motions, all_motions)), np.empty(all_motions)
+    constant, motion, rate = np.empty(size), np.empty(all_motions), np.empty(all_motions)
     for mesh in range(force.size):
         begin, end = first[mesh], first[mesh + 1]
+        offset = 0 if kept else begin
         if rounds[1] > 0:
-            line_force = force[mesh] / width
-            touch_alone(begin, end, base, gap, meeting, touching, flattening, line_force, rounds[1])
-        nearest = np.inf
-        for pair in range(begin, end):
-            for i in range(n):
-                touching[pair, i] &= meeting[pair, i]
-                if meeting[pair, i] and gap[pair, i] < nearest:
-                    nearest = gap[pair, i]
+            before = first[mesh - 1] if mesh > 0 else end
+            if mesh > 0 and begin - before == end - begin:
+                for pair in range(begin, end):
+                    for i in range(n):
+                        touching[pair, i] = touching[pair + before - begin, i]
+            else:
+                shaped_gap(begin, end, gap, meeting, motions, shape, line_load)
+                line_force = force[mesh] / width
+                touch_alone(begin, end, base, line_load, meeting, touching, flattening, line_force, rounds[1])
+            for pair in range(begin, end):
+                for i in range(n):
+                    touching[pair, i] &= meeting[pair, i]
         settled = False
         for _ in range(rounds[0]):
-            for j in range(size):
-                constant[j] = 0.0
-                for k in range(size):
-                    stiffness[j, k] = 0.0
+            for j in range(all_motions):
+                at_rest[j] = 0.0
+                for k in range(all_motions):
+                    total[j, k] = 0.0
             for pair in range(begin, end):
-                if changed[pair]:
+                row = pair - offset
+                if not known[pair]:
                     arrays = (base, gap, touching, flattening, link, motions, fields, slopes, constants, factors)
-                    if not deflect_pair(pair, *arrays):
+                    if not deflect_pair(pair, row, *arrays):
                         return 2
-                for j in range(size):
-                    constant[j] += width * constants[pair, j]
-                    for k in range(size):
-                        stiffness[j, k] += width * slopes[pair, j, k]
+                    known[pair] = True
+                for j in range(all_motions):
+                    at_rest[j] += width * constants[row, j]
+                    for k in range(all_motions):
+                        total[j, k] += width * slopes[row, j, k]
+            for j in range(all_motions):
+                for k in range(own_motions):
+                    at_rest[j] += total[j, k] * shape[k]
             # Motions y of a mesh over its face: its compression, then minus the shared deflections, which are the
             # shared compliance times the loads on them. The second column is their derivative by the compression.
-            apart = stiffness[0, 0] <= 0.0
+            constant[0] = 0.0
             for j in range(size):
-                answer[j, 0] = constant[j] + force[mesh] if j == 0 else 0.0
-                answer[j, 1] = 1.0 if j == 0 else 0.0
+                whole[0, j] = 0.0
+                whole[j, 0] = 0.0
+            for j in range(own_motions):
+                constant[0] += even[j] * at_rest[j]
+                for k in range(own_motions):
+                    whole[0, 0] += even[j] * total[j, k] * even[k]
+                for k in range(1, size):
+                    whole[0, k] += even[j] * total[j, own_motions + k - 1]
+            for j in range(1, size):
+                constant[j] = at_rest[own_motions + j - 1]
+                whole[j, 0] = whole[0, j]
+                for k in range(1, size):
+                    whole[j, k] = total[own_motions + j - 1, own_motions + k - 1]
+            for k in range(size):
+                resisting[0, k] = whole[0, k]
+            answer[0, 0], answer[0, 1] = force[mesh] - constant[0], 1.0
+            for j in range(1, size):
+                answer[j, 0], answer[j, 1] = 0.0, 0.0
+                for between in range(1, size):
+                    answer[j, 0] -= shared[j - 1, between - 1] * constant[between]
                 for k in range(size):
-                    if j == 0:
-                        resisting[j, k] = stiffness[j, k]
-                        continue
                     resisting[j, k] = 1.0 if j == k else 0.0
                     for between in range(1, size):
-                        resisting[j, k] += shared[j - 1, between - 1] * stiffness[between, k]
-                if j > 0:
-                    for between in range(1, size):
-                        answer[j, 0] += shared[between - 1, j - 1] * constant[between]
-            if apart:
-                for j in range(size):
-                    answer[j, 0] = nearest if j == 0 else 0.0
-            else:
+                        resisting[j, k] += shared[j - 1, between - 1] * whole[between, k]
+            stiffness[mesh] = whole[0, 0]
+            if whole[0, 0] > 0.0:
                 solve_in_place(resisting, answer)
-            whole_stiffness[mesh] = stiffness[0, 0]
-            carries = False
-            settled = True
+            else:
+                answer[0, 0] = shaped_gap(begin, end, gap, meeting, motions, shape, line_load)
+                for j in range(1, size):
+                    answer[j, 0] = 0.0
+            for j in range(own_motions):
+                motion[j] = shape[j] + even[j] * answer[0, 0]
+            for j in range(1, size):
+                motion[own_motions + j - 1] = answer[j, 0]
+            carries, settled = False, True
             for pair in range(begin, end):
-                changed[pair] = False
+                row = pair - offset
                 for i in range(n):
-                    excess = -gap[pair, i] - fields[pair, i, 0]
-                    for j in range(size):
-                        excess += answer[j, 0] * (motions[i, j] - fields[pair, i, 1 + j])
+                    excess = fields[row, i, 0]
+                    for j in range(all_motions):
+                        excess += motion[j] * fields[row, i, 1 + j]
                     line_load[pair, i] = excess
                     carries |= meeting[pair, i] and excess > 0.0
+            nearest = -np.inf
+            if not carries:
+                nearest = shaped_gap(begin, end, gap, meeting, motions, shape, line_tangent)
             for pair in range(begin, end):
                 for i in range(n):
                     touches = meeting[pair, i] and line_load[pair, i] > 0.0
                     # At least the nearest slice carries.
-                    if not carries and meeting[pair, i] and gap[pair, i] <= nearest:
+                    if not carries and meeting[pair, i] and line_tangent[pair, i] <= nearest:
                         touches = True
                     if touches != touching[pair, i]:
                         touching[pair, i] = touches
-                        changed[pair] = True
+                        known[pair] = False
                         settled = False
             if settled:
                 break
         if not settled:
             return 1
         compression[mesh] = answer[0, 0]
+        for j in range(own_motions):
+            rate[j] = even[j]
+        for j in range(1, size):
+            rate[own_motions + j - 1] = answer[j, 1] / answer[0, 1]
+        work = 0.0
+        for j in range(all_motions):
+            loads[mesh, j] = at_rest[j]
+            for k in range(all_motions):
+                loads[mesh, j] += total[j, k] * (motion[k] - shape[k] if k < own_motions else motion[k])
+            if j < own_motions:
+                work += loads[mesh, j] * motion[j]
         for pair in range(begin, end):
+            row = pair - offset
             for i in range(n):
-                rate = 0.0
-                for j in range(size):
-                    rate += answer[j, 1] / answer[0, 1] * (motions[i, j] - fields[pair, i, 1 + j])
-                line_load[pair, i] = flattening * line_load[pair, i] if touching[pair, i] else 0.0
-                line_tangent[pair, i] = flattening * rate if touching[pair, i] else 0.0
-    return 0
-
-
-@counted(fastmath=FUSED)
-def add_tangents(
-    first: IndexArray,
-    base: FloatArray,
-    touching: BoolArray,
-    flattening: float,
-    link: float,
-    width: float,
-    basis: FloatArray,
-    shapes: FloatArray,
-    tangents: FloatArray,
-) -> bool:
-    """Find the tangents of m meshes by fields of approach of their pairs: the sums of ``w Bᵀ k_h (B - W)``.
-
-    Parameters
-    ----------
-    first : ndarray of int, shape (m + 1,)
-        First pair of each mesh, and the number of pairs p.
-    base, touching : ndarray, shape (p, n)
-    flattening, link, width : float
-        See `balance_meshes`.
-    basis : ndarray, shape (p, n, a)
-        Approaches of each pair.
-    shapes : ndarray, shape (n, k)
-        Approaches of all pairs.
-    tangents : ndarray, shape (m, a + k, a + k)
-        Takes the sums.
-
-    Returns
-    -------
-    bool
-        Whether the deflections are bounded.
-    """
-    n, own = basis.shape[1], basis.shape[2]
-    size = own + shapes.shape[1]
-    motions, fields, factors = np.empty((n, size)), np.empty((1, n, size)), np.empty((2, n))
-    for i in range(n):
-        for k in range(own, size):
-            motions[i, k] = shapes[i, k - own]
-    for mesh in range(first.size - 1):
-        for j in range(size):
-            for k in range(size):
-                tangents[mesh, j, k] = 0.0
-        for pair in range(first[mesh], first[mesh + 1]):
-            for i in range(n):
-                for k in range(own):
-                    motions[i, k] = basis[pair, i, k]
-                for k in range(size):
-                    fields[0, i, k] = flattening * motions[i, k] if touching[pair, i] else 0.0
-            rows = base[pair : pair + 1], touching[pair : pair + 1]
-            if not deflect(rows[0], rows[1], flattening, link, 0, fields, factors):
-                return False
-            for i in range(n):
+                by_compression = 0.0
+                for j in range(all_motions):
+                    by_compression += rate[j] * fields[row, i, 1 + j]
+                line_tangent[pair, i] = flattening * by_compression if touching[pair, i] else 0.0
                 if touching[pair, i]:
-                    for j in range(size):
-                        pushed = width * flattening * motions[i, j]
-                        for k in range(j + 1):
-                            tangents[mesh, j, k] += pushed * (motions[i, k] - fields[0, i, k])
-        for j in range(size):
-            for k in range(j):
-                tangents[mesh, k, j] = tangents[mesh, j, k]
-    return True
+                    line_load[pair, i] *= flattening
+                    work -= width * line_load[pair, i] * gap[pair, i]
+                else:
+                    line_load[pair, i] = 0.0
+        energy[mesh] = 0.5 * work
+    return 0

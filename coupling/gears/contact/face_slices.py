@@ -148,12 +148,6 @@ class FaceSlices:
         polynomials, triangle = np.linalg.qr(np.polynomial.legendre.legvander(2.0 * self.z / self.face_width, degrees))
         return np.asarray(math.sqrt(n) * (polynomials * np.sign(np.diagonal(triangle)))[:, 1:])
 
-    @cached_property
-    def common_motions(self) -> tuple[FloatArray, FloatArray]:
-        """Motions of the pairs in contact at once: ones and `shapes`, (n, 1 + k), and what `shared` has of them."""
-        k = self.shapes.shape[1]
-        return np.column_stack([np.ones(self.z.size), self.shapes]), np.ascontiguousarray(self.shared[:k, :k])
-
     @property
     def link(self) -> float:
         """T over the square of a slice's width [N/m per m]."""
@@ -329,13 +323,12 @@ def face_loads(
     fixed, rising = _even(slices, base, gap, touching)
     unsettled = np.arange(compression.size)
     for _ in range(_MOST_ROUNDS):
-        deep = compression[unsettled, None]
-        excess = deep - gap[unsettled] - (fixed[unsettled] + deep * rising[unsettled])
+        excess = fixed[unsettled] + compression[unsettled, None] * rising[unsettled]
         touches = meeting[unsettled] & (excess > 0.0)
         changed = (touches != touching[unsettled]).any(axis=1)
         unsettled, touches = unsettled[changed], touches[changed]
         if not unsettled.size:
-            return _loads(slices, gap, touching, compression[:, None], fixed, rising)
+            return _loads(slices, touching, compression[:, None], fixed, rising)
         touching[unsettled] = touches
         fixed[unsettled], rising[unsettled] = _even(slices, base[unsettled], gap[unsettled], touches)
     raise ContactAccuracyError(_UNSETTLED)
@@ -369,57 +362,197 @@ def face_equilibrium(
     ContactAccuracyError
         Where the set of touching slices does not converge, or the loads do not balance to rounding.
     """
-    # Imported here: numba is not needed to read a case.
-    from gearwhine.coupling.gears.contact.face_slice_kernels import balance_meshes
+    meshes = SlicedMeshes(slices, base, gap, meeting, owner, force.size)
+    balanced = meshes.balance(force, touching=touching)
+    return balanced.compression, balanced.faces
 
-    first = np.searchsorted(owner, np.arange(force.size + 1))
-    motions, shared = slices.common_motions
-    rounds = _MOST_ROUNDS, _ALONE_ROUNDS if touching is None else 0
-    touching = np.empty(gap.shape, dtype=np.bool_) if touching is None else touching.copy()
-    load, tangent = np.empty(gap.shape), np.empty(gap.shape)
-    compression, stiffness = np.empty(force.size), np.empty(force.size)
-    failure = balance_meshes(
-        first,
-        base,
-        gap,
-        meeting,
-        touching,
-        slices.flattening,
-        slices.link,
-        slices.width,
-        motions,
-        shared,
-        force,
-        rounds,
-        load,
-        tangent,
-        compression,
-        stiffness,
-    )
-    if failure:
-        raise ContactAccuracyError(_UNSETTLED if failure == 1 else _UNBOUNDED)
-    width = slices.width
-    loads = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touching)
-    carried = np.bincount(owner, loads.force, force.size)
-    rounding = 1e-9 * (force + stiffness * np.abs(compression)) + 1e-300
-    if np.any(np.abs(carried - force) > rounding) or np.any(load < -rounding.max()):
-        raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
-    return compression, loads
+
+@dataclass(frozen=True, eq=False)
+class BalancedMeshes:
+    """Equilibrium of m meshes of p pairs under their loads.
+
+    Attributes
+    ----------
+    compression : ndarray, shape (m,)
+        Compression [m], the deflections that all pairs of the mesh share excluded.
+    faces : FaceLoads
+        Loaded faces of the pairs.
+    loads : ndarray, shape (m, a)
+        Loads conjugate to the approaches [N, N m].
+    energy : ndarray, shape (m,)
+        Energy of the teeth and their bodies [J].
+    """
+
+    compression: FloatArray
+    faces: FaceLoads
+    loads: FloatArray
+    energy: FloatArray
+
+
+class SlicedMeshes:
+    """Pairs of m meshes whose flanks approach unevenly over the face.
+
+    What resists the approaches of a pair follows from its touching slices alone, and is kept for the next equilibrium.
+
+    Parameters
+    ----------
+    slices, base, gap, meeting
+        Arrays of all p pairs of all meshes, see `face_loads`.
+    owner : ndarray of int, shape (p,)
+        Mesh of each pair, ascending.
+    meshes : int
+    approaches : ndarray, shape (p, n, a), optional
+        Approaches B of each pair; by default the even one.
+    even : ndarray, shape (a,)
+        Sum of them that is 1 all over the face.
+    """
+
+    def __init__(
+        self,
+        slices: FaceSlices,
+        base: FloatArray,
+        gap: FloatArray,
+        meeting: BoolArray,
+        owner: IndexArray,
+        meshes: int,
+        approaches: FloatArray | None = None,
+        even: FloatArray | None = None,
+    ) -> None:
+        self._slices, self._base, self._gap, self._meeting, self._owner = slices, base, gap, meeting, owner
+        self._first = np.searchsorted(owner, np.arange(meshes + 1))
+        shapes, count = slices.shapes, len(owner)
+        if approaches is None or even is None:
+            approaches, even = np.ones((1, slices.z.size, 1)), np.ones(1)
+        self._even = even
+        repeated = np.broadcast_to(shapes, (len(approaches), *shapes.shape))
+        self._motions = np.concatenate([approaches, repeated], axis=2)
+        self._shared = np.ascontiguousarray(slices.shared[: shapes.shape[1], : shapes.shape[1]])
+        # Approaches of all pairs alone are of meshes that are solved once.
+        rows = count if len(approaches) > 1 else int(np.diff(self._first).max(initial=1))
+        size = self._motions.shape[2]
+        self._touching, self._known = np.zeros(gap.shape, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
+        self._fields = np.empty((rows, slices.z.size, 1 + size))
+        self._slopes, self._constants = np.empty((rows, size, size)), np.empty((rows, size))
+
+    def balance(
+        self, force: FloatArray, shape: FloatArray | None = None, touching: BoolArray | None = None
+    ) -> BalancedMeshes:
+        """Find the equilibrium under loads (m,) [N].
+
+        Parameters
+        ----------
+        force : ndarray, shape (m,)
+        shape : ndarray, shape (a,), optional
+            Approach but for the compression [m]; none by default.
+        touching : ndarray of bool, shape (p, n), optional
+            Slices in contact at the start of the search, such as those at a similar load.
+
+        Raises
+        ------
+        ContactAccuracyError
+            Where the set of touching slices does not converge, or the loads do not balance to rounding.
+        """
+        # Imported here: numba is not needed to read a case.
+        from gearwhine.coupling.gears.contact.face_slice_kernels import balance_meshes
+
+        slices, gap, width = self._slices, self._gap, self._slices.width
+        self._start(touching)
+        load, tangent = np.empty(gap.shape), np.empty(gap.shape)
+        compression, stiffness, energy = np.empty(force.size), np.empty(force.size), np.empty(force.size)
+        loads, own = np.empty((force.size, self._motions.shape[2])), self._even.size
+        failure = balance_meshes(
+            self._first,
+            self._base,
+            gap,
+            self._meeting,
+            self._touching,
+            slices.flattening,
+            slices.link,
+            width,
+            self._motions,
+            self._even,
+            np.zeros(own) if shape is None else shape,
+            self._shared,
+            force,
+            (_MOST_ROUNDS, _ALONE_ROUNDS if touching is None else 0),
+            self._known,
+            self._fields,
+            self._slopes,
+            self._constants,
+            load,
+            tangent,
+            compression,
+            stiffness,
+            loads,
+            energy,
+        )
+        if failure:
+            raise ContactAccuracyError(_UNSETTLED if failure == 1 else _UNBOUNDED)
+        touches = self._touching.copy()
+        faces = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touches)
+        carried = np.bincount(self._owner, faces.force, force.size)
+        rounding = 1e-9 * (force + stiffness * np.abs(compression)) + 1e-300
+        if np.any(np.abs(carried - force) > rounding) or np.any(load < -rounding.max()):
+            raise ContactAccuracyError(
+                "the slices of the face do not balance the load; check the stiffness and the gaps"
+            )
+        return BalancedMeshes(compression, faces, loads[:, :own], energy)
+
+    def tangents(self, touching: BoolArray) -> FloatArray:
+        """Return the derivatives of the loads of each mesh by the approaches where slices (p, n) touch, (m, a, a).
+
+        They are the sums of ``w Bᵀ k_h (B - W)`` over the touching slices. The shapes of the shared deflection are
+        approaches too, and are condensed.
+
+        Raises
+        ------
+        ContactAccuracyError
+            Where the slices yield without bound.
+        """
+        self._start(touching)
+        _find_fields(
+            self._slices,
+            np.flatnonzero(~self._known),
+            self._base,
+            self._gap,
+            self._touching,
+            self._motions,
+            self._fields,
+            self._slopes,
+            self._constants,
+        )
+        self._known[:] = True
+        own, shared = self._even.size, self._shared
+        whole = self._slices.width * np.add.reduceat(self._slopes, self._first[:-1], axis=0)
+        by_shapes = whole[:, own:, :own]
+        resisting = np.eye(len(shared)) + shared @ whole[:, own:, own:]
+        return np.asarray(
+            whole[:, :own, :own] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
+        )
+
+    def _start(self, touching: BoolArray | None) -> None:
+        """Start from slices in contact; what is known of pairs with the same ones is kept."""
+        if touching is None or len(self._fields) < len(self._known):
+            self._known[:] = False
+        if touching is not None:
+            touching = touching & self._meeting
+            self._known &= (touching == self._touching).all(axis=1)
+            self._touching[:] = touching
 
 
 def _loads(
-    slices: FaceSlices, gap: FloatArray, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
+    slices: FaceSlices, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
 ) -> FaceLoads:
-    """Evaluate the face loads from known deflections, ``w = fixed + deep * rising``, at compressions `deep` (p, 1)."""
-    load = np.where(touching, slices.flattening * (deep - gap - (fixed + deep * rising)), 0.0)
-    tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
+    """Evaluate the face loads from what the flattening yields, ``fixed + deep * rising``, at compressions (p, 1)."""
+    load = np.where(touching, slices.flattening * (fixed + deep * rising), 0.0)
+    tangent = np.where(touching, slices.flattening * rising, 0.0)
     return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1), touching)
 
 
 def _even(slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Solve the deflection ``w = fixed + compression * rising`` of each pair, (p, n) both."""
+    """Solve ``compression - gap - w = fixed + compression * rising`` of each pair, (p, n) both."""
     fields, pairs = np.empty((*gap.shape, 2)), len(gap)
-    motions = np.ones((slices.z.size, 1))
+    motions = np.ones((1, slices.z.size, 1))
     slopes, constants = np.empty((pairs, 1, 1)), np.empty((pairs, 1))
     _find_fields(slices, np.arange(pairs), base, gap, touching, motions, fields, slopes, constants)
     return fields[:, :, 0], fields[:, :, 1]
@@ -437,52 +570,11 @@ def _find_fields(
     constants: FloatArray,
 ) -> None:
     """Find the rows of some pairs in the last three arrays, see the kernel."""
-    # Imported here: numba is not needed to read a case.
     from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_under_motions
 
     arrays = base, gap, touching, slices.flattening, slices.link, motions, fields, slopes, constants
     if not deflect_under_motions(pairs, *arrays):
         raise ContactAccuracyError(_UNBOUNDED)
-
-
-def approach_tangents(
-    slices: FaceSlices, base: FloatArray, touching: BoolArray, owner: IndexArray, meshes: int, basis: FloatArray
-) -> FloatArray:
-    """Sum ``w Bᵀ k_h (B - W)`` over the touching slices of the pairs of each mesh, (meshes, m, m).
-
-    W are the deflections by ``(k_b + k_h) W - T W'' = k_h B``. The shapes of the shared deflection are approaches too,
-    and are condensed.
-
-    Parameters
-    ----------
-    slices : FaceSlices
-    base : ndarray, shape (p, n)
-        k_b of each slice [N/m per m].
-    touching : ndarray of bool, shape (p, n)
-        Slices in contact, which have k_h in addition.
-    owner : ndarray of int, shape (p,)
-        Mesh of each pair, ascending.
-    meshes : int
-    basis : ndarray, shape (p, n, m)
-        B, the approaches of each pair.
-
-    Raises
-    ------
-    ContactAccuracyError
-        Where the slices yield without bound.
-    """
-    from gearwhine.coupling.gears.contact.face_slice_kernels import add_tangents
-
-    size, shapes = basis.shape[2], slices.shapes
-    first = np.searchsorted(owner, np.arange(meshes + 1))
-    whole = np.empty((meshes, size + shapes.shape[1], size + shapes.shape[1]))
-    if not add_tangents(first, base, touching, slices.flattening, slices.link, slices.width, basis, shapes, whole):
-        raise ContactAccuracyError(_UNBOUNDED)
-    by_shapes, shared = whole[:, size:, :size], slices.common_motions[1]
-    resisting = np.eye(len(shared)) + shared @ whole[:, size:, size:]
-    return np.asarray(
-        whole[:, :size, :size] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
-    )
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

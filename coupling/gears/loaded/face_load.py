@@ -44,7 +44,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
-from gearwhine.coupling.gears.contact.face_slices import FaceLoads, approach_tangents, face_equilibrium, lagrange
+from gearwhine.coupling.gears.contact.face_slices import BalancedMeshes, SlicedMeshes, lagrange
 from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
@@ -273,7 +273,7 @@ class FaceContact:
         prepared = self._mean_phases
         position = prepared.positions[prepared.owner, prepared.column][:, None] + self._faces.shift
         on_path = (position >= 0.0) & (position < self._contact.contact_ratio)
-        tangents = self._tangents(prepared, prepared.meeting & on_path)
+        tangents = prepared.meshes.tangents(prepared.meeting & on_path)
         return _face_tangent(self.linear.T @ tangents @ self.linear, self._contact.shared_compliance, np.zeros(2))
 
     def stiffness_of(self, load: FaceLoad) -> FloatArray:
@@ -299,7 +299,7 @@ class FaceContact:
             Where the touching slices do not converge.
         """
         prepared = self._mean_phases if phases is None else _Prepared(self, phases)
-        return self._load(prepared, force, shape, *self._balanced(prepared, force, shape))
+        return self._load(prepared, force, self._balanced(prepared, force, shape))
 
     def evenly(self, force: float, phases: FloatArray) -> FaceLoad:
         """Return static equilibrium under a force of flanks that approach evenly, without helix modifications.
@@ -342,10 +342,10 @@ class FaceContact:
         low, high = 0.0, np.inf
         touching = self._touching
         for _ in range(_ROUNDS):
-            compression, loads = self._balanced(prepared, force, shape, touching)
-            touching = loads.touching
-            reached = float(compression.mean()) + shared * force
-            slope = float(np.mean(1.0 / np.add.reduceat(loads.tangent, prepared.first))) + shared
+            balanced = self._balanced(prepared, force, shape, touching)
+            touching = balanced.faces.touching
+            reached = float(balanced.compression.mean()) + shared * force
+            slope = float(np.mean(1.0 / np.add.reduceat(balanced.faces.tangent, prepared.first))) + shared
             if abs(reached - target) <= _CONVERGED_DEFLECTION_STEP * abs(target) + 1e-22:
                 break
             low, high = (force, high) if reached < target else (low, force)
@@ -358,38 +358,26 @@ class FaceContact:
                 f"loaded tooth contact: no mesh force for a mean approach of {target:.6g} m; expected one"
             )
         self._last, self._touching = (force, target - first), touching
-        return self._state(self._load(prepared, force, shape, compression, loads), force, target)
+        return self._state(self._load(prepared, force, balanced), force, target)
 
     def _balanced(
         self, prepared: _Prepared, force: float, shape: FloatArray, touching: npt.NDArray[np.bool_] | None = None
-    ) -> tuple[FloatArray, FaceLoads]:
-        """Compressions of the phases under a force, the shared compliance excluded, and the loaded faces."""
-        gap = prepared.gap - prepared.basis @ shape
-        forces = np.full(prepared.phases.size, force)
-        return face_equilibrium(
-            self._faces, prepared.base, gap, prepared.meeting, prepared.owner, forces, touching=touching
-        )
+    ) -> BalancedMeshes:
+        """Equilibrium of the phases under a force, the shared compliance excluded."""
+        return prepared.meshes.balance(np.full(prepared.phases.size, force), shape, touching)
 
-    def _load(
-        self, prepared: _Prepared, force: float, shape: FloatArray, compression: FloatArray, loads: FaceLoads
-    ) -> FaceLoad:
+    def _load(self, prepared: _Prepared, force: float, balanced: BalancedMeshes) -> FaceLoad:
         """Return the load at the equilibrium of `_balanced`."""
-        n = prepared.phases.size
-        gap = prepared.gap - prepared.basis @ shape
-        # Slice loads do work on the slices' own and on the bodies' shared deflection.
-        deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
-        width, shared = self._faces.width, self._contact.shared_compliance
-        energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
-        loads_of_slices = width * (loads.line_load[:, None] @ prepared.basis)[:, 0]
+        shared = self._contact.shared_compliance
         line_loads = np.zeros((*prepared.positions.shape, self.z.size))
-        line_loads[prepared.owner, prepared.column] = loads.line_load
+        line_loads[prepared.owner, prepared.column] = balanced.faces.line_load
         return FaceLoad(
             force=force,
             phases=prepared.phases,
-            deflection=compression + shared * force,
-            loads=np.add.reduceat(loads_of_slices, prepared.first, axis=0),
-            tangents=self._tangents(prepared, loads.touching),
-            energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
+            deflection=balanced.compression + shared * force,
+            loads=balanced.loads,
+            tangents=prepared.meshes.tangents(balanced.faces.touching),
+            energy=balanced.energy + 0.5 * shared * force**2,
             positions=prepared.positions,
             pair_line_loads=line_loads,
         )
@@ -418,12 +406,6 @@ class FaceContact:
             force, deep = self._last
             return force * beyond / deep
         return self._contact.unloaded_mean_mesh_stiffness * beyond
-
-    def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
-        """Derivatives of the loads of each phase by the approach, (n, m, m)."""
-        return approach_tangents(
-            self._faces, prepared.base, touching, prepared.owner, prepared.phases.size, prepared.basis
-        )
 
     @cached_property
     def _mean_phases(self) -> _Prepared:
@@ -457,13 +439,15 @@ class _Prepared:
         self.positions = states.position
         self.owner, self.column = np.nonzero(states.present)
         self.first = np.searchsorted(self.owner, np.arange(phases.size))
-        self.base, self.meeting = states.faces.base, states.faces.meeting
-        self.gap = states.faces.gap
+        faces, self.meeting, self.gap = states.faces, states.faces.meeting, states.faces.gap
         along = places_on_line_of_action(contact, mesh._geometry, states.position[self.owner, self.column])
         basis = np.empty((*along.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face
         basis[:, :, -1] = -mesh._axial * along
         self.basis = basis
+        self.meshes = SlicedMeshes(
+            mesh._faces, faces.base, faces.gap, faces.meeting, self.owner, phases.size, basis, mesh.uniform
+        )
 
     def first_touch(self, shape: FloatArray) -> float:
         """Mean over the phases of the approach at which the first slice touches [m]."""
