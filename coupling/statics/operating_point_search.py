@@ -51,7 +51,6 @@ _ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its te
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE_MOTION_STIFFNESS = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
-_TE_PHASES = 200
 _IDLE_PAIR_FORCE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
 
 
@@ -608,9 +607,7 @@ class _StaticModel:
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.
         loading = force if force > 0.0 else _IDLE_PAIR_FORCE * pressed
-        mean = contact.under_force(loading, shape)
-        fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
-        return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
+        return PairLoad(pair, force, approach, float(slope @ approach), by_cause, loading, shape)
 
 
 def _rolling_state(bearing: StaticBearing, deflection: FloatArray) -> RollingState | None:

@@ -6,6 +6,7 @@ of the tangent, from which the search for equilibrium starts (:mod:`gearwhine.co
 """
 
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -156,7 +157,14 @@ def _static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
 
 
 def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
-    """Stiffness of a rolling bearing under a trial load, alike in x and y, (5, 5)."""
+    """Stiffness of a rolling bearing without clearance under a trial load, alike in x and y, (5, 5)."""
+    return _stiffness_on_trial(
+        replace(rolling, rows=tuple(replace(row, clearance=0.0) for row in rolling.rows), name="")
+    )
+
+
+@lru_cache(maxsize=64)  # the bearings of a machine, and of others with other clearances, are often alike
+def _stiffness_on_trial(rolling: RollingBearing) -> FloatArray:
     trial = _TRIAL_LOAD * min(static_rating(row) for row in rolling.rows)
     load = np.array([trial, 0.0, 0.0, 0.0, 0.0])
     # Held along its axis, a row that carries thrust one way only does not slide open.
