@@ -10,8 +10,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from copy import copy
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -130,7 +129,7 @@ from gearwhine.numerics.findings import (
     kind_findings,
     refuse,
 )
-from gearwhine.numerics.own_copies import keep_tuples
+from gearwhine.numerics.own_copies import keep_tuples, unchecked
 from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
@@ -756,12 +755,7 @@ class Machine:
 
         Neither has a part in the checks, nor in what `_GEOMETRIC` names, which is not found again.
         """
-        machine = copy(self)
-        known = _GEOMETRIC.union(field.name for field in fields(self))
-        for name in set(machine.__dict__) - known:
-            del machine.__dict__[name]
-        machine.__dict__.update(parts)
-        return machine
+        return unchecked(self, _GEOMETRIC, **parts)
 
     def with_flanks_of(self, point: OperatingPoint | None) -> "Machine":
         """Return the machine whose pairs have the gap over the face of an operating point, where they give none.

@@ -22,6 +22,7 @@ from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_act
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.own_copies import unchecked
 from gearwhine.rotors.analyses.static_stiffness import StaticShaft
 from gearwhine.rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
@@ -306,10 +307,12 @@ def static_pair(
     model = (
         stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness
     )
-    driver, driven = (replace(gear, faults=(), pitch_deviations=()) for gear in (geometry.driver, geometry.driven))
-    sound = replace(geometry, driver=driver, driven=driven)
+    sound = geometry
+    if geometry.driver.faults or geometry.driven.faults:
+        driver, driven = (unchecked(gear, faults=()) for gear in (geometry.driver, geometry.driven))
+        sound = unchecked(geometry, driver=driver, driven=driven)
     faces = face_slices(sound, sense=rotation)
-    contact = tooth_contact(sound, model, corner_contact=pair.has_corner_contact, faces=faces)
+    contact = tooth_contact(sound, model, corner_contact=pair.has_corner_contact, faces=faces).teeth_alike
     backwards = torque < 0.0
     sense = -rotation if backwards else rotation
     backlash = pair.backlash_of(geometry)

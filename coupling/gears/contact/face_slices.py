@@ -37,7 +37,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -70,6 +70,11 @@ _UNBOUNDED = "the slices of the face yield without bound; check the stiffness of
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
     """Shear coupling T of one tooth across its face [N], with the load at `radius` [m]."""
+    return _tooth_coupling(gear.sound, radius)
+
+
+@lru_cache(maxsize=64)  # gears of one drawing differ in their flanks alone
+def _tooth_coupling(gear: Gear, radius: float) -> float:
     across, along = tooth_side(gear, _OUTLINE)
     height = along - along[0]
     load = float(np.interp(radius, gear.sign * np.hypot(across, along), height))

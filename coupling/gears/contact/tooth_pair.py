@@ -56,6 +56,7 @@ def flank_gap(gear: Gear, roll_angle: FloatArray) -> FloatArray:
     return np.asarray(gap, dtype=np.float64)
 
 
+@lru_cache(maxsize=16)  # the contact of a pair in the static machine, and then in motion
 def pair_deviation(
     geometry: GearPairGeometry,
     start: float,
