@@ -7,7 +7,6 @@ housing's modes, and two of each pedestal. Connectors are bearings, gear pairs a
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -40,7 +39,9 @@ from gearwhine.coupling.statics.static_model import (
     StaticPair,
     StaticShaftPart,
 )
-from gearwhine.rotors.rolling_bearings import RollingState, rolling_state
+from gearwhine.numerics.own_copies import unchecked
+from gearwhine.rotors.rolling_bearings import RollingState
+from gearwhine.rotors.rolling_bearings.equilibrium import state_of_elements
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -615,8 +616,8 @@ def _rolling_state(bearing: StaticBearing, deflection: FloatArray) -> RollingSta
         return None
     elements = bearing.law.elements
     # Messages name the bearing by its place in the machine.
-    named = replace(elements.bearing, name=f"bearing {bearing.mounted.bearing.name!r}")
-    return rolling_state(named, deflection, speed=elements.speed)
+    named = unchecked(elements.bearing, name=f"bearing {bearing.mounted.bearing.name!r}")
+    return state_of_elements(unchecked(elements, {"contacts"}, bearing=named), deflection)
 
 
 def _rigid_rows(at: float) -> FloatArray:

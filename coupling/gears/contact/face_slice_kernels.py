@@ -160,6 +160,41 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
             right[step, column] /= matrix[step, step]
 
 
+@counted(fastmath=FUSED, no_cpython_wrapper=True)
+def condense(total: FloatArray, shared: FloatArray, condensed: FloatArray) -> None:
+    """Condense a tangent (a + k, a + k) onto its first a motions: the others yield to their loads, by ``shared``."""
+    own, k = condensed.shape[0], shared.shape[0]
+    resisting, yielding = np.empty((k, k)), np.empty((k, own))
+    for i in range(k):
+        for j in range(k):
+            resisting[i, j] = 1.0 if i == j else 0.0
+            for between in range(k):
+                resisting[i, j] += shared[i, between] * total[own + between, own + j]
+        for j in range(own):
+            yielding[i, j] = 0.0
+            for between in range(k):
+                yielding[i, j] += shared[i, between] * total[own + between, j]
+    solve_in_place(resisting, yielding)
+    for i in range(own):
+        for j in range(own):
+            condensed[i, j] = total[i, j]
+            for between in range(k):
+                condensed[i, j] -= total[own + between, i] * yielding[between, j]
+
+
+@counted(fastmath=FUSED)
+def condense_all(first: IndexArray, width: float, slopes: FloatArray, shared: FloatArray, tangents: FloatArray) -> None:
+    """Sum what resists the pairs of each mesh, ``slopes`` of `deflect_under_motions`, into ``tangents``, condensed."""
+    total = np.empty((slopes.shape[1], slopes.shape[1]))
+    for mesh in range(first.size - 1):
+        for i in range(total.shape[0]):
+            for j in range(total.shape[0]):
+                total[i, j] = 0.0
+                for pair in range(first[mesh], first[mesh + 1]):
+                    total[i, j] += width * slopes[pair, i, j]
+        condense(total, shared, tangents[mesh])
+
+
 @inner(fastmath=FUSED)
 def shaped_gap(
     begin: int,
@@ -244,10 +279,9 @@ def balance_meshes(
     constants: FloatArray,
     line_load: FloatArray,
     line_tangent: FloatArray,
-    compression: FloatArray,
-    stiffness: FloatArray,
+    results: FloatArray,
     loads: FloatArray,
-    energy: FloatArray,
+    tangents: FloatArray,
 ) -> int:
     """Find the slices that touch in m meshes under their loads, one mesh after the other.
 
@@ -277,12 +311,14 @@ def balance_meshes(
         See `deflect_under_motions`; of as many pairs as a mesh has at most, where they are not kept.
     line_load, line_tangent : ndarray, shape (p, n)
         Take the load per width and its derivative by compression, as of `FaceLoads`.
-    compression, stiffness : ndarray, shape (m,)
-        Take the compression [m], and the stiffness without shared deflections [N/m].
+    results : ndarray, shape (6, m)
+        Takes the compression [m] and its derivative by the load [m/N], the energy of teeth and shared deflections [J],
+        the sum of the slices' loads [N], the least load per width [N/m], and the stiffness without shared deflections
+        [N/m].
     loads : ndarray, shape (m, a + k)
         Takes the loads conjugate to the motions [N, N m].
-    energy : ndarray, shape (m,)
-        Takes the energy of teeth and shared deflections [J].
+    tangents : ndarray, shape (m, a, a)
+        Takes their derivatives by the approaches; none where its length is 0.
 
     Returns
     -------
@@ -360,7 +396,6 @@ def balance_meshes(
                     resisting[j, k] = 1.0 if j == k else 0.0
                     for between in range(1, size):
                         resisting[j, k] += shared[j - 1, between - 1] * whole[between, k]
-            stiffness[mesh] = whole[0, 0]
             if whole[0, 0] > 0.0:
                 solve_in_place(resisting, answer)
             else:
@@ -397,7 +432,6 @@ def balance_meshes(
                 break
         if not settled:
             return 1
-        compression[mesh] = answer[0, 0]
         for j in range(own_motions):
             rate[j] = even[j]
         for j in range(1, size):
@@ -409,6 +443,7 @@ def balance_meshes(
                 loads[mesh, j] += total[j, k] * (motion[k] - shape[k] if k < own_motions else motion[k])
             if j < own_motions:
                 work += loads[mesh, j] * motion[j]
+        carried, least = 0.0, 0.0
         for pair in range(begin, end):
             row = pair - offset
             for i in range(n):
@@ -419,7 +454,12 @@ def balance_meshes(
                 if touching[pair, i]:
                     line_load[pair, i] *= flattening
                     work -= width * line_load[pair, i] * gap[pair, i]
+                    carried += width * line_load[pair, i]
+                    least = min(least, line_load[pair, i])
                 else:
                     line_load[pair, i] = 0.0
-        energy[mesh] = 0.5 * work
+        results[0, mesh], results[1, mesh], results[2, mesh] = answer[0, 0], answer[0, 1], 0.5 * work
+        results[3, mesh], results[4, mesh], results[5, mesh] = carried, least, whole[0, 0]
+        if tangents.shape[0]:
+            condense(total, shared, tangents[mesh])
     return 0

@@ -205,17 +205,26 @@ class FaceLoads:
     ----------
     line_load, line_tangent : ndarray, shape (p, n)
         Load per width [N/m], transverse, and its derivative by compression [N/m per m].
-    force, tangent : ndarray, shape (p,)
-        Force of each pair [N], and its derivative by compression [N/m].
     touching : ndarray of bool, shape (p, n)
         Slices in contact.
+    width : float
+        Width of the slices [m].
     """
 
     line_load: FloatArray
     line_tangent: FloatArray
-    force: FloatArray
-    tangent: FloatArray
     touching: BoolArray
+    width: float
+
+    @property
+    def force(self) -> FloatArray:
+        """Force of each pair [N], shape (p,)."""
+        return np.asarray(self.width * self.line_load.sum(axis=1))
+
+    @property
+    def tangent(self) -> FloatArray:
+        """Derivative of the force of each pair by compression [N/m], shape (p,)."""
+        return np.asarray(self.width * self.line_tangent.sum(axis=1))
 
 
 def face_stations(width: float) -> FloatArray:
@@ -380,17 +389,23 @@ class BalancedMeshes:
     ----------
     compression : ndarray, shape (m,)
         Compression [m], the deflections that all pairs of the mesh share excluded.
+    compliance : ndarray, shape (m,)
+        Derivative of the compression by the load [m/N].
     faces : FaceLoads
         Loaded faces of the pairs.
     loads : ndarray, shape (m, a)
         Loads conjugate to the approaches [N, N m].
+    tangents : ndarray, shape (m, a, a)
+        Their derivatives by the approaches; empty unless several are given.
     energy : ndarray, shape (m,)
         Energy of the teeth and their bodies [J].
     """
 
     compression: FloatArray
+    compliance: FloatArray
     faces: FaceLoads
     loads: FloatArray
+    tangents: FloatArray
     energy: FloatArray
 
 
@@ -463,8 +478,9 @@ class SlicedMeshes:
         slices, gap, width = self._slices, self._gap, self._slices.width
         self._start(touching)
         load, tangent = np.empty(gap.shape), np.empty(gap.shape)
-        compression, stiffness, energy = np.empty(force.size), np.empty(force.size), np.empty(force.size)
-        loads, own = np.empty((force.size, self._motions.shape[2])), self._even.size
+        own, size = self._even.size, self._motions.shape[2]
+        results, loads = np.empty((6, force.size)), np.empty((force.size, size))
+        tangents = np.empty((force.size if own > 1 else 0, own, own))
         failure = balance_meshes(
             self._first,
             self._base,
@@ -486,22 +502,20 @@ class SlicedMeshes:
             self._constants,
             load,
             tangent,
-            compression,
-            stiffness,
+            results,
             loads,
-            energy,
+            tangents,
         )
         if failure:
             raise ContactAccuracyError(_UNSETTLED if failure == 1 else _UNBOUNDED)
-        touches = self._touching.copy()
-        faces = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touches)
-        carried = np.bincount(self._owner, faces.force, force.size)
+        compression, compliance, energy, carried, least, stiffness = results
         rounding = 1e-9 * (force + stiffness * np.abs(compression)) + 1e-300
-        if np.any(np.abs(carried - force) > rounding) or np.any(load < -rounding.max()):
+        if np.any(np.abs(carried - force) > rounding) or least.min() < -rounding.max():
             raise ContactAccuracyError(
                 "the slices of the face do not balance the load; check the stiffness and the gaps"
             )
-        return BalancedMeshes(compression, faces, loads[:, :own], energy)
+        faces = FaceLoads(load, tangent, self._touching.copy(), width)
+        return BalancedMeshes(compression, compliance, faces, loads[:, :own], tangents, energy)
 
     def tangents(self, touching: BoolArray) -> FloatArray:
         """Return the derivatives of the loads of each mesh by the approaches where slices (p, n) touch, (m, a, a).
@@ -514,6 +528,8 @@ class SlicedMeshes:
         ContactAccuracyError
             Where the slices yield without bound.
         """
+        from gearwhine.coupling.gears.contact.face_slice_kernels import condense_all
+
         self._start(touching)
         _find_fields(
             self._slices,
@@ -527,13 +543,9 @@ class SlicedMeshes:
             self._constants,
         )
         self._known[:] = True
-        own, shared = self._even.size, self._shared
-        whole = self._slices.width * np.add.reduceat(self._slopes, self._first[:-1], axis=0)
-        by_shapes = whole[:, own:, :own]
-        resisting = np.eye(len(shared)) + shared @ whole[:, own:, own:]
-        return np.asarray(
-            whole[:, :own, :own] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
-        )
+        tangents = np.empty((self._first.size - 1, self._even.size, self._even.size))
+        condense_all(self._first, self._slices.width, self._slopes, self._shared, tangents)
+        return tangents
 
     def _start(self, touching: BoolArray | None) -> None:
         """Start from slices in contact; what is known of pairs with the same ones is kept."""
@@ -551,7 +563,7 @@ def _loads(
     """Evaluate the face loads from what the flattening yields, ``fixed + deep * rising``, at compressions (p, 1)."""
     load = np.where(touching, slices.flattening * (fixed + deep * rising), 0.0)
     tangent = np.where(touching, slices.flattening * rising, 0.0)
-    return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1), touching)
+    return FaceLoads(load, tangent, touching, slices.width)
 
 
 def _even(slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray) -> tuple[FloatArray, FloatArray]:

@@ -345,7 +345,7 @@ class FaceContact:
             balanced = self._balanced(prepared, force, shape, touching)
             touching = balanced.faces.touching
             reached = float(balanced.compression.mean()) + shared * force
-            slope = float(np.mean(1.0 / np.add.reduceat(balanced.faces.tangent, prepared.first))) + shared
+            slope = float(balanced.compliance.mean()) + shared
             if abs(reached - target) <= _CONVERGED_DEFLECTION_STEP * abs(target) + 1e-22:
                 break
             low, high = (force, high) if reached < target else (low, force)
@@ -376,7 +376,7 @@ class FaceContact:
             phases=prepared.phases,
             deflection=balanced.compression + shared * force,
             loads=balanced.loads,
-            tangents=prepared.meshes.tangents(balanced.faces.touching),
+            tangents=balanced.tangents,
             energy=balanced.energy + 0.5 * shared * force**2,
             positions=prepared.positions,
             pair_line_loads=line_loads,

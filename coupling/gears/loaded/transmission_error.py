@@ -201,7 +201,7 @@ def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArr
         # Without load the first slice just touches; the stiffness is that at a small compression.
         compression = states.deviation.min(axis=1)
         loads = face_loads(faces, base, gap, meeting, compression[rows] + _HAIR)
-        loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
+        loads = replace(loads, line_load=0.0 * loads.line_load)
     forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
     line_loads = np.zeros((*states.position.shape, faces.z.size))
     forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent
