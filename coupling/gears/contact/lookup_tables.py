@@ -37,6 +37,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -115,17 +116,41 @@ def face_slice_states(
 ) -> FaceSliceStates:
     """Slices of pairs of some variants, `variant` (p,), whose faces' middles are at `position` (p,) in base pitches."""
     at = position[:, None] + slices.shift
-    start, end = variants[0].stiffness.knots[[0, -1]]
-    whole, gap = np.zeros(at.shape), np.zeros(at.shape)
+    gap = np.zeros(at.shape)
     for number, curves in enumerate(variants):
         these = variant == number if len(variants) > 1 else slice(None)
-        whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
+        gap[these] = curves.deviation(at[these])
+    stiffness = tuple(curves.stiffness for curves in variants)
+    of_slices = slices.shift.tobytes(), slices.width, slices.flattening, slices.coupling
+    whole, base, meeting = _resistance(stiffness, position.tobytes(), variant.tobytes(), *of_slices)
+    return FaceSliceStates(whole, base, gap + slices.gap, meeting)
+
+
+@lru_cache(maxsize=8)  # keyed by identity of the curves: pairs that differ in their flanks alone share them
+def _resistance(
+    stiffness: tuple[PiecewiseCubic, ...],
+    positions: bytes,
+    variants: bytes,
+    shifts: bytes,
+    width: float,
+    flattening: float,
+    coupling: float,
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Stiffness, base and meeting of slices, see `FaceSliceStates`, whatever their gaps."""
+    shift, variant = np.frombuffer(shifts), np.frombuffer(variants, dtype=np.int64)
+    slices = FaceSlices(shift, width, shift, 0.0 * shift, flattening, coupling)
+    at = np.frombuffer(positions)[:, None] + shift
+    start, end = stiffness[0].knots[[0, -1]]
+    whole = np.zeros(at.shape)
+    for number, curve in enumerate(stiffness):
+        these = variant == number if len(stiffness) > 1 else slice(None)
+        whole[these] = curve(at[these])
     meeting = (at >= start) & (at <= end)
-    if slices.coupling == 0.0:
+    if coupling == 0.0:
         part = slices.part_within(at, start, end)
         meeting = part > _LEAST_PART
         whole = np.where(meeting, part, 1.0) * whole
-    return FaceSliceStates(whole, slice_stiffness(slices, whole), gap + slices.gap, meeting)
+    return whole, slice_stiffness(slices, whole), meeting
 
 
 def face_force_table(
