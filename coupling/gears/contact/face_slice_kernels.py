@@ -6,7 +6,7 @@ Importing this module imports numba.
 import numpy as np
 
 from gearwhine.numerics.arrays import BoolArray, FloatArray, IndexArray
-from gearwhine.numerics.compiled import FUSED, counted, inner
+from gearwhine.numerics.compiled import FUSED, counted, inner, uncounted
 
 
 @inner(fastmath=FUSED)
@@ -193,6 +193,49 @@ def condense_all(first: IndexArray, width: float, slopes: FloatArray, shared: Fl
                 for pair in range(first[mesh], first[mesh + 1]):
                     total[i, j] += width * slopes[pair, i, j]
         condense(total, shared, tangents[mesh])
+
+
+@uncounted(fastmath=FUSED)
+def mean_at_even_loads(tangents: FloatArray, even: FloatArray, by_force: FloatArray, by_shape: FloatArray) -> float:
+    """Find the means over meshes that carry one load, whatever their approach, of how they yield.
+
+    Parameters
+    ----------
+    tangents : ndarray, shape (m, a, a)
+        Derivatives K of the loads of each mesh by its approaches.
+    even : ndarray, shape (a,)
+        c.
+    by_force, by_shape : ndarray, shape (a,) and (a, a)
+        Take the means of K c / κ, with κ = cᵀ K c, and of K - K c cᵀ K / κ.
+
+    Returns
+    -------
+    float
+        Mean of 1 / κ.
+    """
+    meshes, size = tangents.shape[0], tangents.shape[1]
+    compliance = 0.0
+    for i in range(size):
+        by_force[i] = 0.0
+        for j in range(size):
+            by_shape[i, j] = 0.0
+    for mesh in range(meshes):
+        kappa = 0.0
+        for i in range(size):
+            for j in range(size):
+                kappa += even[i] * tangents[mesh, i, j] * even[j]
+        compliance += 1.0 / (kappa * meshes)
+        for i in range(size):
+            pull = 0.0
+            for j in range(size):
+                pull += tangents[mesh, i, j] * even[j]
+            by_force[i] += pull / (kappa * meshes)
+            for j in range(size):
+                other = 0.0
+                for k in range(size):
+                    other += tangents[mesh, j, k] * even[k]
+                by_shape[i, j] += (tangents[mesh, i, j] - pull * other / kappa) / meshes
+    return compliance
 
 
 @inner(fastmath=FUSED)

@@ -455,7 +455,12 @@ class SlicedMeshes:
         self._slopes, self._constants = np.empty((rows, size, size)), np.empty((rows, size))
 
     def balance(
-        self, force: FloatArray, shape: FloatArray | None = None, touching: BoolArray | None = None
+        self,
+        force: FloatArray,
+        shape: FloatArray | None = None,
+        touching: BoolArray | None = None,
+        *,
+        resumed: bool = False,
     ) -> BalancedMeshes:
         """Find the equilibrium under loads (m,) [N].
 
@@ -466,6 +471,8 @@ class SlicedMeshes:
             Approach but for the compression [m]; none by default.
         touching : ndarray of bool, shape (p, n), optional
             Slices in contact at the start of the search, such as those at a similar load.
+        resumed : bool
+            Whether the search starts from the slices that were last in contact.
 
         Raises
         ------
@@ -476,7 +483,8 @@ class SlicedMeshes:
         from gearwhine.coupling.gears.contact.face_slice_kernels import balance_meshes
 
         slices, gap, width = self._slices, self._gap, self._slices.width
-        self._start(touching)
+        if not resumed:
+            self._start(touching)
         load, tangent = np.empty(gap.shape), np.empty(gap.shape)
         own, size = self._even.size, self._motions.shape[2]
         results, loads = np.empty((6, force.size)), np.empty((force.size, size))
@@ -495,7 +503,7 @@ class SlicedMeshes:
             np.zeros(own) if shape is None else shape,
             self._shared,
             force,
-            (_MOST_ROUNDS, _ALONE_ROUNDS if touching is None else 0),
+            (_MOST_ROUNDS, _ALONE_ROUNDS if touching is None and not resumed else 0),
             self._known,
             self._fields,
             self._slopes,

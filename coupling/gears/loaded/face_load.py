@@ -41,7 +41,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
 from gearwhine.coupling.gears.contact.face_slices import BalancedMeshes, SlicedMeshes, lagrange
@@ -216,9 +215,8 @@ class FaceContact:
         """From the middle of the face [m], shape (j,)."""
         self.over_face = lagrange(stations, self.z)
         """N_j at the slices, shape (s, j)."""
-        # Mesh force, mean deflection and touching slices of the last approach, where the next search starts.
-        self._last: tuple[float, float] | None = None
-        self._touching: npt.NDArray[np.bool_] | None = None
+        # The last approach, its mesh force and the derivative of that, from which the next search starts.
+        self._last: tuple[FloatArray, float, FloatArray] | None = None
 
     @property
     def tooth_contact(self) -> ToothContact:
@@ -333,17 +331,21 @@ class FaceContact:
             Where the mean deflection finds no force.
         """
         size, target = self.size, float(self.face_mean @ approach)
-        shape = approach - self.uniform * target
-        first = self._mean_phases.first_touch(shape)
-        if target <= first:
-            return MeanContactState(0.0, np.zeros(size), np.zeros((size, size)), 0.0)
-        force, prepared = self._guess(target - first), self._mean_phases
+        shape, prepared = approach - self.uniform * target, self._mean_phases
         shared = self._contact.shared_compliance
-        low, high = 0.0, np.inf
-        touching = self._touching
+        force, low, high = 0.0, 0.0, np.inf
+        resumed = self._last is not None
+        if self._last is not None:
+            place, last_force, gradient = self._last
+            force = last_force + float(gradient @ (approach - place))
         for _ in range(_ROUNDS):
-            balanced = self._balanced(prepared, force, shape, touching)
-            touching = balanced.faces.touching
+            if force <= 0.0:
+                # Without a guess, or with one below any force, the flanks may be apart.
+                beyond = target - prepared.first_touch(shape)
+                if beyond <= 0.0:
+                    return MeanContactState(0.0, np.zeros(size), np.zeros((size, size)), 0.0)
+                force = min(self._contact.unloaded_mean_mesh_stiffness * beyond, 0.5 * high)
+            balanced, resumed = self._balanced(prepared, force, shape, resumed=resumed), True
             reached = float(balanced.compression.mean()) + shared * force
             slope = float(balanced.compliance.mean()) + shared
             if abs(reached - target) <= _CONVERGED_DEFLECTION_STEP * abs(target) + 1e-22:
@@ -352,19 +354,23 @@ class FaceContact:
             step = force + (target - reached) / slope
             if abs(step - force) <= 4.0 * np.finfo(np.float64).eps * force:
                 break
-            force = step if low < step < high else 0.5 * (low + min(high, 4.0 * force + step))
+            if low < step < high:
+                force = step
+            elif step <= low == 0.0:
+                force = 0.0
+            else:
+                force = 0.5 * (low + min(high, 4.0 * force + step))
         else:
             raise ContactAccuracyError(
                 f"loaded tooth contact: no mesh force for a mean approach of {target:.6g} m; expected one"
             )
-        self._last, self._touching = (force, target - first), touching
-        return self._state(self._load(prepared, force, balanced), force, target)
+        return self._state(self._load(prepared, force, balanced), approach, force, target)
 
     def _balanced(
-        self, prepared: _Prepared, force: float, shape: FloatArray, touching: npt.NDArray[np.bool_] | None = None
+        self, prepared: _Prepared, force: float, shape: FloatArray, *, resumed: bool = False
     ) -> BalancedMeshes:
         """Equilibrium of the phases under a force, the shared compliance excluded."""
-        return prepared.meshes.balance(np.full(prepared.phases.size, force), shape, touching)
+        return prepared.meshes.balance(np.full(prepared.phases.size, force), shape, resumed=resumed)
 
     def _load(self, prepared: _Prepared, force: float, balanced: BalancedMeshes) -> FaceLoad:
         """Return the load at the equilibrium of `_balanced`."""
@@ -382,30 +388,23 @@ class FaceContact:
             pair_line_loads=line_loads,
         )
 
-    def _state(self, load: FaceLoad, force: float, target: float) -> MeanContactState:
-        shared, mean, uniform = self._contact.shared_compliance, self.face_mean, self.uniform
-        pull = load.tangents @ uniform
-        kappa = pull @ uniform
-        by_force = (pull / kappa[:, None]).mean(axis=0)
-        compliance = float(np.mean(1.0 / kappa)) + shared
-        by_shape = (load.tangents - pull[:, :, None] * pull[:, None, :] / kappa[:, None, None]).mean(axis=0)
+    def _state(self, load: FaceLoad, approach: FloatArray, force: float, target: float) -> MeanContactState:
+        from gearwhine.coupling.gears.contact.face_slice_kernels import mean_at_even_loads
+
+        mean, uniform = self.face_mean, self.uniform
+        by_force, by_shape = np.empty(self.size), np.empty((self.size, self.size))
+        compliance = mean_at_even_loads(load.tangents, uniform, by_force, by_shape) + self._contact.shared_compliance
         # d = D_F dF + D_g dg and dg = (1 - c l) dy give dF/dy; D_g = -by_force.
-        shape_of = np.eye(self.size) - np.outer(uniform, mean)
-        force_of = (mean + by_force @ shape_of) / compliance
+        force_of = (mean + by_force - float(by_force @ uniform) * mean) / compliance
         stiffness = np.outer(by_force, force_of) + by_shape  # an even approach moves no part of by_shape
         complementary = float(np.mean(force * load.deflection - load.energy))
+        self._last = approach, force, force_of
         return MeanContactState(
             energy=force * target - complementary,
             loads=load.loads.mean(axis=0),
             stiffness=0.5 * (stiffness + stiffness.T),
             force=force,
         )
-
-    def _guess(self, beyond: float) -> float:
-        if self._last is not None:
-            force, deep = self._last
-            return force * beyond / deep
-        return self._contact.unloaded_mean_mesh_stiffness * beyond
 
     @cached_property
     def _mean_phases(self) -> _Prepared:
