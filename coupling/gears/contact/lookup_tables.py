@@ -115,18 +115,25 @@ def face_slice_states(
     slices: FaceSlices, variants: tuple[ToothPairCurves, ...], position: FloatArray, variant: IntArray
 ) -> FaceSliceStates:
     """Slices of pairs of some variants, `variant` (p,), whose faces' middles are at `position` (p,) in base pitches."""
-    at = position[:, None] + slices.shift
-    gap = np.zeros(at.shape)
-    for number, curves in enumerate(variants):
-        these = variant == number if len(variants) > 1 else slice(None)
-        gap[these] = curves.deviation(at[these])
+    places = position.tobytes(), variant.tobytes(), slices.shift.tobytes()
     stiffness = tuple(curves.stiffness for curves in variants)
-    of_slices = slices.shift.tobytes(), slices.width, slices.flattening, slices.coupling
-    whole, base, meeting = _resistance(stiffness, position.tobytes(), variant.tobytes(), *of_slices)
+    gap = _over_slices(tuple(curves.deviation for curves in variants), *places)
+    whole, base, meeting = _resistance(stiffness, *places, slices.width, slices.flattening, slices.coupling)
     return FaceSliceStates(whole, base, gap + slices.gap, meeting)
 
 
-@lru_cache(maxsize=8)  # keyed by identity of the curves: pairs that differ in their flanks alone share them
+@lru_cache(maxsize=8)  # keyed by identity of the curves, at places that return in each mesh period
+def _over_slices(curves: tuple[PiecewiseCubic, ...], positions: bytes, variants: bytes, shifts: bytes) -> FloatArray:
+    """Values of each variant's curve on the slices of pairs, (p, n)."""
+    at, variant = np.frombuffer(positions)[:, None] + np.frombuffer(shifts), np.frombuffer(variants, dtype=np.int64)
+    values = np.zeros(at.shape)
+    for number, curve in enumerate(curves):
+        these = variant == number if len(curves) > 1 else slice(None)
+        values[these] = curve(at[these])
+    return values
+
+
+@lru_cache(maxsize=8)  # pairs that differ in their flanks alone share the curves
 def _resistance(
     stiffness: tuple[PiecewiseCubic, ...],
     positions: bytes,
@@ -137,14 +144,11 @@ def _resistance(
     coupling: float,
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Stiffness, base and meeting of slices, see `FaceSliceStates`, whatever their gaps."""
-    shift, variant = np.frombuffer(shifts), np.frombuffer(variants, dtype=np.int64)
+    shift = np.frombuffer(shifts)
     slices = FaceSlices(shift, width, shift, 0.0 * shift, flattening, coupling)
     at = np.frombuffer(positions)[:, None] + shift
     start, end = stiffness[0].knots[[0, -1]]
-    whole = np.zeros(at.shape)
-    for number, curve in enumerate(stiffness):
-        these = variant == number if len(stiffness) > 1 else slice(None)
-        whole[these] = curve(at[these])
+    whole = _over_slices(stiffness, positions, variants, shifts)
     meeting = (at >= start) & (at <= end)
     if coupling == 0.0:
         part = slices.part_within(at, start, end)
