@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -128,12 +129,38 @@ from gearwhine.numerics.findings import (
     kind_findings,
     refuse,
 )
-from gearwhine.numerics.own_copies import keep_tuples
+from gearwhine.numerics.own_copies import keep_tuples, unchecked
 from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
+
+_GEOMETRIC = frozenset(
+    (
+        "_geometries",
+        "_mesh_starts",
+        "_rotors",
+        "bodies_out_of_plane",
+        "carrying_pairs",
+        "constant_torques",
+        "findings",
+        "gear_bodies",
+        "housing_component",
+        "mesh_frequencies",
+        "mesh_phases",
+        "mesh_speeds",
+        "pair_geometries",
+        "pair_torques",
+        "placed_sets",
+        "speeds",
+        "support_torques",
+        "train",
+        "turning_senses",
+        "unbalanced_torque",
+    )
+)
+"""What a machine keeps that follows neither from its bearings' stiffness nor from its flanks' misalignment."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -532,7 +559,14 @@ class Machine:
 
     def rotor(self, name: str) -> Rotor:
         """Return a shaft's rotor with its gears, which are discs that stiffen it over their faces."""
-        return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
+        if name not in self._rotors:
+            self._rotors[name] = rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
+        return self._rotors[name]
+
+    @cached_property
+    def _rotors(self) -> dict[str, Rotor]:
+        """Rotors with their gears, as far as they have been asked for."""
+        return {}
 
     def loaded_pairs(self, progress: Callable[[str], None] = lambda text: None) -> tuple[LoadedGearPair, ...]:
         """Contact law of every gear pair, and its static mesh under the mean torque.
@@ -714,7 +748,14 @@ class Machine:
         """
         point = self.operating_point() if point is None else point
         about = self.with_flanks_of(point) if point.pairs else self
-        return replace(about, bearings=[bearing.linearised for bearing in point.bearings])
+        return about._linear(bearings=tuple(bearing.linearised for bearing in point.bearings))
+
+    def _linear(self, **parts: Sequence[Any]) -> "Machine":
+        """Return the machine with other stiffness of its bearings, or other misalignment of its pairs.
+
+        Neither has a part in the checks, nor in what `_GEOMETRIC` names, which is not found again.
+        """
+        return unchecked(self, _GEOMETRIC, **parts)
 
     def with_flanks_of(self, point: OperatingPoint | None) -> "Machine":
         """Return the machine whose pairs have the gap over the face of an operating point, where they give none.
@@ -729,7 +770,7 @@ class Machine:
             else pair
             for pair in self.gear_pairs
         ]
-        return replace(self, gear_pairs=pairs)
+        return self._linear(gear_pairs=tuple(pairs))
 
     def linearised(self, point: OperatingPoint | None) -> "Machine":
         """Return the machine whose bearings and flanks that are left to an operating point are those of a given one.

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import cos, hypot, pi, sin
 from typing import Any, Protocol
 
@@ -34,7 +35,7 @@ from gearwhine.numerics.findings import (
     refuse,
 )
 from gearwhine.numerics.names import twin_of
-from gearwhine.numerics.own_copies import keep_tuples
+from gearwhine.numerics.own_copies import keep_tuples, unchecked
 from gearwhine.rotors import Disc, Rotor, Segment
 from gearwhine.rotors import Unbalance as ShaftUnbalance
 from gearwhine.rotors.model.loads import Bow
@@ -402,6 +403,11 @@ class MachineParts(Protocol):
 
 def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
     """Rotor with the gears on it as discs, which stiffen it over their faces; one without inertias adds no disc."""
+    return _rotor_with_gears(rotor, tuple(unchecked(gear, gear=gear.gear.sound) for gear in gears))
+
+
+@lru_cache(maxsize=64)  # gears of one drawing differ in their flanks alone
+def _rotor_with_gears(rotor: Rotor, gears: tuple[ShaftGear, ...]) -> Rotor:
     rigid = [gear_disc(gear, rotor) for gear in gears]
     discs = [disc for disc in rigid if disc.mass or disc.polar_inertia or disc.diametral_inertia]
     stiff = [diameter for gear in gears for diameter in _stiffness_diameters(gear, rotor)]

@@ -124,6 +124,7 @@ class BearingLoad:
 # Largest gap over the face of spur teeth that counts as none, of the teeth's mean deflection, and at least [m]: the
 # face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
 _EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
+_TE_PHASES = 200
 
 CAUSES = ("shafts", "bearings", "housing", "carrier", "bodies")
 """Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, of planets that of
@@ -146,10 +147,10 @@ class PairLoad:
         best straight line over the face.
     misalignment_by_cause : dict of str to float
         Parts of the misalignment by `CAUSES`, which add up to it [rad].
-    mean : FaceLoad
-        Face load at the phases of a mesh period for the means.
-    fine : FaceLoad
-        Face load at 200 phases of the mesh period, for the transmission error.
+    loading : float
+        Force under which the face is looked at [N]: the mesh force, or a small one of an idle pair.
+    shape : ndarray, shape (m,)
+        Approach but for its mean over the face.
     """
 
     pair: StaticPair
@@ -157,8 +158,18 @@ class PairLoad:
     approach: FloatArray
     misalignment: float
     misalignment_by_cause: dict[str, float]
-    mean: FaceLoad
-    fine: FaceLoad
+    loading: float
+    shape: FloatArray
+
+    @cached_property
+    def mean(self) -> FaceLoad:
+        """Face load at the phases of a mesh period for the means."""
+        return self.pair.contact.under_force(self.loading, self.shape)
+
+    @cached_property
+    def fine(self) -> FaceLoad:
+        """Face load at 200 phases of the mesh period, for the transmission error."""
+        return self.pair.contact.under_force(self.loading, self.shape, np.arange(_TE_PHASES) / _TE_PHASES)
 
     @property
     def names(self) -> tuple[str, str]:

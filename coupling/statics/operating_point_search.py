@@ -7,7 +7,6 @@ housing's modes, and two of each pedestal. Connectors are bearings, gear pairs a
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -40,7 +39,9 @@ from gearwhine.coupling.statics.static_model import (
     StaticPair,
     StaticShaftPart,
 )
-from gearwhine.rotors.rolling_bearings import RollingState, rolling_state
+from gearwhine.numerics.own_copies import unchecked
+from gearwhine.rotors.rolling_bearings import RollingState
+from gearwhine.rotors.rolling_bearings.equilibrium import state_of_elements
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,7 +52,6 @@ _ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its te
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE_MOTION_STIFFNESS = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
-_TE_PHASES = 200
 _IDLE_PAIR_FORCE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
 
 
@@ -608,9 +608,7 @@ class _StaticModel:
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.
         loading = force if force > 0.0 else _IDLE_PAIR_FORCE * pressed
-        mean = contact.under_force(loading, shape)
-        fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
-        return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
+        return PairLoad(pair, force, approach, float(slope @ approach), by_cause, loading, shape)
 
 
 def _rolling_state(bearing: StaticBearing, deflection: FloatArray) -> RollingState | None:
@@ -618,8 +616,8 @@ def _rolling_state(bearing: StaticBearing, deflection: FloatArray) -> RollingSta
         return None
     elements = bearing.law.elements
     # Messages name the bearing by its place in the machine.
-    named = replace(elements.bearing, name=f"bearing {bearing.mounted.bearing.name!r}")
-    return rolling_state(named, deflection, speed=elements.speed)
+    named = unchecked(elements.bearing, name=f"bearing {bearing.mounted.bearing.name!r}")
+    return state_of_elements(unchecked(elements, {"contacts"}, bearing=named), deflection)
 
 
 def _rigid_rows(at: float) -> FloatArray:

@@ -6,6 +6,7 @@ of the tangent, from which the search for equilibrium starts (:mod:`gearwhine.co
 """
 
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -21,6 +22,7 @@ from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_act
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.pins import MountedPin
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.own_copies import unchecked
 from gearwhine.rotors.analyses.static_stiffness import StaticShaft
 from gearwhine.rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
@@ -156,7 +158,14 @@ def _static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
 
 
 def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
-    """Stiffness of a rolling bearing under a trial load, alike in x and y, (5, 5)."""
+    """Stiffness of a rolling bearing without clearance under a trial load, alike in x and y, (5, 5)."""
+    return _stiffness_on_trial(
+        replace(rolling, rows=tuple(replace(row, clearance=0.0) for row in rolling.rows), name="")
+    )
+
+
+@lru_cache(maxsize=64)  # the bearings of a machine, and of others with other clearances, are often alike
+def _stiffness_on_trial(rolling: RollingBearing) -> FloatArray:
     trial = _TRIAL_LOAD * min(static_rating(row) for row in rolling.rows)
     load = np.array([trial, 0.0, 0.0, 0.0, 0.0])
     # Held along its axis, a row that carries thrust one way only does not slide open.
@@ -298,10 +307,12 @@ def static_pair(
     model = (
         stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness
     )
-    driver, driven = (replace(gear, faults=(), pitch_deviations=()) for gear in (geometry.driver, geometry.driven))
-    sound = replace(geometry, driver=driver, driven=driven)
+    sound = geometry
+    if geometry.driver.faults or geometry.driven.faults:
+        driver, driven = (unchecked(gear, faults=()) for gear in (geometry.driver, geometry.driven))
+        sound = unchecked(geometry, driver=driver, driven=driven)
     faces = face_slices(sound, sense=rotation)
-    contact = tooth_contact(sound, model, corner_contact=pair.has_corner_contact, faces=faces)
+    contact = tooth_contact(sound, model, corner_contact=pair.has_corner_contact, faces=faces).teeth_alike
     backwards = torque < 0.0
     sense = -rotation if backwards else rotation
     backlash = pair.backlash_of(geometry)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -31,7 +32,7 @@ from gearwhine.results.variation import varied_dataset, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.variation.inputs import Input, Wider, correlation_matrix, values_at, varied_inputs
-from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
 from gearwhine.variation.statistics import VariedResult, require_known_limits
@@ -114,6 +115,7 @@ def solve_variation(
     _require_distributions(varied, variation)
     progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
+    _require_quantities(wanted, nominal)
     require_known_limits(variation.limit, list(nominal.numbers))
     if design is not None:
         aim = "Sobol' indices" if indices else "what wider ones cost"
@@ -296,10 +298,15 @@ def _points(
 def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "vary") -> Wanted:
     """Return what is found of each gearbox: as asked for, else what the case allows."""
     analyses: tuple[str, ...]
-    if variation.analyses is not None:
-        for name in variation.analyses:
+    names = variation.quantities if isinstance(variation, Variation) else ()
+    asked: tuple[str, ...] | None = variation.analyses
+    needed = [analysis_of(name) for name in names]
+    if asked is None and names and None not in needed:
+        asked = tuple(name for name in ANALYSES if name in needed)
+    if asked is not None:
+        for name in asked:
             require(case, *_NEEDS[name], command=f"{command}, analyses = ['{name}']")
-        analyses = variation.analyses
+        analyses = asked
     else:
         listens = case.housing is not None and bool(case.housing.sensor)
         listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
@@ -313,7 +320,21 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
             expected = "a gear pair or a shaft: nothing else is found of a varied case"
             raise CaseError([Problem("variation.analyses", UNSAID, expected)])
     speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
-    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else ())
+    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else (), names=names)
+
+
+def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
+    """Refuse names of quantities that the gearboxes do not have.
+
+    Raises
+    ------
+    CaseError
+    """
+    every = [*nominal.numbers, *nominal.curves]
+    without = [(place, name) for place, name in enumerate(wanted.names) if not fnmatch.filter(every, name)]
+    if without:
+        expected = f"a quantity of {', '.join(wanted.analyses)}; docs/how-to/variation.md lists them"
+        raise CaseError(Problem(f"variation.quantities[{place}]", name, expected) for place, name in without)
 
 
 def _require_distributions(varied: VariedCase, variation: Variation) -> None:

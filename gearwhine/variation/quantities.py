@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from fnmatch import fnmatchcase
+from functools import cached_property, partial
+from itertools import chain
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transie
 from gearwhine.coupling.description.parts import gear_disc
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
-from gearwhine.coupling.gears.loaded.transmission_error import transmission_error_phasors
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, transmission_error_phasors
 from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
@@ -45,12 +47,19 @@ class Wanted:
         Stretch of the motion.
     needs_load : bool
         Whether parts of the machine are left to the operating point explicitly.
+    names : tuple of str
+        Names of the quantities, in which ``*`` stands for any part; all of the analyses by default.
     """
 
     analyses: tuple[str, ...]
     speeds: tuple[float, ...] = ()
     plan: TransientPlan | None = None
     needs_load: bool = False
+    names: tuple[str, ...] = ()
+
+    def has(self, name: str) -> bool:
+        """Whether a quantity is wanted."""
+        return not self.names or any(fnmatchcase(name, pattern) for pattern in self.names)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +78,10 @@ class Evaluation:
     curves: dict[str, FloatArray] = field(default_factory=dict)
 
 
+Named = Iterator[tuple[str, float | FloatArray | Callable[[], float]]]
+"""Quantities by name; a function finds one that takes long."""
+
+
 def evaluate(machine: Machine, wanted: Wanted) -> Evaluation:
     """Find the quantities of a gearbox.
 
@@ -77,9 +90,16 @@ def evaluate(machine: Machine, wanted: Wanted) -> Evaluation:
     gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError, ...
         Where a machine with these values cannot be solved.
     """
-    gearbox, numbers, curves = _Gearbox(machine, wanted), dict[str, float](), dict[str, FloatArray]()
-    for analysis in wanted.analyses:
-        for name, value in _ANALYSES[analysis](gearbox):
+    gearbox = _Gearbox(machine, wanted)
+    return _evaluation(wanted, chain.from_iterable(_ANALYSES[analysis](gearbox) for analysis in wanted.analyses))
+
+
+def _evaluation(wanted: Wanted, named: Named) -> Evaluation:
+    """Return the wanted ones among quantities; others that are functions are not called."""
+    numbers, curves = dict[str, float](), dict[str, FloatArray]()
+    for name, found in named:
+        if wanted.has(name):
+            value = found() if callable(found) else found
             if isinstance(value, np.ndarray):
                 curves[name] = value
             else:
@@ -116,29 +136,57 @@ class _Gearbox:
         return self.machine.linearised(point).loaded_pairs()
 
 
-Named = Iterator[tuple[str, float | FloatArray]]
-
-
-def evaluate_pairs(pairs: Sequence[LoadedGearPair]) -> Evaluation:
+def evaluate_pairs(pairs: Sequence[LoadedGearPair], wanted: Wanted) -> Evaluation:
     """Find the quantities of gear pairs without shafts."""
-    return Evaluation({name: float(value) for name, value in _of_pairs(pairs)})
+    return _evaluation(wanted, _of_pairs(pairs))
 
 
 def _of_gears(gearbox: _Gearbox) -> Named:
     yield from _of_pairs(gearbox.pairs)
 
 
-def _of_pairs(pairs: Sequence[LoadedGearPair]) -> Iterator[tuple[str, float]]:
+def _of_pairs(pairs: Sequence[LoadedGearPair]) -> Named:
     for pair in pairs:
-        name = f"gear_pair.{pair.geometry.driver.name}-{pair.geometry.driven.name}"
+        name, over = f"gear_pair.{pair.geometry.driver.name}-{pair.geometry.driven.name}", _OverAllPeriods(pair)
         yield f"{name}.transmission_error_peak_to_peak_m", pair.static.peak_to_peak_transmission_error
-        mesh, periods = pair.static, 1
-        if pair.hunting is not None:
-            mesh, periods = pair.hunting, pair.carrying_flanks.hunting_period
-            yield f"{name}.transmission_error_over_hunting_period_m", mesh.peak_to_peak_transmission_error
-        for number, size in enumerate(np.abs(transmission_error_phasors(mesh, HARMONICS, periods)), start=1):
-            yield f"{name}.transmission_error_harmonic_{number}_m", float(size)
-        yield f"{name}.mesh_stiffness_n_per_m", mesh.mean_mesh_stiffness
+        if over.periods > 1:
+            yield f"{name}.transmission_error_over_hunting_period_m", over.peak_to_peak
+        for number in range(1, HARMONICS + 1):
+            yield f"{name}.transmission_error_harmonic_{number}_m", partial(over.harmonic, number)
+        yield f"{name}.mesh_stiffness_n_per_m", over.stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class _OverAllPeriods:
+    """Static mesh of a pair over all mesh periods that differ, solved where a quantity of it is wanted."""
+
+    pair: LoadedGearPair
+
+    @property
+    def periods(self) -> int:
+        """Number of mesh periods."""
+        return self.pair.carrying_flanks.hunting_period
+
+    @property
+    def mesh(self) -> LoadedMesh:
+        """Mesh over these periods."""
+        return self.pair.hunting or self.pair.static
+
+    @cached_property
+    def _harmonics(self) -> FloatArray:
+        return np.abs(transmission_error_phasors(self.mesh, HARMONICS, self.periods))
+
+    def peak_to_peak(self) -> float:
+        """Peak-to-peak transmission error [m]."""
+        return self.mesh.peak_to_peak_transmission_error
+
+    def stiffness(self) -> float:
+        """Mean mesh stiffness [N/m]."""
+        return self.mesh.mean_mesh_stiffness
+
+    def harmonic(self, number: int) -> float:
+        """Amplitude of a mesh harmonic of the transmission error [m]."""
+        return float(self._harmonics[number - 1])
 
 
 def _of_load(gearbox: _Gearbox) -> Named:
@@ -149,9 +197,9 @@ def _of_load(gearbox: _Gearbox) -> Named:
         if pair.force == 0.0:
             continue
         name = f"gear_pair.{pair.names[0]}-{pair.names[1]}"
-        yield f"{name}.k_h_beta", pair.k_h_beta
+        yield f"{name}.k_h_beta", partial(getattr, pair, "k_h_beta")
         yield f"{name}.misalignment_rad", pair.misalignment
-        yield f"{name}.contact_pressure_pa", pair.peak_pressure
+        yield f"{name}.contact_pressure_pa", partial(getattr, pair, "peak_pressure")
     for bearing in load.bearings:
         name = f"bearing.{bearing.load.name}"
         yield f"{name}.force_n", float(np.linalg.norm(bearing.load.force[:3]))

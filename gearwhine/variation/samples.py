@@ -123,7 +123,7 @@ class VariedCase:
     def evaluation(self, case: Case) -> Evaluation:
         """Find the quantities of a case of the study."""
         if not case.rotor or case.operation is None:
-            return evaluate_pairs(solve_pairs(case, None)[0])
+            return evaluate_pairs(solve_pairs(case, None)[0], self.wanted)
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))

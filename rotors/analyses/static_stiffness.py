@@ -20,6 +20,7 @@ an axial force acts there, and w is the overhang's weight and its moment.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -145,8 +146,6 @@ class StaticShaft:
         return moved, forces
 
 
-# Fields that outgrow all numbers fail the test of symmetry.
-@np.errstate(over="ignore", divide="ignore", invalid="ignore")
 def static_shaft(rotor: Rotor, stations: Sequence[float]) -> StaticShaft:
     """Assemble the exact static stiffness and the weight of a free shaft between stations.
 
@@ -165,6 +164,13 @@ def static_shaft(rotor: Rotor, stations: Sequence[float]) -> StaticShaft:
         No stations, a station off the shaft, or axial forces so large that the stiffness between two stations has lost
         its digits.
     """
+    return _static_shaft(rotor, tuple(stations))
+
+
+@lru_cache(maxsize=32)  # shafts of machines that differ in other parts
+# Fields that outgrow all numbers fail the test of symmetry.
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")
+def _static_shaft(rotor: Rotor, stations: tuple[float, ...]) -> StaticShaft:
     where = f"rotor {rotor.name!r}"
     if not len(stations):
         raise RotorError(f"{where} has no stations; expected at least one")

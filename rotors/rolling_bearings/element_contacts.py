@@ -127,15 +127,24 @@ class StaticBalls:
 
     def energy(self, q: FloatArray) -> RowEnergy:
         """Energy and its derivatives over q."""
-        v, motion, approach = self._state(q)
-        distance = np.linalg.norm(v, axis=1)
-        return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
+        # Imported here: numba is not needed to read a case.
+        from gearwhine.rotors.rolling_bearings.ball_kernels import ball_energy
+
+        gradient, hessian = np.zeros(5), np.zeros((5, 5))
+        start, motion = self._kinematics
+        value, force = ball_energy(start, motion, *self._lengths, q, gradient, hessian)
+        return RowEnergy(value, gradient, hessian, force)
 
     def loads(self, q: FloatArray) -> ElementLoads:
         """Return the loads of every ball."""
         v, _, approach = self._state(q)
         load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
         return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
+
+    @cached_property
+    def _lengths(self) -> tuple[float, float, float]:
+        """Contact constant K, and A and |v₀|² − A² of the grooves' centres."""
+        return self.row.stiffness, self.row.groove_distance, self.row.groove_excess
 
     @cached_property
     def _kinematics(self) -> tuple[FloatArray, FloatArray]:
@@ -147,19 +156,6 @@ class StaticBalls:
         v, nominal = start + moved, self.row.groove_distance
         excess = self.row.groove_excess + 2.0 * moved @ start + (moved**2).sum(axis=1)
         return v, motion, excess / (np.linalg.norm(v, axis=1) + nominal)
-
-
-def _spring(
-    stiffness: float, vectors: FloatArray, approach: FloatArray, length: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Energy ⅖ K δ^{5/2} of every contact, (n,), and its first two derivatives by the vector, (n, 2), (n, 2, 2)."""
-    safe = np.where(approach > 0.0, length, 1.0)
-    normal, deep = vectors / safe[:, None], np.maximum(approach, 0.0)
-    load = stiffness * deep**1.5
-    along = normal[:, :, None] * normal[:, None, :]
-    hessian = (1.5 * stiffness * np.sqrt(deep))[:, None, None] * along
-    hessian = hessian + (load / safe)[:, None, None] * (np.eye(2) - along)
-    return 0.4 * load * deep, load[:, None] * normal, hessian
 
 
 def row_energy(motion: FloatArray, value: FloatArray, force: FloatArray, hessian: FloatArray) -> RowEnergy:

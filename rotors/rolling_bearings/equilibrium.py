@@ -177,10 +177,12 @@ class RollingElements:
         rows = [row.energy(q) for row in self.contacts]
         value, load = sum(row.value for row in rows), sum(row.force for row in rows)
         preload = self.bearing.axial_preload
-        gradient = np.sum([row.gradient for row in rows], axis=0)
+        gradient, hessian = np.zeros(5), np.zeros((5, 5))
+        for row in rows:
+            gradient += row.gradient
+            hessian += row.hessian
         gradient[2] -= preload
         work = preload * float(q[2])
-        hessian = np.sum([row.hessian for row in rows], axis=0)
         local = Local(
             value=value - work,
             gradient=gradient,
@@ -332,8 +334,13 @@ def rolling_state(
     q = np.array(displacement, dtype=np.float64)
     finite = q.shape == (5,) and bool(np.isfinite(q).all())
     require(finite, f"displacement of {bearing.name}", q.tolist(), "five finite numbers: x, y, z, rx, ry")
-    elements = RollingElements(bearing, speed, cage_angle)
-    return _state(elements, q, elements.at(q).gradient, residual=0.0, iterations=0)
+    return state_of_elements(RollingElements(bearing, speed, cage_angle), q)
+
+
+def state_of_elements(elements: RollingElements, displacement: FloatArray) -> RollingState:
+    """Return the state of prepared elements, see `rolling_state`."""
+    load = elements.at(displacement).gradient
+    return _state(elements, displacement, load, residual=0.0, iterations=0)
 
 
 def _state(

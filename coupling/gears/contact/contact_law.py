@@ -367,8 +367,8 @@ class ToothContact:
             on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
             return on_path.mean * self.contact_ratio
         if self.faces is not None:
-            phases = (np.arange(_MEAN_PHASES) + 0.5) / _MEAN_PHASES
-            return float(self.mesh_stiffness(phases).mean())
+            spread = self.faces.shift.tobytes(), self.faces.coupling > 0.0
+            return _mean_over_face(self.contact_ratio, self.stiffness, self.shared_compliance, *spread)
         # Between knots of any pair the mesh is smooth: Gauss's quadrature.
         knots = np.unique(np.concatenate([[0.0, 1.0, self.contact_ratio % 1.0], inner % 1.0]))
         nodes, weights = np.polynomial.legendre.leggauss(3)
@@ -535,6 +535,17 @@ class ToothContact:
         return np.asarray(
             states.stiffness * np.maximum(0.0, after_shared[:, None] - states.deviation), dtype=np.float64
         )
+
+
+@lru_cache(maxsize=64)  # keyed by identity of the curve: pairs that differ in their flanks alone share it
+def _mean_over_face(
+    contact_ratio: float, stiffness: PiecewiseCubic, shared: float, shift: bytes, coupled: bool
+) -> float:
+    """Mean mesh stiffness with all slices on the path in contact, whatever their gaps [N/m]."""
+    shifts = np.frombuffer(shift)
+    faces = FaceSlices(shifts, 1.0, shifts, 0.0 * shifts, 1.0, float(coupled))
+    contact = ToothContact(contact_ratio, stiffness, stiffness, faces=faces, shared_compliance=shared)
+    return float(contact.mesh_stiffness((np.arange(_MEAN_PHASES) + 0.5) / _MEAN_PHASES).mean())
 
 
 @lru_cache(maxsize=16)  # keyed by identity of the contact, whose table for the kernels is kept with the result

@@ -37,7 +37,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -64,11 +64,17 @@ _NO_SPAN = 1e-6
 """Span of a line of contact along the path below which it counts as one point [base pitches]."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
+_UNSETTLED = "the iteration for the touching slices of the face does not converge; take fewer slices"
 _UNBOUNDED = "the slices of the face yield without bound; check the stiffness of the teeth"
 
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
     """Shear coupling T of one tooth across its face [N], with the load at `radius` [m]."""
+    return _tooth_coupling(gear.sound, radius)
+
+
+@lru_cache(maxsize=64)  # gears of one drawing differ in their flanks alone
+def _tooth_coupling(gear: Gear, radius: float) -> float:
     across, along = tooth_side(gear, _OUTLINE)
     height = along - along[0]
     load = float(np.interp(radius, gear.sign * np.hypot(across, along), height))
@@ -148,6 +154,11 @@ class FaceSlices:
         return np.asarray(math.sqrt(n) * (polynomials * np.sign(np.diagonal(triangle)))[:, 1:])
 
     @property
+    def link(self) -> float:
+        """T over the square of a slice's width [N/m per m]."""
+        return self.coupling / self.width**2
+
+    @property
     def half_span(self) -> float:
         """Half the span of a slice along the path of contact [base pitches]; 0 for a spur gear."""
         span = float(np.ptp(self.shift))
@@ -194,17 +205,26 @@ class FaceLoads:
     ----------
     line_load, line_tangent : ndarray, shape (p, n)
         Load per width [N/m], transverse, and its derivative by compression [N/m per m].
-    force, tangent : ndarray, shape (p,)
-        Force of each pair [N], and its derivative by compression [N/m].
     touching : ndarray of bool, shape (p, n)
         Slices in contact.
+    width : float
+        Width of the slices [m].
     """
 
     line_load: FloatArray
     line_tangent: FloatArray
-    force: FloatArray
-    tangent: FloatArray
     touching: BoolArray
+    width: float
+
+    @property
+    def force(self) -> FloatArray:
+        """Force of each pair [N], shape (p,)."""
+        return np.asarray(self.width * self.line_load.sum(axis=1))
+
+    @property
+    def tangent(self) -> FloatArray:
+        """Derivative of the force of each pair by compression [N/m], shape (p,)."""
+        return np.asarray(self.width * self.line_tangent.sum(axis=1))
 
 
 def face_stations(width: float) -> FloatArray:
@@ -317,16 +337,15 @@ def face_loads(
     fixed, rising = _even(slices, base, gap, touching)
     unsettled = np.arange(compression.size)
     for _ in range(_MOST_ROUNDS):
-        deep = compression[unsettled, None]
-        excess = deep - gap[unsettled] - (fixed[unsettled] + deep * rising[unsettled])
+        excess = fixed[unsettled] + compression[unsettled, None] * rising[unsettled]
         touches = meeting[unsettled] & (excess > 0.0)
         changed = (touches != touching[unsettled]).any(axis=1)
         unsettled, touches = unsettled[changed], touches[changed]
         if not unsettled.size:
-            return _loads(slices, gap, touching, compression[:, None], fixed, rising)
+            return _loads(slices, touching, compression[:, None], fixed, rising)
         touching[unsettled] = touches
         fixed[unsettled], rising[unsettled] = _even(slices, base[unsettled], gap[unsettled], touches)
-    raise ContactAccuracyError("the iteration for the touching slices of the face does not converge; take fewer slices")
+    raise ContactAccuracyError(_UNSETTLED)
 
 
 def face_equilibrium(
@@ -357,117 +376,208 @@ def face_equilibrium(
     ContactAccuracyError
         Where the set of touching slices does not converge, or the loads do not balance to rounding.
     """
-    meshes = force.size
-    nearest = np.full(meshes, np.inf)
-    np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
-    if touching is None:
-        touching = _touching_alone(slices, base, gap, meeting, owner, force)
-    touching = touching & meeting
-    # Motions y of a mesh over its face: its compression, then minus the shared deflections over `shapes`.
-    motions = np.column_stack([np.ones(slices.z.size), slices.shapes])
-    size = motions.shape[1]
-    shared = slices.shared[: size - 1, : size - 1]
-    loaded = np.zeros((meshes, size))
-    loaded[:, 0] = force
-    # Loads of each pair per motion, and at zero motion: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w_0).
-    slopes, constants = np.zeros((owner.size, size, size)), np.zeros((owner.size, size))
-    fields = np.zeros((*gap.shape, 1 + size))
-    changed = unsettled = np.arange(owner.size)
-    first = np.searchsorted(owner, np.arange(meshes))
-    for _ in range(_MOST_ROUNDS):
-        _find_fields(slices, changed, base, gap, touching, motions, fields, slopes, constants)
-        stiffness = slices.width * np.add.reduceat(slopes, first, axis=0)
-        resisting, apart = stiffness.copy(), stiffness[:, 0, 0] <= 0.0
-        right = loaded + slices.width * np.add.reduceat(constants, first, axis=0)
-        # The shared deflections are the shared compliance times the loads on them.
-        resisting[:, 1:] = shared @ stiffness[:, 1:]
-        resisting[:, 1:, 1:] += np.eye(size - 1)
-        right[:, 1:] = right[:, 1:] @ shared
-        resisting[apart] = np.eye(size)
-        motion: FloatArray = np.asarray(np.linalg.solve(resisting, right[..., None])[..., 0], dtype=np.float64)
-        motion[apart] = 0.0
-        motion[apart, 0] = nearest[apart]
-        # Pairs of meshes without a change keep their solution.
-        whose = owner[unsettled]
-        deep = motion[whose] @ motions.T
-        yielding = _deflection(fields[unsettled], motion[whose])
-        touches = meeting[unsettled] & (deep - gap[unsettled] - yielding > 0.0)
-        # At least the nearest slice carries.
-        none = np.bincount(whose, touches.any(axis=1), meshes) == 0
-        if none[whose].any():
-            touches |= none[whose, None] & meeting[unsettled] & (gap[unsettled] <= nearest[whose, None])
-        different = (touches != touching[unsettled]).any(axis=1)
-        if not different.any():
-            break
-        changed = unsettled[different]
-        touching[changed] = touches[different]
-        affected = np.zeros(meshes, dtype=np.bool_)
-        affected[owner[changed]] = True
-        unsettled = np.nonzero(affected[owner])[0]
-    else:
-        raise ContactAccuracyError(
-            "the iteration for the touching slices of the face does not converge; take fewer slices"
+    meshes = SlicedMeshes(slices, base, gap, meeting, owner, force.size)
+    balanced = meshes.balance(force, touching=touching)
+    return balanced.compression, balanced.faces
+
+
+@dataclass(frozen=True, eq=False)
+class BalancedMeshes:
+    """Equilibrium of m meshes of p pairs under their loads.
+
+    Attributes
+    ----------
+    compression : ndarray, shape (m,)
+        Compression [m], the deflections that all pairs of the mesh share excluded.
+    compliance : ndarray, shape (m,)
+        Derivative of the compression by the load [m/N].
+    faces : FaceLoads
+        Loaded faces of the pairs.
+    loads : ndarray, shape (m, a)
+        Loads conjugate to the approaches [N, N m].
+    tangents : ndarray, shape (m, a, a)
+        Their derivatives by the approaches; empty unless several are given.
+    energy : ndarray, shape (m,)
+        Energy of the teeth and their bodies [J].
+    """
+
+    compression: FloatArray
+    compliance: FloatArray
+    faces: FaceLoads
+    loads: FloatArray
+    tangents: FloatArray
+    energy: FloatArray
+
+
+class SlicedMeshes:
+    """Pairs of m meshes whose flanks approach unevenly over the face.
+
+    What resists the approaches of a pair follows from its touching slices alone, and is kept for the next equilibrium.
+
+    Parameters
+    ----------
+    slices, base, gap, meeting
+        Arrays of all p pairs of all meshes, see `face_loads`.
+    owner : ndarray of int, shape (p,)
+        Mesh of each pair, ascending.
+    meshes : int
+    approaches : ndarray, shape (p, n, a), optional
+        Approaches B of each pair; by default the even one.
+    even : ndarray, shape (a,)
+        Sum of them that is 1 all over the face.
+    """
+
+    def __init__(
+        self,
+        slices: FaceSlices,
+        base: FloatArray,
+        gap: FloatArray,
+        meeting: BoolArray,
+        owner: IndexArray,
+        meshes: int,
+        approaches: FloatArray | None = None,
+        even: FloatArray | None = None,
+    ) -> None:
+        self._slices, self._base, self._gap, self._meeting, self._owner = slices, base, gap, meeting, owner
+        self._first = np.searchsorted(owner, np.arange(meshes + 1))
+        shapes, count = slices.shapes, len(owner)
+        if approaches is None or even is None:
+            approaches, even = np.ones((1, slices.z.size, 1)), np.ones(1)
+        self._even = even
+        repeated = np.broadcast_to(shapes, (len(approaches), *shapes.shape))
+        self._motions = np.concatenate([approaches, repeated], axis=2)
+        self._shared = np.ascontiguousarray(slices.shared[: shapes.shape[1], : shapes.shape[1]])
+        # Approaches of all pairs alone are of meshes that are solved once.
+        rows = count if len(approaches) > 1 else int(np.diff(self._first).max(initial=1))
+        size = self._motions.shape[2]
+        self._touching, self._known = np.zeros(gap.shape, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
+        self._fields = np.empty((rows, slices.z.size, 1 + size))
+        self._slopes, self._constants = np.empty((rows, size, size)), np.empty((rows, size))
+
+    def balance(
+        self,
+        force: FloatArray,
+        shape: FloatArray | None = None,
+        touching: BoolArray | None = None,
+        *,
+        resumed: bool = False,
+    ) -> BalancedMeshes:
+        """Find the equilibrium under loads (m,) [N].
+
+        Parameters
+        ----------
+        force : ndarray, shape (m,)
+        shape : ndarray, shape (a,), optional
+            Approach but for the compression [m]; none by default.
+        touching : ndarray of bool, shape (p, n), optional
+            Slices in contact at the start of the search, such as those at a similar load.
+        resumed : bool
+            Whether the search starts from the slices that were last in contact.
+
+        Raises
+        ------
+        ContactAccuracyError
+            Where the set of touching slices does not converge, or the loads do not balance to rounding.
+        """
+        # Imported here: numba is not needed to read a case.
+        from gearwhine.coupling.gears.contact.face_slice_kernels import balance_meshes
+
+        slices, gap, width = self._slices, self._gap, self._slices.width
+        if not resumed:
+            self._start(touching)
+        load, tangent = np.empty(gap.shape), np.empty(gap.shape)
+        own, size = self._even.size, self._motions.shape[2]
+        results, loads = np.empty((6, force.size)), np.empty((force.size, size))
+        tangents = np.empty((force.size if own > 1 else 0, own, own))
+        failure = balance_meshes(
+            self._first,
+            self._base,
+            gap,
+            self._meeting,
+            self._touching,
+            slices.flattening,
+            slices.link,
+            width,
+            self._motions,
+            self._even,
+            np.zeros(own) if shape is None else shape,
+            self._shared,
+            force,
+            (_MOST_ROUNDS, _ALONE_ROUNDS if touching is None and not resumed else 0),
+            self._known,
+            self._fields,
+            self._slopes,
+            self._constants,
+            load,
+            tangent,
+            results,
+            loads,
+            tangents,
         )
-    unit = np.zeros((meshes, size, 1))
-    unit[:, 0] = 1.0
-    softness = np.linalg.solve(resisting, unit)[..., 0]
-    rate: FloatArray = np.asarray(softness / softness[:, :1], dtype=np.float64)
-    flat = np.where(touching, slices.flattening, 0.0)
-    deep = motion[owner] @ motions.T
-    load = flat * (deep - gap - _deflection(fields, motion[owner]))
-    tangent = flat * (rate[owner] @ motions.T - _combined(fields[:, :, 1:], rate[owner]))
-    width = slices.width
-    loads = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touching)
-    carried = np.bincount(owner, loads.force, meshes)
-    rounding = 1e-9 * (force + stiffness[:, 0, 0] * np.abs(motion[:, 0])) + 1e-300
-    if np.any(np.abs(carried - force) > rounding) or np.any(loads.line_load < -rounding.max()):
-        raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
-    return motion[:, 0], loads
+        if failure:
+            raise ContactAccuracyError(_UNSETTLED if failure == 1 else _UNBOUNDED)
+        compression, compliance, energy, carried, least, stiffness = results
+        rounding = 1e-9 * (force + stiffness * np.abs(compression)) + 1e-300
+        if np.any(np.abs(carried - force) > rounding) or least.min() < -rounding.max():
+            raise ContactAccuracyError(
+                "the slices of the face do not balance the load; check the stiffness and the gaps"
+            )
+        faces = FaceLoads(load, tangent, self._touching.copy(), width)
+        return BalancedMeshes(compression, compliance, faces, loads[:, :own], tangents, energy)
 
+    def tangents(self, touching: BoolArray) -> FloatArray:
+        """Return the derivatives of the loads of each mesh by the approaches where slices (p, n) touch, (m, a, a).
 
-def _deflection(fields: FloatArray, motion: FloatArray) -> FloatArray:
-    """Return the deflection (p, n) of pairs with fields (p, n, 1 + m) at motions y (p, m)."""
-    return np.asarray(fields[:, :, 0] + _combined(fields[:, :, 1:], motion))
+        They are the sums of ``w Bᵀ k_h (B - W)`` over the touching slices. The shapes of the shared deflection are
+        approaches too, and are condensed.
 
+        Raises
+        ------
+        ContactAccuracyError
+            Where the slices yield without bound.
+        """
+        from gearwhine.coupling.gears.contact.face_slice_kernels import condense_all
 
-def _combined(fields: FloatArray, parts: FloatArray) -> FloatArray:
-    """Sum m fields of each pair, (p, n, m), by parts (p, m)."""
-    return np.asarray((fields @ parts[:, :, None])[:, :, 0])
+        self._start(touching)
+        _find_fields(
+            self._slices,
+            np.flatnonzero(~self._known),
+            self._base,
+            self._gap,
+            self._touching,
+            self._motions,
+            self._fields,
+            self._slopes,
+            self._constants,
+        )
+        self._known[:] = True
+        tangents = np.empty((self._first.size - 1, self._even.size, self._even.size))
+        condense_all(self._first, self._slices.width, self._slopes, self._shared, tangents)
+        return tangents
 
-
-def _touching_alone(
-    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IndexArray, force: FloatArray
-) -> BoolArray:
-    """Slices that touch when uncoupled: a close first guess of the slices that touch when coupled."""
-    spring = meeting / (1.0 / base + 1.0 / slices.flattening)
-    pushed = spring * gap
-    touching = meeting
-    for _ in range(_ALONE_ROUNDS):
-        stiffness = np.bincount(owner, (spring * touching).sum(axis=1), force.size)
-        offset = np.bincount(owner, (pushed * touching).sum(axis=1), force.size)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            compression = np.where(stiffness > 0.0, (force / slices.width + offset) / stiffness, 0.0)
-        # The set shrinks from every slice that could touch to those in contact.
-        touches = meeting & (gap < compression[owner, None])
-        if (touches == touching).all():
-            break
-        touching = touches
-    return touching
+    def _start(self, touching: BoolArray | None) -> None:
+        """Start from slices in contact; what is known of pairs with the same ones is kept."""
+        if touching is None or len(self._fields) < len(self._known):
+            self._known[:] = False
+        if touching is not None:
+            touching = touching & self._meeting
+            self._known &= (touching == self._touching).all(axis=1)
+            self._touching[:] = touching
 
 
 def _loads(
-    slices: FaceSlices, gap: FloatArray, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
+    slices: FaceSlices, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
 ) -> FaceLoads:
-    """Evaluate the face loads from known deflections, ``w = fixed + deep * rising``, at compressions `deep` (p, 1)."""
-    load = np.where(touching, slices.flattening * (deep - gap - (fixed + deep * rising)), 0.0)
-    tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
-    return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1), touching)
+    """Evaluate the face loads from what the flattening yields, ``fixed + deep * rising``, at compressions (p, 1)."""
+    load = np.where(touching, slices.flattening * (fixed + deep * rising), 0.0)
+    tangent = np.where(touching, slices.flattening * rising, 0.0)
+    return FaceLoads(load, tangent, touching, slices.width)
 
 
 def _even(slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Solve the deflection ``w = fixed + compression * rising`` of each pair, (p, n) both."""
+    """Solve ``compression - gap - w = fixed + compression * rising`` of each pair, (p, n) both."""
     fields, pairs = np.empty((*gap.shape, 2)), len(gap)
-    motions = np.ones((slices.z.size, 1))
+    motions = np.ones((1, slices.z.size, 1))
     slopes, constants = np.empty((pairs, 1, 1)), np.empty((pairs, 1))
     _find_fields(slices, np.arange(pairs), base, gap, touching, motions, fields, slopes, constants)
     return fields[:, :, 0], fields[:, :, 1]
@@ -485,44 +595,11 @@ def _find_fields(
     constants: FloatArray,
 ) -> None:
     """Find the rows of some pairs in the last three arrays, see the kernel."""
-    # Imported here: numba is not needed to read a case.
     from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_under_motions
 
-    link = slices.coupling / slices.width**2
-    arrays = base, gap, touching, slices.flattening, link, motions, fields, slopes, constants
+    arrays = base, gap, touching, slices.flattening, slices.link, motions, fields, slopes, constants
     if not deflect_under_motions(pairs, *arrays):
         raise ContactAccuracyError(_UNBOUNDED)
-
-
-def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads: FloatArray) -> FloatArray:
-    """Deflections w of p tooth pairs under m fields of load per width, ``(k_b + k_h) w - T w'' = q``.
-
-    Parameters
-    ----------
-    slices : FaceSlices
-    base : ndarray, shape (p, n)
-        k_b of each slice [N/m per m].
-    touching : ndarray of bool, shape (p, n)
-        Slices in contact, which have k_h in addition.
-    loads : ndarray, shape (p, n, m)
-        q [N/m].
-
-    Returns
-    -------
-    ndarray, shape (p, n, m)
-        [m]
-
-    Raises
-    ------
-    ContactAccuracyError
-        Where the slices yield without bound.
-    """
-    from gearwhine.coupling.gears.contact.face_slice_kernels import deflect_all
-
-    fields = np.array(loads, dtype=np.float64, order="C")
-    if not deflect_all(base, touching, slices.flattening, slices.coupling / slices.width**2, fields):
-        raise ContactAccuracyError(_UNBOUNDED)
-    return fields
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

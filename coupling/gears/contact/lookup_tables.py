@@ -37,6 +37,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -114,18 +115,46 @@ def face_slice_states(
     slices: FaceSlices, variants: tuple[ToothPairCurves, ...], position: FloatArray, variant: IntArray
 ) -> FaceSliceStates:
     """Slices of pairs of some variants, `variant` (p,), whose faces' middles are at `position` (p,) in base pitches."""
-    at = position[:, None] + slices.shift
-    start, end = variants[0].stiffness.knots[[0, -1]]
-    whole, gap = np.zeros(at.shape), np.zeros(at.shape)
-    for number, curves in enumerate(variants):
-        these = variant == number if len(variants) > 1 else slice(None)
-        whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
+    places = position.tobytes(), variant.tobytes(), slices.shift.tobytes()
+    stiffness = tuple(curves.stiffness for curves in variants)
+    gap = _over_slices(tuple(curves.deviation for curves in variants), *places)
+    whole, base, meeting = _resistance(stiffness, *places, slices.width, slices.flattening, slices.coupling)
+    return FaceSliceStates(whole, base, gap + slices.gap, meeting)
+
+
+@lru_cache(maxsize=8)  # keyed by identity of the curves, at places that return in each mesh period
+def _over_slices(curves: tuple[PiecewiseCubic, ...], positions: bytes, variants: bytes, shifts: bytes) -> FloatArray:
+    """Values of each variant's curve on the slices of pairs, (p, n)."""
+    at, variant = np.frombuffer(positions)[:, None] + np.frombuffer(shifts), np.frombuffer(variants, dtype=np.int64)
+    values = np.zeros(at.shape)
+    for number, curve in enumerate(curves):
+        these = variant == number if len(curves) > 1 else slice(None)
+        values[these] = curve(at[these])
+    return values
+
+
+@lru_cache(maxsize=8)  # pairs that differ in their flanks alone share the curves
+def _resistance(
+    stiffness: tuple[PiecewiseCubic, ...],
+    positions: bytes,
+    variants: bytes,
+    shifts: bytes,
+    width: float,
+    flattening: float,
+    coupling: float,
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Stiffness, base and meeting of slices, see `FaceSliceStates`, whatever their gaps."""
+    shift = np.frombuffer(shifts)
+    slices = FaceSlices(shift, width, shift, 0.0 * shift, flattening, coupling)
+    at = np.frombuffer(positions)[:, None] + shift
+    start, end = stiffness[0].knots[[0, -1]]
+    whole = _over_slices(stiffness, positions, variants, shifts)
     meeting = (at >= start) & (at <= end)
-    if slices.coupling == 0.0:
+    if coupling == 0.0:
         part = slices.part_within(at, start, end)
         meeting = part > _LEAST_PART
         whole = np.where(meeting, part, 1.0) * whole
-    return FaceSliceStates(whole, slice_stiffness(slices, whole), gap + slices.gap, meeting)
+    return whole, slice_stiffness(slices, whole), meeting
 
 
 def face_force_table(

@@ -56,6 +56,7 @@ def flank_gap(gear: Gear, roll_angle: FloatArray) -> FloatArray:
     return np.asarray(gap, dtype=np.float64)
 
 
+@lru_cache(maxsize=16)  # the contact of a pair in the static machine, and then in motion
 def pair_deviation(
     geometry: GearPairGeometry,
     start: float,
@@ -188,7 +189,7 @@ def tooth_pair_curves(
         # The neighbours of a missing tooth stay in contact for as long as they reach.
         before, beyond = corner_contact_range(geometry, math.inf if broken else LARGEST_GAP)
         start, end = -before, length + beyond
-        stiffness = stiffness.on_knots(np.concatenate([[start], stiffness.knots, [end]]))
+        stiffness = _on_range(stiffness, start, end)
     return tuple(
         ToothPairCurves(
             _weakened(geometry, stiffness, flattening, variant_faults),
@@ -198,6 +199,12 @@ def tooth_pair_curves(
         )
         for variant_faults in faults
     )
+
+
+@lru_cache(maxsize=64)  # keyed by identity of the curve, so that what is found of it is found once
+def _on_range(stiffness: PiecewiseCubic, start: float, end: float) -> PiecewiseCubic:
+    """Return a curve on a wider range."""
+    return stiffness.on_knots(np.concatenate([[start], stiffness.knots, [end]]))
 
 
 def without_shared_compliance(curves: ToothPairCurves, shared: float) -> ToothPairCurves:

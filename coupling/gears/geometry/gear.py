@@ -35,7 +35,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple, Protocol
 
@@ -51,7 +51,7 @@ from gearwhine.housing.material import STEEL
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
-from gearwhine.numerics.own_copies import keep_tuples
+from gearwhine.numerics.own_copies import keep_tuples, unchecked
 
 _STEEPEST_HELIX = math.radians(60.0)
 _STIFF_RIM = 3.5
@@ -254,7 +254,7 @@ class Gear:
         of_flanks = (self.tip_relief, self.root_relief, self.profile_deviation, self.helix_deviation)
         if not (any(of_flanks) or self.pitch_deviations or self.faults or self.eccentricity):
             return self
-        return replace(
+        return unchecked(
             self,
             eccentricity=0.0,
             eccentricity_phase=0.0,

@@ -54,6 +54,7 @@ from gearwhine.coupling.gears.geometry.interference import (
 from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
 from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.numerics.findings import Finding
+from gearwhine.numerics.own_copies import unchecked
 
 PRINTED_ROUNDING = 1e-3
 """Relative rounding of printed sizes, as of a module of 3.175 mm (8 teeth per inch) printed as 3.1748. Module, pressure
@@ -225,7 +226,7 @@ class GearPairGeometry:
         driver, driven = self.driver.sound, self.driven.sound
         if driver is self.driver and driven is self.driven:
             return self
-        return replace(self, driver=driver, driven=driven)
+        return unchecked(self, driver=driver, driven=driven)
 
     @cached_property
     def carrying_gears(self) -> tuple[Gear, Gear]:

@@ -41,10 +41,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
-from gearwhine.coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield, lagrange
+from gearwhine.coupling.gears.contact.face_slices import BalancedMeshes, SlicedMeshes, lagrange
 from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
@@ -216,9 +215,8 @@ class FaceContact:
         """From the middle of the face [m], shape (j,)."""
         self.over_face = lagrange(stations, self.z)
         """N_j at the slices, shape (s, j)."""
-        # Mesh force, mean deflection and touching slices of the last approach, where the next search starts.
-        self._last: tuple[float, float] | None = None
-        self._touching: npt.NDArray[np.bool_] | None = None
+        # The last approach, its mesh force and the derivative of that, from which the next search starts.
+        self._last: tuple[FloatArray, float, FloatArray] | None = None
 
     @property
     def tooth_contact(self) -> ToothContact:
@@ -273,7 +271,7 @@ class FaceContact:
         prepared = self._mean_phases
         position = prepared.positions[prepared.owner, prepared.column][:, None] + self._faces.shift
         on_path = (position >= 0.0) & (position < self._contact.contact_ratio)
-        tangents = self._tangents(prepared, prepared.meeting & on_path)
+        tangents = prepared.meshes.tangents(prepared.meeting & on_path)
         return _face_tangent(self.linear.T @ tangents @ self.linear, self._contact.shared_compliance, np.zeros(2))
 
     def stiffness_of(self, load: FaceLoad) -> FloatArray:
@@ -299,7 +297,7 @@ class FaceContact:
             Where the touching slices do not converge.
         """
         prepared = self._mean_phases if phases is None else _Prepared(self, phases)
-        return self._load(prepared, force, shape, *self._balanced(prepared, force, shape))
+        return self._load(prepared, force, self._balanced(prepared, force, shape))
 
     def evenly(self, force: float, phases: FloatArray) -> FaceLoad:
         """Return static equilibrium under a force of flanks that approach evenly, without helix modifications.
@@ -333,110 +331,79 @@ class FaceContact:
             Where the mean deflection finds no force.
         """
         size, target = self.size, float(self.face_mean @ approach)
-        shape = approach - self.uniform * target
-        first = self._mean_phases.first_touch(shape)
-        if target <= first:
-            return MeanContactState(0.0, np.zeros(size), np.zeros((size, size)), 0.0)
-        force, prepared = self._guess(target - first), self._mean_phases
+        shape, prepared = approach - self.uniform * target, self._mean_phases
         shared = self._contact.shared_compliance
-        low, high = 0.0, np.inf
-        touching = self._touching
+        force, low, high = 0.0, 0.0, np.inf
+        resumed = self._last is not None
+        if self._last is not None:
+            place, last_force, gradient = self._last
+            force = last_force + float(gradient @ (approach - place))
         for _ in range(_ROUNDS):
-            compression, loads = self._balanced(prepared, force, shape, touching)
-            touching = loads.touching
-            reached = float(compression.mean()) + shared * force
-            slope = float(np.mean(1.0 / np.add.reduceat(loads.tangent, prepared.first))) + shared
+            if force <= 0.0:
+                # Without a guess, or with one below any force, the flanks may be apart.
+                beyond = target - prepared.first_touch(shape)
+                if beyond <= 0.0:
+                    return MeanContactState(0.0, np.zeros(size), np.zeros((size, size)), 0.0)
+                force = min(self._contact.unloaded_mean_mesh_stiffness * beyond, 0.5 * high)
+            balanced, resumed = self._balanced(prepared, force, shape, resumed=resumed), True
+            reached = float(balanced.compression.mean()) + shared * force
+            slope = float(balanced.compliance.mean()) + shared
             if abs(reached - target) <= _CONVERGED_DEFLECTION_STEP * abs(target) + 1e-22:
                 break
             low, high = (force, high) if reached < target else (low, force)
             step = force + (target - reached) / slope
             if abs(step - force) <= 4.0 * np.finfo(np.float64).eps * force:
                 break
-            force = step if low < step < high else 0.5 * (low + min(high, 4.0 * force + step))
+            if low < step < high:
+                force = step
+            elif step <= low == 0.0:
+                force = 0.0
+            else:
+                force = 0.5 * (low + min(high, 4.0 * force + step))
         else:
             raise ContactAccuracyError(
                 f"loaded tooth contact: no mesh force for a mean approach of {target:.6g} m; expected one"
             )
-        self._last, self._touching = (force, target - first), touching
-        return self._state(self._load(prepared, force, shape, compression, loads), force, target)
+        return self._state(self._load(prepared, force, balanced), approach, force, target)
 
     def _balanced(
-        self, prepared: _Prepared, force: float, shape: FloatArray, touching: npt.NDArray[np.bool_] | None = None
-    ) -> tuple[FloatArray, FaceLoads]:
-        """Compressions of the phases under a force, the shared compliance excluded, and the loaded faces."""
-        gap = prepared.gap - prepared.basis @ shape
-        forces = np.full(prepared.phases.size, force)
-        return face_equilibrium(
-            self._faces, prepared.base, gap, prepared.meeting, prepared.owner, forces, touching=touching
-        )
+        self, prepared: _Prepared, force: float, shape: FloatArray, *, resumed: bool = False
+    ) -> BalancedMeshes:
+        """Equilibrium of the phases under a force, the shared compliance excluded."""
+        return prepared.meshes.balance(np.full(prepared.phases.size, force), shape, resumed=resumed)
 
-    def _load(
-        self, prepared: _Prepared, force: float, shape: FloatArray, compression: FloatArray, loads: FaceLoads
-    ) -> FaceLoad:
+    def _load(self, prepared: _Prepared, force: float, balanced: BalancedMeshes) -> FaceLoad:
         """Return the load at the equilibrium of `_balanced`."""
-        n = prepared.phases.size
-        gap = prepared.gap - prepared.basis @ shape
-        # Slice loads do work on the slices' own and on the bodies' shared deflection.
-        deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
-        width, shared = self._faces.width, self._contact.shared_compliance
-        energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
-        loads_of_slices = width * (loads.line_load[:, None] @ prepared.basis)[:, 0]
+        shared = self._contact.shared_compliance
         line_loads = np.zeros((*prepared.positions.shape, self.z.size))
-        line_loads[prepared.owner, prepared.column] = loads.line_load
+        line_loads[prepared.owner, prepared.column] = balanced.faces.line_load
         return FaceLoad(
             force=force,
             phases=prepared.phases,
-            deflection=compression + shared * force,
-            loads=np.add.reduceat(loads_of_slices, prepared.first, axis=0),
-            tangents=self._tangents(prepared, loads.touching),
-            energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
+            deflection=balanced.compression + shared * force,
+            loads=balanced.loads,
+            tangents=balanced.tangents,
+            energy=balanced.energy + 0.5 * shared * force**2,
             positions=prepared.positions,
             pair_line_loads=line_loads,
         )
 
-    def _state(self, load: FaceLoad, force: float, target: float) -> MeanContactState:
-        shared, mean, uniform = self._contact.shared_compliance, self.face_mean, self.uniform
-        pull = load.tangents @ uniform
-        kappa = pull @ uniform
-        by_force = (pull / kappa[:, None]).mean(axis=0)
-        compliance = float(np.mean(1.0 / kappa)) + shared
-        by_shape = (load.tangents - pull[:, :, None] * pull[:, None, :] / kappa[:, None, None]).mean(axis=0)
+    def _state(self, load: FaceLoad, approach: FloatArray, force: float, target: float) -> MeanContactState:
+        from gearwhine.coupling.gears.contact.face_slice_kernels import mean_at_even_loads
+
+        mean, uniform = self.face_mean, self.uniform
+        by_force, by_shape = np.empty(self.size), np.empty((self.size, self.size))
+        compliance = mean_at_even_loads(load.tangents, uniform, by_force, by_shape) + self._contact.shared_compliance
         # d = D_F dF + D_g dg and dg = (1 - c l) dy give dF/dy; D_g = -by_force.
-        shape_of = np.eye(self.size) - np.outer(uniform, mean)
-        force_of = (mean + by_force @ shape_of) / compliance
+        force_of = (mean + by_force - float(by_force @ uniform) * mean) / compliance
         stiffness = np.outer(by_force, force_of) + by_shape  # an even approach moves no part of by_shape
         complementary = float(np.mean(force * load.deflection - load.energy))
+        self._last = approach, force, force_of
         return MeanContactState(
             energy=force * target - complementary,
             loads=load.loads.mean(axis=0),
             stiffness=0.5 * (stiffness + stiffness.T),
             force=force,
-        )
-
-    def _guess(self, beyond: float) -> float:
-        if self._last is not None:
-            force, deep = self._last
-            return force * beyond / deep
-        return self._contact.unloaded_mean_mesh_stiffness * beyond
-
-    def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
-        """Sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m).
-
-        The shapes of the shared deflection are approaches too, and are condensed.
-        """
-        faces, size = self._faces, self.size
-        shapes = np.broadcast_to(faces.shapes, (len(touching), *faces.shapes.shape))
-        motions = np.concatenate([prepared.basis, shapes], axis=2)
-        flat = np.where(touching, faces.flattening, 0.0)
-        pushed = flat[:, :, None] * motions
-        yielding = face_yield(faces, prepared.base, touching, pushed)
-        tangents_of_slices = faces.width * (pushed.swapaxes(1, 2) @ (motions - yielding))
-        whole = np.add.reduceat(tangents_of_slices, prepared.first, axis=0)
-        by_shapes = whole[:, size:, :size]
-        shared = faces.shared[: faces.shapes.shape[1], : faces.shapes.shape[1]]
-        resisting = np.eye(len(shared)) + shared @ whole[:, size:, size:]
-        return np.asarray(
-            whole[:, :size, :size] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
         )
 
     @cached_property
@@ -471,13 +438,15 @@ class _Prepared:
         self.positions = states.position
         self.owner, self.column = np.nonzero(states.present)
         self.first = np.searchsorted(self.owner, np.arange(phases.size))
-        self.base, self.meeting = states.faces.base, states.faces.meeting
-        self.gap = states.faces.gap
+        faces, self.meeting, self.gap = states.faces, states.faces.meeting, states.faces.gap
         along = places_on_line_of_action(contact, mesh._geometry, states.position[self.owner, self.column])
         basis = np.empty((*along.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face
         basis[:, :, -1] = -mesh._axial * along
         self.basis = basis
+        self.meshes = SlicedMeshes(
+            mesh._faces, faces.base, faces.gap, faces.meeting, self.owner, phases.size, basis, mesh.uniform
+        )
 
     def first_touch(self, shape: FloatArray) -> float:
         """Mean over the phases of the approach at which the first slice touches [m]."""

@@ -8,8 +8,9 @@ between the rims and the shafts has no part in k.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -315,13 +316,12 @@ class LoadedGearPair:
     geometry : GearPairGeometry
     model : StiffnessModel
         Stiffness model of the teeth.
-    contact : ToothContact
-        Contact law of the drive flanks with its damping.
+    undamped : ToothContact
+        Contact law of the drive flanks without damping.
     static : LoadedMesh
         Static mesh of the flanks that carry over the first mesh period, by their own phase.
-    hunting : LoadedMesh or None
-        Static mesh of these flanks over the hunting period, where mesh periods differ by pitch deviations or damaged
-        teeth.
+    inertias : tuple of float
+        Polar inertias that rotate with the driver and with the driven gear [kg m²].
     mesh_frequency : float or None
         Mesh frequency [Hz]; None where no speed is given.
     """
@@ -329,10 +329,36 @@ class LoadedGearPair:
     pair: GearPair
     geometry: GearPairGeometry
     model: StiffnessModel
-    contact: ToothContact
+    undamped: ToothContact
     static: LoadedMesh
-    hunting: LoadedMesh | None
+    inertias: tuple[float, float]
     mesh_frequency: float | None
+
+    @cached_property
+    def hunting(self) -> LoadedMesh | None:
+        """Static mesh of the flanks that carry over the hunting period, by their own phase.
+
+        None where mesh periods are alike: they differ by pitch deviations or damaged teeth.
+        """
+        carrying = self.undamped.carrying_flanks
+        return hunting_period_mesh(carrying, self.static.force) if carrying.hunting_period > 1 else None
+
+    @cached_property
+    def contact(self) -> ToothContact:
+        """Contact law of the drive flanks with its damping."""
+        force, contact = self.static.force, self.undamped
+        # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
+        # mesh periods, which are not alike with pitch deviations or damaged teeth. The inertias are those of the rims,
+        # so what the bodies behind them yield has no part in it.
+        behind = sum(rim.twist + rim.shift for rim in rim_compliances(self.model, self.geometry))
+
+        def mean_mesh_stiffness() -> float:
+            if force > 0.0:
+                return (self.hunting or self.static).mean_stiffness_without(behind)
+            return law_between_rims(contact, behind).unloaded_mean_mesh_stiffness
+
+        damping = _damping_coefficient(self.pair, self.geometry, mean_mesh_stiffness, self.inertias)
+        return contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
 
     @property
     def tilting_faces(self) -> FaceSlices:
@@ -341,7 +367,7 @@ class LoadedGearPair:
         A given spring lies evenly over the face.
         """
         even = face_slices(self.geometry)
-        return self.contact.faces or slices_of_teeth(even, self.model, self.geometry)
+        return self.undamped.faces or slices_of_teeth(even, self.model, self.geometry)
 
     @property
     def torque(self) -> float:
@@ -351,7 +377,7 @@ class LoadedGearPair:
     @property
     def carrying_flanks(self) -> ToothContact:
         """Contact law of the flanks that carry the mean torque, by their own phase: back flanks where it is below 0."""
-        return self.contact.carrying_flanks
+        return self.undamped.carrying_flanks
 
     @property
     def backlash(self) -> float | None:
@@ -361,7 +387,7 @@ class LoadedGearPair:
     @property
     def has_single_pairs(self) -> bool:
         """Whether the model describes pairs of teeth, which share the load, and not the mesh as one spring."""
-        return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
+        return math.isclose(self.undamped.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
 
 
 def load_gear_pair(
@@ -399,22 +425,9 @@ def load_gear_pair(
         corner_contact=pair.has_corner_contact,
         faces=pair.face_slices(geometry, 1 if speed is None else turning_sense(speed)),
     ).under_load(math.copysign(force, torque))
-    carrying = contact.carrying_flanks
-    static = loaded_transmission_error(carrying, force)
-    hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
-    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
-    # mesh periods, which are not alike with pitch deviations or damaged teeth. The inertias are those of the rims, so
-    # what the bodies behind them yield has no part in it.
-    behind = sum(rim.twist + rim.shift for rim in rim_compliances(model, geometry))
-    mean_mesh_stiffness = (
-        (hunting or static).mean_stiffness_without(behind)
-        if force > 0.0
-        else law_between_rims(contact, behind).unloaded_mean_mesh_stiffness
-    )
-    damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
-    contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
+    static = loaded_transmission_error(contact.carrying_flanks, force)
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
-    return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
+    return LoadedGearPair(pair, geometry, model, contact, static, inertias, frequency)
 
 
 def _missing(gear: Gear) -> tuple[MissingTooth, ...]:
@@ -422,7 +435,10 @@ def _missing(gear: Gear) -> tuple[MissingTooth, ...]:
 
 
 def _damping_coefficient(
-    pair: GearPair, geometry: GearPairGeometry, mean_mesh_stiffness: float, inertias: tuple[float, float]
+    pair: GearPair,
+    geometry: GearPairGeometry,
+    mean_mesh_stiffness: Callable[[], float],
+    inertias: tuple[float, float],
 ) -> float:
     """Damping coefficient of the mesh [N s/m]."""
     if pair.damping is not None:
@@ -430,4 +446,4 @@ def _damping_coefficient(
     if pair.damping_ratio == 0.0:
         return 0.0
     mass = equivalent_mass(*inertias, abs(geometry.driver.base_radius), abs(geometry.driven.base_radius))
-    return mesh_damping(pair.damping_ratio, mean_mesh_stiffness, mass)
+    return mesh_damping(pair.damping_ratio, mean_mesh_stiffness(), mass)

@@ -201,7 +201,7 @@ def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArr
         # Without load the first slice just touches; the stiffness is that at a small compression.
         compression = states.deviation.min(axis=1)
         loads = face_loads(faces, base, gap, meeting, compression[rows] + _HAIR)
-        loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
+        loads = replace(loads, line_load=0.0 * loads.line_load)
     forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
     line_loads = np.zeros((*states.position.shape, faces.z.size))
     forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent
@@ -293,6 +293,9 @@ _AT_ONCE = 1000
 """Number of phases solved together: more, with face slices, exceed the processor's cache."""
 
 
+_DIGITS = 2.0**40
+
+
 def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -> LoadedMesh:
     """Equilibrium of the mesh under a load over the hunting period.
 
@@ -307,25 +310,27 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
     Returns
     -------
     LoadedMesh
-        Result of `loaded_transmission_error` at the phases of ``contact.hunting_period`` mesh periods.
+        Result of `loaded_transmission_error` at the phases of ``contact.hunting_period`` mesh periods, without the
+        loads over the face.
 
     Raises
     ------
     GearError, ContactAccuracyError
         See `loaded_transmission_error`.
     """
-    period = mesh_period_phases(contact, points)
+    # Of so many binary digits that phases of later mesh periods are exact: the places of the pairs return in each.
+    period = np.round(_DIGITS * mesh_period_phases(contact, points)) / _DIGITS
     first, which = different_periods(contact)
     at = (first[:, None] + period).ravel()
+    together = period.size * max(1, _AT_ONCE // period.size)
     parts = [
-        loaded_transmission_error(contact, force, at[begin : begin + _AT_ONCE]) for begin in range(0, at.size, _AT_ONCE)
+        loaded_transmission_error(contact, force, at[begin : begin + together]) for begin in range(0, at.size, together)
     ]
 
     def over_all(rows: list[FloatArray]) -> FloatArray:
         solved = np.concatenate(rows)
         return solved.reshape(first.size, period.size, *solved.shape[1:])[which].reshape(-1, *solved.shape[1:])
 
-    loads = [part.line_loads for part in parts if part.line_loads is not None]
     return replace(
         parts[0],
         phases=(np.arange(which.size)[:, None] + period).ravel(),
@@ -334,7 +339,7 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
         pair_forces=over_all([part.pair_forces for part in parts]),
         tangent_stiffness=over_all([part.tangent_stiffness for part in parts]),
         secant_stiffness=over_all([part.secant_stiffness for part in parts]),
-        line_loads=over_all(loads) if loads else None,
+        line_loads=None,
     )
 
 

@@ -31,6 +31,7 @@ ring as a whole, s = 1, in proportion to its part of the compliance.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -104,6 +105,11 @@ def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
     StiffnessModelError
         For a web that begins inside the bore's circle.
     """
+    return _shift_shares(gear.sound, state)
+
+
+@lru_cache(maxsize=64)  # gears of one drawing differ in their flanks alone
+def _shift_shares(gear: Gear, state: PlaneState) -> RimShares:
     if held_radius(gear) is None:
         return RimShares(1.0, 1.0)
     root, rings = abs(gear.root_circle_radius), body_rings(gear)

@@ -160,7 +160,7 @@ def test_corners_are_found_in_the_contact() -> None:
     (solved,) = solve_gears(case.parts)
     force = 3.0 * solved.static.force
     contact = tooth_contact(solved.geometry, solved.model, corner_contact=True)
-    rounded = replace(solved, contact=contact, static=loaded_transmission_error(contact, force))
+    rounded = replace(solved, undamped=contact, static=loaded_transmission_error(contact, force))
     (pair,) = analyse_pairs(case, (rounded,))
     assert pair.corner_force > 0.0
     assert pair.loaded_contact_ratio > solved.geometry.contact_ratio
@@ -177,7 +177,7 @@ def test_a_crowned_face() -> None:
     faces = face_slices(geometry, count=11)
     contact = tooth_contact(geometry, solved.model, faces=faces)
     static = loaded_transmission_error(contact, solved.static.force)
-    (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
+    (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, undamped=contact, static=static),))
     (even,) = analyse_pairs(case, (solved,))
     assert pair.pressure is not None
     assert even.pitch_pressure is not None
@@ -210,7 +210,7 @@ def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.C
     assert geometry.pitch_point_position < 0.0
     contact = tooth_contact(geometry, solved.model)
     static = loaded_transmission_error(contact, 1000.0)
-    (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
+    (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, undamped=contact, static=static),))
     assert pair.pitch_pressure is None
     show(gears_document((pair,)), sections(gears_document((pair,))))
     assert "MPa at most, at" in (out := capsys.readouterr().out)
