@@ -36,7 +36,6 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.linalg import lapack
 
 from gearwhine.housing.acoustics.boundary_integrals import (
     SourcePoints,
@@ -49,6 +48,7 @@ from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.errors import HousingError, TriangleSizeError
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
+from gearwhine.numerics.dense_least_squares import solve_least_squares
 
 _TWO_PI = 2.0 * np.pi
 _INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
@@ -454,12 +454,10 @@ class BoundaryElements:
             weights[:count][touching] = np.sqrt(0.5)
         matrix *= weights[:, None]
         right *= weights[:, None]
-        _, solution, failed = lapack.zgels(
-            matrix, right, lwork=64 * (count + flux.shape[1]), overwrite_a=True, overwrite_b=True
-        )
-        if failed:
-            raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m")
-        return np.ascontiguousarray(solution[:count])
+        try:
+            return solve_least_squares(matrix, right)
+        except np.linalg.LinAlgError as error:
+            raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m") from error
 
 
 def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
