@@ -1,7 +1,7 @@
 """Dense least squares of slightly more equations than unknowns, by an LU factorisation with row interchanges.
 
-``P A = [L₁; L₂] U`` takes half the work of a QR factorisation where A is nearly square. The rows that the pivots choose
-give a well-conditioned L, so that ``min ‖A x − b‖`` is solved as ``min ‖L y − P b‖``, ``U x = y``, without the square of
+``P A = [L₁; L₂] U`` takes half the work of a QR factorisation where A is nearly square. The pivots choose rows that
+make L well conditioned, so that ``min ‖A x − b‖`` is solved as ``min ‖L y − P b‖``, ``U x = y``, without the square of
 A's condition number: G. Peters and J. H. Wilkinson, "The least squares problem and pseudo-inverses", The Computer
 Journal 13 (1970), 309-316. With ``w = L₁ y`` and ``B = L₂ L₁⁻¹`` few equations are left for the few other rows:
 

@@ -48,9 +48,7 @@ _MOST_LEVELS = 7  # most halvings of a triangle near a point
 
 # Python's error for a division by zero is a branch, with which no loop becomes vector code.
 _compiled = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz"})
-_summed = numba.njit(
-    cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz", "reassoc"}, inline="always"
-)
+_summed = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz", "reassoc"})
 
 
 @_compiled
@@ -302,7 +300,7 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
         static[t] += total
 
 
-_ROWS = 64  # directions whose phases are held at once: 30 MB with 10,000 triangles
+_ROWS = 16  # directions whose phases are held at once: 8 MB with 10,000 triangles
 
 
 @dataclass(frozen=True)
@@ -402,12 +400,12 @@ def surface_integrals(
 
 
 @_compiled
-def _phases(directions, places, center, k, cosines, sines):  # type: ignore[no-untyped-def]
-    """Cosine and sine of k d . (y - center)."""
+def _phases(directions, places, k, cosines, sines):  # type: ignore[no-untyped-def]
+    """Set cosine and sine of k d . y."""
     for d in range(directions.shape[0]):
+        d0, d1, d2 = directions[d, 0], directions[d, 1], directions[d, 2]
         for q in range(places.shape[1]):
-            along = directions[d, 0] * (places[0, q] - center[0]) + directions[d, 1] * (places[1, q] - center[1])
-            along += directions[d, 2] * (places[2, q] - center[2])
+            along = d0 * places[0, q] + d1 * places[1, q] + d2 * places[2, q]
             sine, cosine = _sine_and_cosine(math.fabs(k * along))
             cosines[d, q] = cosine
             sines[d, q] = math.copysign(1.0, along) * sine
@@ -448,12 +446,15 @@ def far_field_amplitudes(
     rate = np.einsum("qa,ean->eqn", shares, flux.reshape(-1, 3, columns)).reshape(-1, columns)
     weight = source.weights[:, None] / (4.0 * math.pi)
     layers = np.hstack([weight * rate, *(weight * source.normals[j][:, None] * at_points for j in range(3))])
+    layers = np.hstack([layers.real, layers.imag])  # phases and layers with their parts apart have the real products
     far = np.empty((len(directions), columns), dtype=np.complex128)
+    places = np.ascontiguousarray(source.places - center[:, None])
     for start in range(0, len(directions), _ROWS):
         some = np.ascontiguousarray(directions[start : start + _ROWS])
-        cosines, sines = np.empty((2, len(some), source.places.shape[1]))
-        _phases(some, source.places, center, wavenumber, cosines, sines)
-        moments = ((cosines + 1j * sines) @ layers).reshape(len(some), 4, columns)
+        phases = np.empty((2, len(some), places.shape[1]))
+        _phases(some, places, wavenumber, phases[0], phases[1])
+        (cc, cs), (sc, ss) = np.moveaxis((phases @ layers).reshape(2, len(some), 2, 4, columns), 2, 1)
+        moments = cc - ss + 1j * (cs + sc)
         far[start : start + _ROWS] = 1j * wavenumber * np.einsum("dj,djn->dn", some, moments[:, 1:]) - moments[:, 0]
     return far
 
