@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.modal_test import ComparedTest, PlannedSurvey
-    from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.housing.reduced import ReducedHousing
     from gearwhine.meshes import Mesh
     from gearwhine.optimisation.optimised import Optimised
@@ -1022,15 +1021,15 @@ class CaseStudy(Study):
     def solved_sound(
         self,
         acoustics: "Acoustics",
-        field: "HousingField",
+        housing: "HousingModes",
         lines: "MotionLines | None",
         machine: "CoupledMachine | None",
-    ) -> "SolvedSound":
+    ) -> "tuple[SolvedSound, HousingModes]":
         """Solve the sound; acoustics that do not fit the housing are refused by their keys."""
         from gearwhine.solve.acoustics import refused_by_key
 
         with refused_by_key(acoustics):
-            return super().solved_sound(acoustics, field, lines, machine)
+            return super().solved_sound(acoustics, housing, lines, machine)
 
     def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
         """Analyse each gear pair as it stands in the machine under load, or alone."""

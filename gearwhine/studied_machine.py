@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.housing import HousingModes
     from gearwhine.housing.modal_test import ComparedTest
-    from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 
@@ -273,14 +272,14 @@ class StudiedMachine:
     def solved_sound(
         self,
         acoustics: "Acoustics",
-        field: "HousingField",
+        housing: "HousingModes",
         lines: "MotionLines | None",
         machine: "CoupledMachine | None",
-    ) -> "SolvedSound":
-        """Solve the sound of a housing's modes, and of the lines of a motion."""
-        from gearwhine.coupling.sound.solution import solve_sound
+    ) -> "tuple[SolvedSound, HousingModes]":
+        """Solve the sound of a housing's modes, and of the lines of a motion; the housing holds that of its modes."""
+        from gearwhine.solve.kept_radiation import sound_of_housing
 
-        return solve_sound(acoustics, field, lines, machine, self.progress)
+        return sound_of_housing(acoustics, housing, lines, machine, self.progress)
 
     def _assumed_mesh_damping(self) -> tuple[str, ...]:
         """Return the gear pairs whose mesh damping nobody gave."""

@@ -190,7 +190,7 @@ class WholeRun:
         if transient is not None and not (left_out := self.study.left_out_of_sound(self.plan)):
             lines = lines_of_run(transient, acoustics.estimated_below_hz(field))
         machine = None if self.machine is None else self.machine.coupled
-        sound = self.study.solved_sound(acoustics, field, lines, machine)
+        sound, housing = self.study.solved_sound(acoustics, housing, lines, machine)
         # A moving base drives the housing beside its bearings.
         if transient is not None and sound.microphones and self.study.machine.base is None:
             between = AUDIBLE, sound.limit_hz

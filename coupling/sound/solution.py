@@ -155,13 +155,28 @@ class ModeSound:
 
 
 @dataclass(frozen=True)
+class SoundOfModes:
+    """Sound of a housing's modes, each at its natural frequency; it depends on the housing and the air alone.
+
+    Attributes
+    ----------
+    modes : tuple of ModeSound
+    warnings : tuple of dict
+        Warnings of doubtful solutions.
+    """
+
+    modes: tuple[ModeSound, ...] = ()
+    warnings: tuple[ResultWarning, ...] = ()
+
+
+@dataclass(frozen=True)
 class SolvedSound:
     """Sound of a housing: of its modes, and of the lines of a motion.
 
     Attributes
     ----------
     radiation : HousingRadiation
-    modes : tuple of ModeSound
+    of_modes : SoundOfModes
     lines : tuple of SoundLine
         Ascending in frequency; empty without a motion.
     mode_frequencies : ndarray, shape (n_modes,)
@@ -179,13 +194,13 @@ class SolvedSound:
     limit_hz : float
         Highest frequency of the sound [Hz].
     told : tuple of dict
-        Warnings of doubtful solutions.
+        Warnings of the acoustics and of doubtful solutions of lines.
     histories : MicrophoneHistories or None
         Sound pressure over time at the microphones.
     """
 
     radiation: HousingRadiation
-    modes: tuple[ModeSound, ...]
+    of_modes: SoundOfModes
     lines: tuple[SoundLine, ...]
     mode_frequencies: FloatArray
     bearings: tuple[str, ...]
@@ -196,6 +211,11 @@ class SolvedSound:
     left_out: tuple[LeftOut, ...] = ()
     told: tuple[ResultWarning, ...] = ()
     histories: MicrophoneHistories | None = None
+
+    @property
+    def modes(self) -> tuple[ModeSound, ...]:
+        """Sound of the housing's modes."""
+        return self.of_modes.modes
 
     @property
     def places(self) -> FloatArray:
@@ -294,7 +314,7 @@ class SolvedSound:
 
     def warnings(self) -> list[ResultWarning]:
         """Warnings of solutions that are doubtful."""
-        entries = list(self.told)
+        entries = [*self.of_modes.warnings, *self.told]
         if self.histories is not None and self.histories.error > _ROUGH:
             entries.append(
                 warning(
@@ -358,12 +378,43 @@ def build_radiation(acoustics: Acoustics, housing: HousingField, progress: Progr
         raise
 
 
+def sound_of_modes(
+    radiation: HousingRadiation, housing: HousingField, limit_hz: float, progress: Progress = silent
+) -> SoundOfModes:
+    """Solve for the sound of a housing's modes up to a frequency, each at its natural frequency.
+
+    Raises
+    ------
+    gearwhine.housing.HousingError
+        As :func:`solve_sound`.
+    """
+
+    def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
+        rates = np.zeros((radiation.modal[0].shape[1], 1))
+        rates[number] = 1.0
+        hertz = float(housing.modes.frequencies_hz[number])
+        sound = radiation.solve(hertz, rates)
+        power = sound.power
+        shares = {face: part / power for face, part in sound.by_face.items()} if power > 0.0 else {}
+        proofs = power_balance_db(sound), interior_pressure(sound), known_source(sound)
+        return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares, *proofs), sound
+
+    numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit_hz]
+    modes, warnings = [], []
+    for mode, sound in in_order(of_mode, numbers, "sound of the housing's modes", progress):
+        modes.append(mode)
+        warnings += require_proofs([sound], f"housing mode {mode.number}", alone=True)
+    return SoundOfModes(tuple(modes), tuple(warnings))
+
+
 def solve_sound(
     acoustics: Acoustics,
     housing: HousingField,
     motion: MotionLines | None = None,
     machine: CoupledMachine | None = None,
     progress: Progress = silent,
+    *,
+    of_modes: SoundOfModes | None = None,
 ) -> SolvedSound:
     """Solve for the sound of a housing's modes and of the lines of a motion that matter.
 
@@ -377,6 +428,8 @@ def solve_sound(
     machine : CoupledMachine, optional
         Machine that moves.
     progress : callable
+    of_modes : SoundOfModes, optional
+        Sound of the housing's modes where that is solved already.
 
     Raises
     ------
@@ -392,24 +445,10 @@ def solve_sound(
     # Before the work; all of them.
     refuse(microphone_findings(acoustics, positions, radiation.require_in_air), AcousticsError)
     warnings = acoustics_warnings(acoustics, housing.mesh.bounds, housing.complete_below_hz)
-
-    def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
-        rates = np.zeros((radiation.modal[0].shape[1], 1))
-        rates[number] = 1.0
-        hertz = float(housing.modes.frequencies_hz[number])
-        sound = radiation.solve(hertz, rates)
-        power = sound.power
-        shares = {face: part / power for face, part in sound.by_face.items()} if power > 0.0 else {}
-        proofs = power_balance_db(sound), interior_pressure(sound), known_source(sound)
-        return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares, *proofs), sound
-
-    numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit]
-    modes = []
-    for mode, sound in in_order(of_mode, numbers, "sound of the housing's modes", progress):
-        modes.append(mode)
-        warnings += require_proofs([sound], f"housing mode {mode.number}", alone=True)
+    if of_modes is None:
+        of_modes = sound_of_modes(radiation, housing, limit, progress)
     solved = SolvedSound(
-        radiation, tuple(modes), (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(warnings)
+        radiation, of_modes, (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(warnings)
     )
     if motion is None or machine is None or not len((motion := motion.between(AUDIBLE, np.inf)).frequencies):
         return solved

@@ -383,14 +383,14 @@ def sound_result(
     """
     # The acoustics' kernels are for this analysis alone.
     from gearwhine.coupling.sound.motion_lines import lines_of_steady
-    from gearwhine.coupling.sound.solution import solve_sound
+    from gearwhine.solve.kept_radiation import sound_of_housing
 
     field, coupled, motion = housing.displacement_field, None, None
     if machine is not None:
         coupled = machine.coupled
         motion = lines_of_steady(solve_steady(coupled, progress), acoustics.estimated_below_hz(field))
         warnings = [*warnings, *machine.warnings]
-    solved = solve_sound(acoustics, field, motion, coupled, progress)
+    solved, housing = sound_of_housing(acoustics, housing, motion, coupled, progress)
     title = origin.title
     document = {"title": title} | sound_document(solved)
     add_warnings(document, [*solved.warnings(), *warnings])

@@ -1,12 +1,17 @@
-"""Radiation of a housing's modes over frequency, kept in the mode cache beside the modes that radiate."""
+"""Radiation of a housing's modes, each at its frequency and all over frequency, kept beside them in the mode cache."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
 
+from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.sound.acoustics import Acoustics
+from gearwhine.coupling.sound.motion_lines import MotionLines
+from gearwhine.coupling.sound.solution import ModeSound, SolvedSound, SoundOfModes, solve_sound
 from gearwhine.housing import HousingModes
+from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.storage.netcdf import content_key
@@ -15,11 +20,14 @@ from gearwhine.numerics.progress import Progress, in_order, silent
 from gearwhine.numerics.source_digest import source_digest
 
 _NOTE = "radiation"
+_NOTE_OF_MODES = "sound of the modes"
 _CODE = (
     "gearwhine.housing.acoustics",
     "gearwhine.housing.storage",
     "gearwhine.coupling.sound.acoustics",
+    "gearwhine.coupling.sound.proofs",
     "gearwhine.coupling.sound.solution",
+    "gearwhine.numerics.dense_least_squares",
     "gearwhine.solve.kept_radiation",
 )
 _WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}
@@ -53,7 +61,7 @@ def kept_radiation(
     HousingModes
         The housing, whose record holds it.
     """
-    key = _key(acoustics, housing.widest_bore, places, between)
+    key = _key(acoustics, housing.widest_bore, places=places.tolist(), between=list(between))
     record = housing.record
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
@@ -69,13 +77,55 @@ def _each(solve: Any, frequencies: Sequence[float], progress: Progress) -> tuple
     return in_order(solve, frequencies, "radiation of the modes over frequency", progress)
 
 
-def _key(acoustics: Acoustics, widest_bore: float | None, places: FloatArray, between: tuple[float, float]) -> str:
+def sound_of_housing(
+    acoustics: Acoustics,
+    housing: HousingModes,
+    motion: MotionLines | None = None,
+    machine: CoupledMachine | None = None,
+    progress: Progress = silent,
+) -> tuple[SolvedSound, HousingModes]:
+    """Solve for the sound of a housing's modes, unless the mode cache has it, and of the lines of a motion.
+
+    Parameters
+    ----------
+    acoustics, housing, motion, machine, progress
+        See :func:`gearwhine.coupling.sound.solution.solve_sound`.
+
+    Returns
+    -------
+    SolvedSound
+    HousingModes
+        The housing, whose record holds the sound of the modes.
+    """
+    field, record = housing.displacement_field, housing.record
+    key = _key(acoustics, housing.widest_bore, limit_hz=acoustics.limit_hz(field))
+    kept = record.notes.get(_NOTE_OF_MODES, {})
+    if kept.get("key") == key:
+        progress("sound of the housing's modes read from the mode cache")
+        return solve_sound(acoustics, field, motion, machine, progress, of_modes=_of_text(kept["sound"])), housing
+    solved = solve_sound(acoustics, field, motion, machine, progress)
+    # As text, since the errors of known sources may be infinite.
+    notes = {**record.notes, _NOTE_OF_MODES: {"key": key, "sound": json.dumps(asdict(solved.of_modes))}}
+    return solved, replace(housing, record=replace(record, notes=notes), source_holds=False)
+
+
+def _of_text(text: str) -> SoundOfModes:
+    """Return the sound of modes that stands in a note."""
+    document = json.loads(text)
+    modes = []
+    for mode in document["modes"]:
+        error = mode["known_source"]
+        source = None if error is None else SourceError(**(error | {"place": tuple(error["place"])}))
+        modes.append(ModeSound(**(mode | {"known_source": source})))
+    return SoundOfModes(tuple(modes), tuple(document["warnings"]))
+
+
+def _key(acoustics: Acoustics, widest_bore: float | None, **of_solution: Any) -> str:
     return content_key(
         {
             "acoustics": {name: value for name, value in asdict(acoustics).items() if name not in _WITHOUT_EFFECT},
             "widest_bore": widest_bore,
-            "places": places.tolist(),
-            "between": list(between),
             "source": source_digest(*_CODE),
+            **of_solution,
         }
     )

@@ -30,16 +30,16 @@ Every solution of a closed surface includes the field of known sources inside, w
 :mod:`gearwhine.housing.acoustics.known_source`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.linalg import lapack
 
 from gearwhine.housing.acoustics.boundary_integrals import (
     SourcePoints,
+    SurfaceIntegrals,
     far_field_amplitudes,
     solid_angles,
     surface_integrals,
@@ -48,7 +48,8 @@ from gearwhine.housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE
 from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.errors import HousingError, TriangleSizeError
-from gearwhine.numerics.arrays import ComplexArray, FloatArray
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
+from gearwhine.numerics.dense_least_squares import solve_least_squares
 
 _TWO_PI = 2.0 * np.pi
 _INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
@@ -425,41 +426,28 @@ class BoundaryElements:
         """
         vertices = self.surface.points
         count, inner = len(vertices), self._inner_points[self._checks :][: self._inner_count(wavenumber)]
-        rows = count + len(inner)
-        # LAPACK works in place on arrays in Fortran order.
-        matrix = np.zeros((rows, count), dtype=np.complex128, order="F")
-        right = np.zeros((rows, flux.shape[1]), dtype=np.complex128, order="F")
-        vertex_numbers = np.arange(count)
-        direct = surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, flux)
-        matrix[:count], right[:count], free = -direct.double, -direct.single, 1.0 + direct.static
-        inside = surface_integrals(self.surface, inner, None, wavenumber, flux)
-        matrix[count:], right[count:] = -inside.double, -inside.single
-        if self.plane is not None:
-            mirrored = self.plane.mirror(vertices)
-            touching = np.abs(self.plane.height(vertices)) <= self.surface.rounding
-            image = surface_integrals(self.surface, mirrored, np.where(touching, vertex_numbers, -1), wavenumber, flux)
-            matrix[:count] -= image.double
-            right[:count] -= image.single
-            free += image.static
-            image = surface_integrals(self.surface, self.plane.mirror(inner), None, wavenumber, flux)
-            matrix[count:] -= image.double
-            right[count:] -= image.single
-        matrix[vertex_numbers, vertex_numbers] += free
-        correction = self._correction
-        matrix[correction.row, correction.col] -= free[correction.row] * correction.data
+        rows, vertex_numbers = count + len(inner), np.arange(len(vertices))
         weights = np.ones(rows)
         weights[count:] = _INNER_WEIGHT
         if self.plane is not None:
             # A vertex in the plane is its own image: of the body with its image all others have two equations.
-            weights[:count][touching] = np.sqrt(0.5)
-        matrix *= weights[:, None]
-        right *= weights[:, None]
-        _, solution, failed = lapack.zgels(
-            matrix, right, lwork=64 * (count + flux.shape[1]), overwrite_a=True, overwrite_b=True
-        )
-        if failed:
-            raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m")
-        return np.ascontiguousarray(solution[:count])
+            weights[:count][np.abs(self.plane.height(vertices)) <= self.surface.rounding] = np.sqrt(0.5)
+        # LAPACK works in place on arrays in Fortran order.
+        matrix = np.empty((rows, count), dtype=np.complex128, order="F")
+        right = np.empty((rows, flux.shape[1]), dtype=np.complex128)
+        for points, own, part in ((vertices, vertex_numbers, slice(count)), (inner, None, slice(count, None))):
+            integrals = _integrals(self.surface, self.plane, points, own, wavenumber, flux)
+            np.multiply(integrals.double, -weights[part, None], out=matrix[part])
+            np.multiply(integrals.single, -weights[part, None], out=right[part])
+            if own is not None:
+                free = weights[part] * (1.0 + integrals.static)
+        matrix[vertex_numbers, vertex_numbers] += free
+        correction = self._correction
+        matrix[correction.row, correction.col] -= free[correction.row] * correction.data
+        try:
+            return solve_least_squares(matrix, right)
+        except np.linalg.LinAlgError as error:
+            raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m") from error
 
 
 def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
@@ -491,6 +479,26 @@ def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
     return sparse.coo_array(sparse.diags_array(factor) @ correction)
 
 
+def _integrals(
+    surface: RadiatingSurface,
+    plane: HardPlane | None,
+    points: FloatArray,
+    own: IntArray | None,
+    wavenumber: float,
+    flux: ComplexArray,
+) -> SurfaceIntegrals:
+    """Integrals over a surface and its image in a hard plane; points in the plane are vertices of both."""
+    integrals = surface_integrals(surface, points, own, wavenumber, flux)
+    if plane is None:
+        return integrals
+    if own is not None:
+        own = np.where(np.abs(plane.height(points)) <= surface.rounding, own, -1)
+    image = surface_integrals(surface, plane.mirror(points), own, wavenumber, flux)
+    for values, more in ((integrals.single, image.single), (integrals.double, image.double)):
+        values += more
+    return replace(integrals, static=integrals.static + image.static)
+
+
 def _represent(
     surface: RadiatingSurface,
     plane: HardPlane | None,
@@ -500,12 +508,8 @@ def _represent(
     flux: ComplexArray,
 ) -> ComplexArray:
     """∫ (p ∂G/∂n − q G) dS at points off the surface, with the images in a hard plane."""
-    integrals = surface_integrals(surface, points, None, wavenumber, flux)
-    field = integrals.double @ pressure - integrals.single
-    if plane is not None:
-        integrals = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
-        field = field + integrals.double @ pressure - integrals.single
-    return field
+    integrals = _integrals(surface, plane, points, None, wavenumber, flux)
+    return np.asarray(integrals.double @ pressure - integrals.single)
 
 
 def _lies_in(surface: RadiatingSurface, plane: HardPlane) -> bool:

@@ -46,7 +46,9 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 _MOST_LEVELS = 7  # most halvings of a triangle near a point
 
-_compiled = numba.njit(cache=True, nogil=True, fastmath={"contract", "arcp", "nsz"})
+# Python's error for a division by zero is a branch, with which no loop becomes vector code.
+_compiled = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz"})
+_summed = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz", "reassoc"})
 
 
 @_compiled
@@ -152,74 +154,134 @@ def _sine_and_cosine(x):  # type: ignore[no-untyped-def]
 
     Error below 1e-13 for arguments below 1e4. Unlike the library's functions a loop over it becomes vector code.
     """
-    turns = math.floor(x * (2.0 / math.pi) + 0.5)
+    turns = (x * (2.0 / math.pi) + _ROUNDING) - _ROUNDING
     y = x - turns * 1.5707963267341256
     y -= turns * 6.077100506506192e-11
     z = y * y
     s = y * (1.0 + z * (_S[0] + z * (_S[1] + z * (_S[2] + z * (_S[3] + z * (_S[4] + z * _S[5]))))))
     c = 1.0 + z * (_C[0] + z * (_C[1] + z * (_C[2] + z * (_C[3] + z * (_C[4] + z * (_C[5] + z * _C[6]))))))
-    quarter = turns - 4.0 * math.floor(0.25 * turns)
-    swapped = quarter - 2.0 * math.floor(0.5 * quarter)  # 1 at odd multiples, where sine and cosine change places
+    quarter = turns - 4.0 * ((0.25 * turns - 0.375 + _ROUNDING) - _ROUNDING)
+    # 1 at odd multiples, where sine and cosine change places
+    swapped = quarter - 2.0 * ((0.5 * quarter - 0.25 + _ROUNDING) - _ROUNDING)
     high = (quarter - swapped) * 0.5  # 1 in the third and fourth quarter
     sign_s = 1.0 - 2.0 * high
     sign_c = sign_s * (1.0 - 2.0 * swapped)
     return sign_s * (s + swapped * (c - s)), sign_c * (c + swapped * (s - c))
 
 
+_ROUNDING = 1.5 * 2.0**52  # numbers up to 2^51 that are added to it and taken from it again are whole
 _S = tuple((-1.0) ** (n + 1) / math.factorial(2 * n + 3) for n in range(6))
 _C = tuple((-1.0) ** (n + 1) / math.factorial(2 * n + 2) for n in range(7))
 
 
 @_compiled
-def _far_points(x, places, projections, weights, k, g, dg, dg0):  # type: ignore[no-untyped-def]
-    """Weighted G, dG/dn and dG_0/dn at quadrature points; real and imaginary parts apart.
+def _far_points(x, places, normals, weights, far, k, g, dg, dg0):  # type: ignore[no-untyped-def]
+    """Weighted G, dG/dn and dG_0/dn at a quadrature point of some triangles; zero on those that are not far from x.
 
     Parameters
     ----------
-    places, projections : ndarray, shape (3, n)
-        Points y and normals there.
+    places, normals : ndarray, shape (3, n)
+        Points y, and normals there.
+    weights, far : ndarray, shape (n,)
+        Weights, and 1 for a triangle that is far from x, else 0.
+    g, dg : ndarray, shape (2, n)
+        Filled with real and imaginary parts.
+    dg0 : ndarray, shape (n,)
     """
-    for q in range(weights.size):
-        d0, d1, d2 = places[0, q] - x[0], places[1, q] - x[1], places[2, q] - x[2]
+    for e in range(weights.size):
+        d0, d1, d2 = places[0, e] - x[0], places[1, e] - x[1], places[2, e] - x[2]
         square = d0 * d0 + d1 * d1 + d2 * d2
         r = math.sqrt(square)
-        scale = weights[q] / r
+        scale = weights[e] / r if far[e] > 0.0 else 0.0
         kr = k * r
         sine, cosine = _sine_and_cosine(kr)
-        projected = -scale * (d0 * projections[0, q] + d1 * projections[1, q] + d2 * projections[2, q]) / square
-        g[0, q], g[1, q] = scale * cosine, -scale * sine
-        dg[0, q], dg[1, q] = projected * (cosine + kr * sine), projected * (kr * cosine - sine)
-        dg0[q] = projected
+        along = (d0 * normals[0, e] + d1 * normals[1, e] + d2 * normals[2, e]) / square
+        projected = -scale * along if far[e] > 0.0 else 0.0
+        g[0, e], g[1, e] = scale * cosine, -scale * sine
+        dg[0, e], dg[1, e] = projected * (cosine + kr * sine), projected * (kr * cosine - sine)
+        dg0[e] = projected
+
+
+@_summed
+def _product(g, flux):  # type: ignore[no-untyped-def]
+    """Sum of G q, both with real and imaginary parts apart, shape (2, n)."""
+    real, imaginary = 0.0, 0.0
+    for e in range(g.shape[1]):
+        real += g[0, e] * flux[0, e] - g[1, e] * flux[1, e]
+        imaginary += g[0, e] * flux[1, e] + g[1, e] * flux[0, e]
+    return complex(real, imaginary)
+
+
+@_summed
+def _sum(values):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for e in range(values.size):
+        total += values[e]
+    return total
+
+
+_BLOCK = 256  # triangles whose values at quadrature points are held at once: 30 kB, which the nearest cache has
+
+
+@_compiled
+def _find_far(x, centers, reaches, far):  # type: ignore[no-untyped-def]
+    """Set 1 where a triangle's centre is farther from x than the square root of its reach, else 0."""
+    for e in range(far.size):
+        away = (centers[0, e] - x[0]) ** 2 + (centers[1, e] - x[1]) ** 2 + (centers[2, e] - x[2]) ** 2
+        far[e] = 1.0 if away > reaches[e] else 0.0
+
+
+def _in_blocks(values: FloatArray) -> FloatArray:
+    """Values of triangles, shape (..., n), in blocks of `_BLOCK` filled up with zeros, (n_blocks, ..., _BLOCK)."""
+    count = values.shape[-1]
+    blocks = -(-count // _BLOCK)
+    filled = np.zeros((*values.shape[:-1], blocks * _BLOCK))
+    filled[..., :count] = values
+    return np.ascontiguousarray(np.moveaxis(filled.reshape(*values.shape[:-1], blocks, _BLOCK), -2, 0))
 
 
 @_compiled
 def _integrate_rows(  # type: ignore[no-untyped-def]
-    targets, vertex, corners, triangles, normals, areas, sizes, centers, k, rule, places, point_normals, point_weights,
-    near_rule, duffy, weights, single, double, static,
+    targets, vertex, corners, triangles, normals, areas, reaches, centers, k, places, point_normals, weights,
+    point_flux, flux, near_rule, duffy, duffy_weights, single, double, static,
 ):  # fmt: skip
-    """Integrals over all triangles for some points; `own` is the vertex at a point, or -1."""
-    count = rule.shape[0]
-    far_g, far_dg, far_dg0 = np.empty((2, places.shape[1])), np.empty((2, places.shape[1])), np.empty(places.shape[1])
+    """Integrals over all triangles for some points; `vertex` is the vertex at a point, or -1.
+
+    With the three points of degree 2 the shape function of a corner is 2/3 at its own and 1/6 at the others.
+    `centers` to `point_flux` are in blocks, see :func:`_in_blocks`.
+    """
+    count, blocks = triangles.shape[0], weights.shape[0]
+    far, near = np.empty((blocks, _BLOCK)), np.empty(count, np.int64)
+    far_g, far_dg, far_dg0 = np.empty((2, _BLOCK)), np.empty((3, 2, _BLOCK)), np.empty(_BLOCK)
     g, dg, dg0 = np.empty(3, np.complex128), np.empty(3, np.complex128), np.empty(3)
     stack = np.empty((4 * _MOST_LEVELS + 4, 4, 3))
     for t in range(targets.shape[0]):
         x = targets[t]
-        _far_points(x, places, point_normals, point_weights, k, far_g, far_dg, far_dg0)
-        total = 0.0
-        for e in range(triangles.shape[0]):
-            away = (centers[e, 0] - x[0]) ** 2 + (centers[e, 1] - x[1]) ** 2 + (centers[e, 2] - x[2]) ** 2
-            if away > 9.0 * sizes[e] * sizes[e]:
+        total, found = 0.0, 0
+        for block in range(blocks):
+            start = block * _BLOCK
+            length = min(_BLOCK, count - start)
+            _find_far(x, centers[block], reaches[block], far[block])
+            for e in range(length):
+                if far[block, e] == 0.0:
+                    near[found] = start + e
+                    found += 1
+            for q in range(3):
+                _far_points(
+                    x, places[block, q], point_normals[block], weights[block], far[block], k,
+                    far_g, far_dg[q], far_dg0,
+                )  # fmt: skip
+                total += _sum(far_dg0)
+                for column in range(flux.shape[1]):
+                    single[t, column] += _product(far_g, point_flux[block, column, q])
+            for e in range(length):
+                real = (far_dg[0, 0, e] + far_dg[1, 0, e] + far_dg[2, 0, e]) / 6.0
+                imaginary = (far_dg[0, 1, e] + far_dg[1, 1, e] + far_dg[2, 1, e]) / 6.0
                 for i in range(3):
-                    single_sum, double_sum = 0j, 0j
-                    for q in range(count):
-                        place = e * count + q
-                        single_sum += rule[q, i] * complex(far_g[0, place], far_g[1, place])
-                        double_sum += rule[q, i] * complex(far_dg[0, place], far_dg[1, place])
-                    single[t, 3 * e + i] = single_sum
-                    double[t, triangles[e, i]] += double_sum
-                for q in range(count):
-                    total += far_dg0[e * count + q]
-                continue
+                    value = complex(real + 0.5 * far_dg[i, 0, e], imaginary + 0.5 * far_dg[i, 1, e])
+                    double[t, triangles[start + e, i]] += value
+        for place in range(found):
+            e = near[place]
             for i in range(3):
                 g[i], dg[i], dg0[i] = 0.0, 0.0, 0.0
             corner = -1
@@ -227,17 +289,18 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                 if triangles[e, i] == vertex[t]:
                     corner = i
             if corner >= 0:
-                _corner_triangle(corners[e], areas[e], k, corner, duffy, weights, g)
+                _corner_triangle(corners[e], areas[e], k, corner, duffy, duffy_weights, g)
             else:
                 _near_triangle(x, corners[e], normals[e], areas[e], k, near_rule, g, dg, dg0, stack)
             for i in range(3):
-                single[t, 3 * e + i] = g[i]
+                for column in range(flux.shape[1]):
+                    single[t, column] += g[i] * flux[3 * e + i, column]
                 double[t, triangles[e, i]] += dg[i]
                 total += dg0[i]
         static[t] += total
 
 
-_ROWS = 64  # points whose single layer is held at once: 10 MB with 3,300 triangles
+_ROWS = 16  # directions whose phases are held at once: 8 MB with 10,000 triangles
 
 
 @dataclass(frozen=True)
@@ -320,33 +383,29 @@ def surface_integrals(
     flux : ndarray, shape (3 n_triangles, n)
         q at the corners of the triangles.
     """
-    source = SourcePoints.of(surface)
     vertex = np.full(len(points), -1) if own is None else own
-    targets = np.ascontiguousarray(points)
     double = np.zeros((len(points), len(surface.points)), dtype=np.complex128)
     static = np.zeros(len(points))
     single = np.zeros((len(points), flux.shape[1]), dtype=np.complex128)
-    centers = surface.corners.mean(axis=1)
-    for start in range(0, len(points), _ROWS):
-        part = slice(start, start + _ROWS)
-        layer = np.empty((len(targets[part]), 3 * len(surface.triangles)), dtype=np.complex128)
-        _integrate_rows(
-            targets[part], vertex[part], surface.corners, surface.triangles, surface.normals, surface.areas,
-            surface.lengths, centers, wavenumber, _DEGREE_2, source.places, source.normals,
-            source.weights / (4.0 * math.pi), _DEGREE_4, _POINTS, _WEIGHTS, layer, double[part], static[part],
-        )  # fmt: skip
-        single[part] = layer @ flux
+    shares = _DEGREE_2[:, :3]
+    at_points = np.einsum("qa,ean->nqe", shares, flux.reshape(-1, 3, flux.shape[1]))
+    _integrate_rows(
+        np.ascontiguousarray(points), vertex, surface.corners, surface.triangles, surface.normals, surface.areas,
+        _in_blocks(9.0 * surface.lengths**2), _in_blocks(surface.corners.mean(axis=1).T), wavenumber,
+        _in_blocks(np.einsum("qa,eaj->qje", shares, surface.corners)), _in_blocks(surface.normals.T),
+        _in_blocks(surface.areas / (12.0 * math.pi)), _in_blocks(np.stack([at_points.real, at_points.imag], axis=2)),
+        flux, _DEGREE_4, _POINTS, _WEIGHTS, single, double, static,
+    )  # fmt: skip
     return SurfaceIntegrals(single, double, static)
 
 
 @_compiled
-def _phases(directions, places, center, k, cosines, sines):  # type: ignore[no-untyped-def]
-    """Cosine and sine of k d . (y - center)."""
+def _phases(directions, places, k, cosines, sines):  # type: ignore[no-untyped-def]
+    """Set cosine and sine of k d . y."""
     for d in range(directions.shape[0]):
+        d0, d1, d2 = directions[d, 0], directions[d, 1], directions[d, 2]
         for q in range(places.shape[1]):
-            along = 0.0
-            for j in range(3):
-                along += directions[d, j] * (places[j, q] - center[j])
+            along = d0 * places[0, q] + d1 * places[1, q] + d2 * places[2, q]
             sine, cosine = _sine_and_cosine(math.fabs(k * along))
             cosines[d, q] = cosine
             sines[d, q] = math.copysign(1.0, along) * sine
@@ -387,12 +446,15 @@ def far_field_amplitudes(
     rate = np.einsum("qa,ean->eqn", shares, flux.reshape(-1, 3, columns)).reshape(-1, columns)
     weight = source.weights[:, None] / (4.0 * math.pi)
     layers = np.hstack([weight * rate, *(weight * source.normals[j][:, None] * at_points for j in range(3))])
+    layers = np.hstack([layers.real, layers.imag])  # phases and layers with their parts apart have the real products
     far = np.empty((len(directions), columns), dtype=np.complex128)
+    places = np.ascontiguousarray(source.places - center[:, None])
     for start in range(0, len(directions), _ROWS):
         some = np.ascontiguousarray(directions[start : start + _ROWS])
-        cosines, sines = np.empty((2, len(some), source.places.shape[1]))
-        _phases(some, source.places, center, wavenumber, cosines, sines)
-        moments = ((cosines + 1j * sines) @ layers).reshape(len(some), 4, columns)
+        phases = np.empty((2, len(some), places.shape[1]))
+        _phases(some, places, wavenumber, phases[0], phases[1])
+        (cc, cs), (sc, ss) = np.moveaxis((phases @ layers).reshape(2, len(some), 2, 4, columns), 2, 1)
+        moments = cc - ss + 1j * (cs + sc)
         far[start : start + _ROWS] = 1j * wavenumber * np.einsum("dj,djn->dn", some, moments[:, 1:]) - moments[:, 0]
     return far
 

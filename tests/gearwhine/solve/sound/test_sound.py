@@ -27,6 +27,7 @@ from gearwhine.sweep.sound import add_sound
 pytestmark = pytest.mark.slow
 
 COARSE = {"acoustics.mesh_size": "35 mm", "acoustics.highest_frequency": "2.8 kHz", "acoustics.lines": 8}
+BOXED = COARSE | {"acoustics.floor": "-21 mm", "acoustics.microphone_box": "1 m"}
 ALUMINIUM = {
     "acoustics.method": "erp",
     "acoustics.mesh_size": "34 mm",
@@ -37,7 +38,7 @@ ALUMINIUM = {
 
 @pytest.fixture(scope="module")
 def study():
-    found = gw.load("small-gearbox", COARSE | {"acoustics.floor": "-21 mm", "acoustics.microphone_box": "1 m"})
+    found = gw.load("small-gearbox", BOXED)
     assert found.housing is not None  # of the case alone, without the checks of the sound
     return found
 
@@ -84,6 +85,23 @@ def test_document_and_arrays_hold_the_solution(sound):
     by_number = {mode.number: mode.radiation_efficiency for mode in sound.solved.modes}
     assert {entry["number"]: entry["radiation_efficiency"] for entry in document["modes"]} == by_number
     assert document["total_db"] > document["total_db_a"] - 1.3  # A adds at most 1.3 dB, at 2.5 kHz
+
+
+def test_the_sound_of_modes_is_solved_once_a_folder(sound, monkeypatch, tmp_path):
+    """Whatever the operation is; with another surface or limit it is solved anew."""
+    folder = tmp_path / "out"
+    sound.write(folder, pictures=False)
+    monkeypatch.setattr("gearwhine.coupling.sound.solution.sound_of_modes", None)
+    again = gw.load("small-gearbox", BOXED, folder=folder).sound()
+    assert again.document["modes"] == sound.document["modes"]
+    assert again.document.get("warnings") == sound.document.get("warnings")
+    modes = again.solved.modes
+    assert [mode.known_source for mode in modes] == [mode.known_source for mode in sound.solved.modes]
+    slower = gw.load("small-gearbox", BOXED | {"operation.speed": "4000 rpm", "acoustics.lines": 1}, folder=folder)
+    assert slower.sound().solved.modes == modes
+    for change in ({"acoustics.highest_frequency": "2.7 kHz"}, {"acoustics.caps": "rest"}):
+        with pytest.raises(TypeError, match="NoneType"):
+            gw.load("small-gearbox", BOXED | change, folder=folder).sound()
 
 
 @pytest.fixture(scope="module")
