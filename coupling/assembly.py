@@ -194,12 +194,13 @@ class CoupledMachine:
         sense = _senses(self.meshes, self.speeds, self.speed_ratios)[place] * (-1 if back else 1)
         return _face(MachineCoordinates(self.system.components, self.speeds), self.meshes[place], sense, contact)
 
-    def at_speed(self, speed: float) -> "CoupledMachine":
+    def at_speed(self, speed: float, *, keep_faces: bool = False) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
 
         Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; slopes of
         torques and the speeds between which the machine runs stay the same in rad/s. The components keep their modes,
-        which are a basis at any speed.
+        which are a basis at any speed. Faces of flanks are solved under the mean load at the speed, which the inertia
+        of circling planets changes, or kept, as beside a contact state that is kept.
 
         Raises
         ------
@@ -221,7 +222,7 @@ class CoupledMachine:
             dashpots=self.dashpots,
             torque_supports=self.torque_supports,
             speed_range=_about(self.speed_range, speed / present),
-            mean_faces=self.mean_faces,
+            mean_faces=replace(self.mean_faces, are_kept=True) if keep_faces and self.mean_faces else self.mean_faces,
             speed_ratios=self.speed_ratios,
         )
 
@@ -579,15 +580,18 @@ class MeanFaces:
     system : CoupledSystem
         System without the faces, whose mean load and stiffness they have.
     states : dict of int to tuple
+    are_kept : bool
+        Whether they stay under another mean load and stiffness of the same flanks.
     """
 
     system: CoupledSystem
     states: dict[int, _FaceState]
+    are_kept: bool = False
 
     def hold_in(self, system: CoupledSystem) -> bool:
-        """Whether a system has the same mean load, stiffness and flanks, turning."""
+        """Whether a system has the same flanks, turning, and the same mean load and stiffness unless faces are kept."""
         before = self.system
-        if before.nonlinear or system.nonlinear or len(before.contacts) != len(system.contacts):
+        if len(before.contacts) != len(system.contacts):
             return False
         flanks = all(
             (one.contact is other.contact or not one.loaded)
@@ -597,9 +601,11 @@ class MeanFaces:
             and np.array_equal(one.direction, other.direction)
             for one, other in zip(before.contacts, system.contacts, strict=True)
         )
-        return (
-            flanks and np.array_equal(before.load, system.load) and np.array_equal(before.stiffness, system.stiffness)
-        )
+        if self.are_kept or not flanks:
+            return flanks
+        linear = not (before.nonlinear or system.nonlinear)
+        same_load = np.array_equal(before.load, system.load)
+        return linear and same_load and np.array_equal(before.stiffness, system.stiffness)
 
 
 def _with_faces(

@@ -130,6 +130,7 @@ from gearwhine.numerics.findings import (
     refuse,
 )
 from gearwhine.numerics.own_copies import keep_tuples, unchecked
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
@@ -837,7 +838,7 @@ class Machine:
         speeds: Sequence[float] | FloatArray,
         *,
         frequency_limit: float,
-        progress: Callable[[float], None] = lambda fraction: None,
+        progress: Progress = silent,
     ) -> SystemCampbell:
         """Campbell diagram: coupled modes over speed and their crossings with the orders of shafts and meshes.
 
@@ -848,7 +849,6 @@ class Machine:
         frequency_limit : float
             Branches below it at some speed are followed [rad/s].
         progress : callable
-            Called with the finished part, from 0 to 1.
 
         Raises
         ------

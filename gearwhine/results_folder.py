@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from gearwhine.case import Case, CaseError, Problem, load_case
+from gearwhine.failures import DamagedResultsError
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import staging
@@ -60,7 +61,8 @@ def write_report(
         progress("modelling the shapes that move")
         name, shapes = "report-interactive.html", moving_shapes(folder)
     require_own(folder, [name])
-    page = report_page(folder, Contents(chapters_of, first_page), case or _stored_case(folder), shapes=shapes)
+    with _as_this_build_writes(folder):
+        page = report_page(folder, Contents(chapters_of, first_page), case or _stored_case(folder), shapes=shapes)
     with staging(folder) as place:
         (place / name).write_text(page, encoding="utf-8")
     document = {"folder": str(folder), "files": [name]}
@@ -76,6 +78,17 @@ def _checked(folder: Path, are_read: Callable[[str], bool]) -> list[str]:
     with suppress(PermissionError):  # a folder that may only be read is read as it is
         finish_moves(folder)
     return require_as_written(folder, are_read)
+
+
+@contextmanager
+def _as_this_build_writes(folder: Path) -> Iterator[None]:
+    """Refuse results whose documents lack what this build reads: one of the same version may have written less."""
+    try:
+        yield
+    except KeyError as missing:
+        raise DamagedResultsError(
+            f"{folder}: a result has no {missing}, which another build of Gearwhine left out; run its command again"
+        ) from missing
 
 
 def _stored_case(folder: Path) -> Case | None:
@@ -141,7 +154,7 @@ def export_results(
     if not 0.0 <= length <= export.LONGEST_SOUND:
         expected = f"a length of sound files from 0 to {export.LONGEST_SOUND:g} s"
         raise CaseError([Problem("export --seconds", length, expected)])
-    with staging(folder) as place:
+    with _as_this_build_writes(folder), staging(folder) as place:
         exports = place / _EXPORTS
         exports.mkdir()
         if "csv" in formats:

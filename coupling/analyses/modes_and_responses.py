@@ -165,8 +165,7 @@ def solve_system(
     lines = _sensor_lines(machine) if mesh_phase is None else ()
     solved = SolvedSystem(machine, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines)
     if system.turns:
-        progress("exponents with turning carriers")
-        solved = replace(solved, exponents=_exponents(solved))
+        solved = replace(solved, exponents=_exponents(solved, progress))
     return _over_speed(solved, over_speed, progress, sidebands, mesh_harmonics) if over_speed else solved
 
 
@@ -179,7 +178,7 @@ def _instant(machine: CoupledMachine, phase: float) -> ContactState:
     return contact_at(machine.system, time_of_phase(machine.system, phase))
 
 
-def _exponents(solved: SolvedSystem) -> ComplexArray:
+def _exponents(solved: SolvedSystem, progress: Progress) -> ComplexArray:
     """Solve the Floquet exponents of the lowest oscillating modes of a machine whose directions turn, shape (m,)."""
     modes = solved.modes
     limit = _TWO_PI * _frequency_limit(solved.machine)
@@ -188,7 +187,9 @@ def _exponents(solved: SolvedSystem) -> ComplexArray:
     chosen = np.flatnonzero(swinging)[:_EXPONENTS]
     exponents = np.full(len(modes.kinds), np.nan, dtype=np.complex128)
     model = TurningResponse(solved.machine.system, solved.contact)
-    exponents[chosen] = floquet_exponents(model, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen])
+    exponents[chosen] = floquet_exponents(
+        model, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], progress
+    )
     return exponents
 
 
@@ -262,7 +263,7 @@ def _over_speed(
         frequency_limit=limit,
         lines=lines,
         contact=mean,
-        progress=lambda fraction: progress("coupled modes over speed", fraction),
+        progress=progress,
     )
     driven = list(dict.fromkeys(unbalance.rotor for unbalance in machine.loads.unbalances if unbalance.moment != 0.0))
     turning = np.linspace(speeds[0] or speeds[-1] / _UNBALANCE_STEPS, speeds[-1], _UNBALANCE_STEPS)

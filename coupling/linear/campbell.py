@@ -21,6 +21,7 @@ some of the speeds, the Floquet exponents of the machine as it turns
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +29,7 @@ import numpy.typing as npt
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.complex_modes import coupled_modes
-from gearwhine.coupling.linear.eigenpairs import refine_pair
+from gearwhine.coupling.linear.eigenpairs import pair_residuals, refine_pair
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
 from gearwhine.coupling.linear.floquet_exponents import floquet_exponents, observed_frequencies
 from gearwhine.coupling.linear.frozen_directions import frozen_warnings
@@ -43,6 +44,7 @@ from gearwhine.numerics.branch_following import (
     paired_modes,
     refined_crossing,
 )
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 
 Point = BranchPoint[ComplexArray]
@@ -55,6 +57,7 @@ _FARTHEST = 0.3  # relative step of a frequency beyond which a branch ends
 _HALVINGS = 6  # largest number of halvings of a speed step
 _CROSSING = 1e-10  # relative tolerance of a crossing's frequency
 _STEPS = 40
+_NEWTON_STEPS = 8
 _RESIDUAL = 1e-9
 _AT_REST = 1e-6  # part of the highest speed in place of zero, to separate forward and backward whirl
 _TURNING_SPEEDS = 9  # speeds at which exponents with turning carriers are solved, at most
@@ -135,23 +138,27 @@ def matched(
     return np.where(first >= 0, second[first], -1)
 
 
+Matrices = Callable[[float], tuple[FloatArray, FloatArray]]
+"""Stiffness K [1/s²] and damping C [1/s] of a machine at a speed [rad/s]."""
+
+
 def order_crossing(
-    machine: CoupledMachine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
+    matrices: Matrices, order: float, ends: Sequence[tuple[ModesAtSpeed, int]]
 ) -> tuple[float, complex] | None:
     """Speed and eigenvalue at which a branch has the frequency of an order, between two neighbouring speeds.
 
-    At each trial speed Newton's method on the eigenpair starts between the neighbours. The result is None where that
-    leads away from the branch.
+    Newton's method on the eigenpair and the speed together; where that leads away, the speed is bracketed, and at each
+    trial speed Newton's method on the eigenpair starts between the neighbours. The result is None where that leads away
+    from the branch, too.
 
     Parameters
     ----------
-    machine : CoupledMachine
+    matrices : callable
+        Matrices of the machine at a speed.
     order : float
         Frequency over the speed of the leading rotor.
     ends : two of (ModesAtSpeed, int)
         Modes at the speeds on either side, and the place of the branch among them.
-    contact : ContactState
-        Contact state at all speeds.
     """
 
     def point(speed: float, value: complex, shape: ComplexArray) -> Point:
@@ -161,18 +168,59 @@ def order_crossing(
 
     def solve(part: float, low: Point, high: Point) -> Point | None:
         speed = low.speed + part * (high.speed - low.speed)
-        stiffness, damping = linear_matrices(machine.at_speed(speed).system, contact)
         start = low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)
         shape = (1.0 - part) * low.shape + part * high.shape
-        value, shape, residual = refine_pair(stiffness, damping, start, shape)
+        value, shape, residual = refine_pair(*matrices(speed), start, shape)
         if residual > _RESIDUAL or not _between(value, (low.eigenvalue, high.eigenvalue)):
             return None
         return point(speed, value, shape)
 
     first = ends[0][0].right[ends[0][1]]
     low, high = (point(modes.speed, complex(modes.values[at]), modes.right[at]) for modes, at in ends)
-    crossing = refined_crossing(low, high, solve, tolerance=_CROSSING, steps=_STEPS)
-    return None if crossing is None else (crossing.speed, crossing.eigenvalue)
+    crossing = _crossing_by_newton(matrices, order, low, high)
+    if crossing is not None:
+        return crossing
+    bracketed = refined_crossing(low, high, solve, tolerance=_CROSSING, steps=_STEPS)
+    return None if bracketed is None else (bracketed.speed, bracketed.eigenvalue)
+
+
+def _crossing_by_newton(matrices: Matrices, order: float, low: Point, high: Point) -> tuple[float, complex] | None:
+    """Solve (λ² I + λ C(Ω) + K(Ω)) q = 0, uᴴ q = 1 and Im λ = n |Ω| by Newton's method; None where it leads away.
+
+    Derivatives by Ω are those of the chord between both ends.
+    """
+    part = low.gap / (low.gap - high.gap)
+    speed = low.speed + part * (high.speed - low.speed)
+    value = low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)
+    shape = (1.0 - part) * low.shape + part * high.shape
+    slopes = [
+        (b - a) / (high.speed - low.speed) for a, b in zip(matrices(low.speed), matrices(high.speed), strict=True)
+    ]
+    n, sense = len(shape), np.sign(high.speed)
+    bordered = np.zeros((n + 1, n + 1), dtype=np.complex128)
+    for _ in range(_NEWTON_STEPS):
+        shape = shape / np.linalg.norm(shape)
+        stiffness, damping = matrices(speed)
+        gap = value.imag - order * abs(speed)
+        residual = float(pair_residuals(stiffness, damping, np.array([value]), shape[None])[0])
+        if residual <= _RESIDUAL and abs(gap) <= _CROSSING * abs(value):
+            return (speed, value) if _between(value, (low.eigenvalue, high.eigenvalue)) else None
+        dynamic = stiffness + value * damping
+        dynamic[np.diag_indices(n)] += value**2
+        bordered[:n, :n], bordered[n, :n] = dynamic, shape.conj()
+        bordered[:n, n] = 2.0 * value * shape + damping @ shape
+        loads = np.zeros((n + 1, 2), dtype=np.complex128)
+        loads[:n, 0], loads[:n, 1] = -dynamic @ shape, -(slopes[0] @ shape + value * (slopes[1] @ shape))
+        try:
+            still, over_speed = np.linalg.solve(bordered, loads).T
+        except np.linalg.LinAlgError:
+            return None
+        step = (gap + still[n].imag) / (order * sense - over_speed[n].imag)
+        shape, value = shape + still[:n] + step * over_speed[:n], complex(value + still[n] + step * over_speed[n])
+        speed = float(speed + step)
+        if not min(low.speed, high.speed) <= speed <= max(low.speed, high.speed):
+            return None
+    return None
 
 
 def _between(value: complex, ends: Sequence[complex]) -> bool:
@@ -293,7 +341,7 @@ def system_campbell(
     frequency_limit: float,
     lines: Sequence[ExcitationLine] | None = None,
     contact: ContactState | None = None,
-    progress: Callable[[float], None] = lambda fraction: None,
+    progress: Progress = silent,
 ) -> SystemCampbell:
     """Follow the coupled modes about the mean contact over speed, and refine where excitations meet them.
 
@@ -311,7 +359,6 @@ def system_campbell(
         Contact at every speed; by default :func:`gearwhine.coupling.statics.mean_mesh.mean_contact` under the machine's
         load.
     progress : callable
-        Called with the finished part, from 0 to 1.
 
     Raises
     ------
@@ -348,7 +395,7 @@ def system_campbell(
         partner = matched(points[-1].modes, described.modes, solve, limit) if points else np.zeros(0, dtype=np.intp)
         branches = extended_branches(branches, partner, described.modes.values.size)
         points.append(described)
-        progress((number + 1) / stand_in.size)
+        progress("coupled modes over speed", (number + 1) / stand_in.size)
     sizes = np.abs(along_branches(branches, [point.modes.values for point in points], np.nan))
     table = branches[:, np.any(sizes < frequency_limit, axis=0)]
     eigenvalues = along_branches(table, [point.modes.values for point in points], complex(np.nan, np.nan))
@@ -358,25 +405,37 @@ def system_campbell(
     whirl = along_branches(table, [point.whirl for point in points], np.nan)
     teeth = along_branches(table, [point.teeth for point in points], np.nan)
     crossings, unsettled = [], []
-    for line in chosen:
-        for left, branch in order_intervals(eigenvalues.imag, line.order, stand_in):
+    matrices = lru_cache(maxsize=3)(
+        lambda speed: linear_matrices(machine.at_speed(speed, keep_faces=True).system, state)
+    )
+    # Lines of one order, as those of equal planets, meet a branch at one speed.
+    met: dict[tuple[int, int, float], tuple[float, complex] | None] = {}
+    meetings = [
+        (left, branch, line)
+        for line in chosen
+        for left, branch in order_intervals(eigenvalues.imag, line.order, stand_in)
+    ]
+    for number, (left, branch, line) in enumerate(sorted(meetings, key=lambda meeting: meeting[0])):
+        if (left, branch, line.order) not in met:
             ends = [(points[i].modes, int(table[i, branch])) for i in (left, left + 1)]
-            crossing = order_crossing(machine, line.order, ends, state)
-            if crossing is None:
-                unsettled.append(
-                    f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
-                    f"{leading_speeds[left]:.6g} and {leading_speeds[left + 1]:.6g} rad/s, "
-                    "but the crossing does not converge; take more speeds about there"
-                )
-                continue
-            speed, value = crossing
-            if abs(value) < frequency_limit:
-                at = left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1
-                named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
-                crossings.append(SystemCrossing(speed, line, value, branch, *named))
+            met[left, branch, line.order] = order_crossing(matrices, line.order, ends)
+        progress("crossings with excitation orders", (number + 1) / len(meetings))
+        crossing = met[left, branch, line.order]
+        if crossing is None:
+            unsettled.append(
+                f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
+                f"{leading_speeds[left]:.6g} and {leading_speeds[left + 1]:.6g} rad/s, "
+                "but the crossing does not converge; take more speeds about there"
+            )
+            continue
+        speed, value = crossing
+        if abs(value) < frequency_limit:
+            at = left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1
+            named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
+            crossings.append(SystemCrossing(speed, line, value, branch, *named))
     exponents, observed, effect = None, None, None
     if machine.system.turns:
-        exponents, observed = _turning(machine, points, table, kinds, state, frequency_limit)
+        exponents, observed = _turning(machine, points, table, kinds, state, frequency_limit, progress)
         effect = _error_of_frozen_carriers(leading_speeds, eigenvalues, exponents)
     return SystemCampbell(
         speeds=leading_speeds,
@@ -404,24 +463,37 @@ def _turning(
     kinds: npt.NDArray[np.str_],
     contact: ContactState,
     limit: float,
+    progress: Progress,
 ) -> tuple[ComplexArray, FloatArray | None]:
     """Exponents of the lowest modes at some of the speeds, and at which frequencies sensors see them."""
     exponents = np.full(table.shape, np.nan, dtype=np.complex128)
     observed = np.full(table.shape, np.nan)
     sensors = np.array(list(machine.sensor_rows.values()))
-    for number in np.unique(np.linspace(0, len(points) - 1, _TURNING_SPEEDS).astype(int)):
+    chosen = np.unique(np.linspace(0, len(points) - 1, _TURNING_SPEEDS).astype(int))
+    for turn, number in enumerate(chosen):
         modes = points[number].modes
         values = along_branches(table[[number]], [modes.values], complex(np.nan, np.nan))[0]
         proper = ~np.isin(kinds[number], ("", "residual", "rigid")) & (np.abs(values) < limit)
         lowest = np.flatnonzero(proper)
         lowest = lowest[np.argsort(np.abs(values[lowest]), kind="stable")][:_TURNING_MODES]
         own = table[number, lowest]
-        model = TurningResponse(machine.at_speed(modes.speed).system, contact)
-        found = floquet_exponents(model, modes.values[own], modes.right[own], modes.left[own])
+        model = TurningResponse(machine.at_speed(modes.speed, keep_faces=True).system, contact)
+        found = floquet_exponents(
+            model, modes.values[own], modes.right[own], modes.left[own], _one_of(len(chosen), turn, progress)
+        )
         exponents[number, lowest] = found
         if sensors.size:
             observed[number, lowest] = observed_frequencies(model, found, modes.right[own], sensors)
     return exponents, observed if sensors.size else None
+
+
+def _one_of(count: int, number: int, progress: Progress) -> Progress:
+    """Progress of one of several equal parts of a work, as progress of that work."""
+
+    def report(message: str, fraction: float | None = None) -> None:
+        progress(message, (number + (fraction or 0.0)) / count)
+
+    return report
 
 
 def _error_of_frozen_carriers(speeds: FloatArray, frozen: ComplexArray, exponents: ComplexArray) -> str | None:
@@ -450,7 +522,7 @@ class _Described:
 
 def _described(machine: CoupledMachine, speed: float, limit: float, contact: ContactState) -> _Described:
     """Return the oscillating modes below a limit at a speed."""
-    system = machine.at_speed(speed).system
+    system = machine.at_speed(speed, keep_faces=True).system
     modes = coupled_modes(system, contact)
     damping = linear_matrices(system, contact)[1]
     chosen = np.flatnonzero((modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) < limit))

@@ -18,6 +18,7 @@ import numpy as np
 
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
+from gearwhine.numerics.progress import Progress, silent
 
 _FIRST_STEP = 1e-5  # first step of the secant method, relative
 _CONVERGED = 1e-6  # relative step from which the next one is rounding: the order of the secant method is 1.6
@@ -42,7 +43,11 @@ class _Receptance:
 
 
 def floquet_exponents(
-    model: TurningResponse, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
+    model: TurningResponse,
+    eigenvalues: ComplexArray,
+    right: ComplexArray,
+    left: ComplexArray,
+    progress: Progress = silent,
 ) -> ComplexArray:
     """Exponents λ of a machine whose directions turn, nearest to eigenvalues with its carriers frozen.
 
@@ -53,6 +58,7 @@ def floquet_exponents(
         λ₀, of oscillating modes [1/s].
     right, left : ndarray of complex, shape (m, n)
         Their right and left vectors.
+    progress : callable
 
     Returns
     -------
@@ -60,13 +66,10 @@ def floquet_exponents(
         λ [1/s]; NaN where the search does not settle near the eigenvalue, or settles at the exponent of another mode
         that is nearer to it.
     """
-    found = np.array(
-        [
-            _nearest(_Receptance(model, *vectors), complex(value))
-            for value, *vectors in zip(eigenvalues, right, left, strict=True)
-        ],
-        dtype=np.complex128,
-    )
+    found = np.full(len(eigenvalues), np.nan, dtype=np.complex128)
+    for number, (value, *vectors) in enumerate(zip(eigenvalues, right, left, strict=True)):
+        found[number] = _nearest(_Receptance(model, *vectors), complex(value))
+        progress("exponents with turning carriers", (number + 1) / len(eigenvalues))
     distance = np.abs(found - eigenvalues)
     for first in range(len(found)):
         for second in range(first):

@@ -50,6 +50,7 @@ RESIDUAL_BOUND = 1e-9
 
 _ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its terms
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
+_HOUSING_MOTION = "the motion of the housing as a whole"
 _FREE_MOTION_STIFFNESS = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
 _IDLE_PAIR_FORCE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
@@ -351,11 +352,14 @@ class _StaticModel:
         scale = float(np.abs(motions).max(axis=1) @ np.abs(self.load))
         if np.linalg.norm(works) > _CARRIED * scale:
             driven = words[int(np.argmax(np.abs(works @ free)))]
-            raise CouplingError(
-                f"nothing holds {driven}, and the loads drive it; expected a bearing that holds it, such as one with "
-                "axial stiffness on every shaft that helical gears or its weight push along its axis, and torques "
-                "that balance"
-            )
+            if driven == _HOUSING_MOTION:
+                expected = "supports that hold it, [[housing.support]] of a case"
+            else:
+                expected = (
+                    "a bearing that holds it, such as one with axial stiffness on every shaft that helical gears or "
+                    "its weight push along its axis, and torques that balance"
+                )
+            raise CouplingError(f"nothing holds {driven}, and the loads drive it; expected {expected}")
         extra = np.zeros((self.size, self.size))
         for motion in free @ motions.T:
             extra += spring * np.outer(motion, motion) / float(motion @ motion) ** 2
@@ -393,7 +397,7 @@ class _StaticModel:
                 column = np.zeros(self.size)
                 column[self.housing_first + mode] = 1.0
                 columns.append(column)
-                words.append("the motion of the housing as a whole")
+                words.append(_HOUSING_MOTION)
         return np.array(columns).T, words
 
     def solve(self) -> OperatingPoint:

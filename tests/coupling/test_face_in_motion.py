@@ -228,3 +228,21 @@ def test_a_machine_at_another_speed_has_the_faces_of_its_mean_load_solved_once()
         np.testing.assert_array_equal(one.amplitude, other.amplitude)
     # The other sense presses other flanks.
     assert moving.at_speed(-speed).mean_faces is not moving.mean_faces
+
+
+def test_faces_are_kept_under_another_load_where_asked_for() -> None:
+    moving = overhung(1, ConstantStiffness(4e8)).assemble()
+    speed = 0.7 * moving.speeds["in"]
+    assert moving.mean_faces is not None
+    under = moving.mean_faces.system
+    loaded = replace(moving, mean_faces=replace(moving.mean_faces, system=replace(under, load=1.1 * under.load)))
+
+    def states(speed: float, *, keep_faces: bool) -> object:
+        faces = loaded.at_speed(speed, keep_faces=keep_faces).mean_faces
+        assert faces is not None
+        return faces.states
+
+    assert states(speed, keep_faces=True) is moving.mean_faces.states
+    assert states(speed, keep_faces=False) is not moving.mean_faces.states
+    # Other flanks have other faces.
+    assert states(-speed, keep_faces=True) is not moving.mean_faces.states

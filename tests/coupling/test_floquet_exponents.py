@@ -121,7 +121,15 @@ def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordi
     ratio = abs(frame.speeds["carrier"] / frame.speed)
     speeds = np.array([1000.0, 1060.0]) / ratio
     exact = system_campbell(frame, speeds, frequency_limit=1.8e4)
-    diagram = system_campbell(still, speeds, frequency_limit=1.2e4)
+    told: list[float] = []
+    diagram = system_campbell(
+        still,
+        speeds,
+        frequency_limit=1.2e4,
+        progress=lambda message, fraction=None: told.append(fraction or 0.0) if "exponents" in message else None,
+    )
+    assert told == sorted(told)
+    assert told[-1] == 1.0
     assert exact.exponents is None
     assert diagram.exponents is not None
     assert diagram.observed is None  # as nothing has a sensor

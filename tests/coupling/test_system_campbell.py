@@ -101,6 +101,28 @@ def test_crossing_is_a_mode_of_the_machine_at_that_speed() -> None:
         assert np.abs(values - one.eigenvalue).min() < 1e-9 * abs(one.eigenvalue)
 
 
+def test_lines_of_one_order_cross_where_the_frequency_is_that_order() -> None:
+    """Two names of one order have the same crossings, and progress goes on to their end."""
+    lines = [ExcitationLine(name, "shaft", 1.0) for name in ("first", "second")]
+    told: list[tuple[str, float | None]] = []
+    diagram = system_campbell(
+        machine(ROUND, 300.0),
+        np.linspace(50.0, TOP, 9),
+        frequency_limit=500.0,
+        lines=lines,
+        progress=lambda message, fraction=None: told.append((message, fraction)),
+    )
+    both = [[(one.speed, one.eigenvalue) for one in diagram.crossings if one.line is line] for line in lines]
+    assert len(both[0]) >= 2
+    assert both[0] == both[1]
+    for speed, value in both[0]:
+        assert value.imag == pytest.approx(speed, rel=1e-10)
+    for message in ("coupled modes over speed", "crossings with excitation orders"):
+        parts = [fraction for words, fraction in told if words == message]
+        assert parts == sorted(parts)
+        assert parts[-1] == 1.0
+
+
 def two(speed: float, tie: float) -> ModesAtSpeed:
     """Squares 1 + s and 2 - s of two frequencies, tied by a weak spring: they meet at s = 1/2."""
     stiffness = np.array([[1.0 + speed, tie], [tie, 2.0 - speed]])

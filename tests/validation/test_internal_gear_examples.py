@@ -1,12 +1,17 @@
-"""Internal gears of published examples: SDP/SI, Elements of Metric Gear Technology, sections 5 and 10.
+"""Internal gears of published examples: SDP/SI, Elements of Metric Gear Technology, sections 5 and 10; a DIN 5480 hub.
 
 Table 5-1 has an internal gear of 24 teeth with a pinion of 16, module 3 mm, 20 degrees, shift coefficients 0 and 0.5
 (outward, so -0.5 after ISO 21771, which gives a ring negative teeth). Equations are repeated here with lengths that are
 positive, as the tables have them. Measures between pins and balls, spans and the contact ratio have no printed example
-of a ring: they are held against the printed equations and against distances from drawn flanks.
+of a ring there: they are held against the printed equations and against distances from drawn flanks, and against other
+programs' prints in ``test_planetary_stage_reports.py``.
+
+A hub with an involute spline is measured as a ring is. DIN 5480-1:2006, figure 6, has the hub N 120 x 3 x 38 x 9H, and
+DIN 5480-2:2006, tables 22 and 23, its nominal dimension; both are quoted in thread 388615 of www.eng-tips.com.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -105,6 +110,25 @@ def test_dimension_between_pins_touches_both_flanks(teeth: int, shift: float) ->
     space = math.pi * MM - 4.0 * MM * shift * math.tan(ALPHA)
     at_pin = math.acos(r * math.cos(ALPHA) / -pins.centre_radius)
     assert inv(at_pin) == pytest.approx(inv(ALPHA) + space / (2.0 * r) - d / (2.0 * r * math.cos(ALPHA)), rel=1e-9)
+
+
+DIN_5480 = "DIN 5480:2006, hub N 120 x 3 x 38 x 9H"
+
+
+def test_hub_of_din_5480(published: Callable[..., None]) -> None:
+    # The reference diameter 120 = m z + 2 x m + 1.1 m sets the shift: x m = 1.35 mm, outward in a hub. The quotations
+    # leave the measuring circle out: 5.25 mm is the one near 1.75 modules that gives the nominal dimension.
+    hub = Gear("hub", -38, 3 * MM, math.radians(30.0), 20 * MM, profile_shift=-0.45, addendum=0.45, dedendum=0.6)
+
+    def between(space_width: float) -> float:
+        return over_balls(replace(hub, tooth_thinning=(space_width - 6.27124) * MM), 5.25 * MM).length / MM
+
+    published(DIN_5480, "dimension between measuring circles, nominal", 109.110, between(6.27124), "mm", abs=0.5e-3)
+    factor = (between(6.28124) - between(6.27124)) / 0.01
+    published(DIN_5480, "change with the space width", 1.72, factor, abs=0.5e-2)
+    # From space widths of three decimals (0.9 um) by the factor 1.72, not by the exact equation (0.7 um).
+    published(DIN_5480, "dimension at the widest space", 109.266, between(6.361), "mm", abs=2.1e-3)
+    published(DIN_5480, "dimension at the narrowest space", 109.169, between(6.305), "mm", abs=1.6e-3)
 
 
 def test_span_of_a_ring_is_over_spaces() -> None:

@@ -3,15 +3,18 @@
 import csv
 import json
 from pathlib import Path
+from shutil import copytree, ignore_patterns
 from typing import Any
 
 import pytest
 
 import gearwhine as gw
+from gearwhine.failures import DamagedResultsError
 from gearwhine.output.export import _csv
+from gearwhine.output.manifest import MANIFEST
 from gearwhine.output.sections import Column, Table
 from gearwhine.results.sweep import sections
-from gearwhine.results_folder import export_results
+from gearwhine.results_folder import export_results, write_report
 
 THIRD = 1.0 / 3.0
 
@@ -148,3 +151,18 @@ def test_a_missed_peak_has_both_speeds_and_what_peaks() -> None:
     assert [row["estimate"] for row in found] == ["right wall 10 m/s²", "L_W 80.0 dB"]
     assert [float(row["level_db"]) for row in found] == [140.0, 80.0]
     assert [row["rms_m_per_s2"] for row in found] == ["10.0", ""]
+
+
+def test_results_of_another_build_are_refused(exported: Path, tmp_path: Path) -> None:
+    """A folder whose documents lack a quantity, as a build of the same version left it, ends in a sentence."""
+    # Without the list of its files, which would tell that one is changed.
+    folder = copytree(exported, tmp_path / "old", ignore=ignore_patterns(MANIFEST, "exports"))
+    for path in folder.rglob("summary.json"):
+        document = json.loads(path.read_text(encoding="utf-8"))
+        for pair in document["pairs"] if document["command"] == "gears" else ():
+            del pair["contact_ratio"]
+        path.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(DamagedResultsError, match=r"a result has no .*another build.*run its command again"):
+        export_results(folder, ("csv",))
+    with pytest.raises(DamagedResultsError, match="a result has no"):
+        write_report(folder)
