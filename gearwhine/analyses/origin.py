@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,6 +14,7 @@ from gearwhine.output.quantity import Fields, joined
 from gearwhine.results.housing import HOUSING, origin_document
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
     from gearwhine.case import Case
@@ -81,5 +83,39 @@ class Origin:
             _files=files,
             _housing=self.housing,
             _options=options,
+            _title=self.title,
+        )
+
+    def study_result(
+        self,
+        command: str,
+        solved: Solved,
+        document: dict[str, Any],
+        dataset: xr.Dataset,
+        figures: Callable[[Progress], Iterable[tuple[str, Figure]]],
+        begun: float,
+        files: Callable[..., Mapping[str, Any]] = no_files,
+    ) -> Result[Solved]:
+        """Return the result of a study of many solutions, whose data file has the name of the command.
+
+        Parameters
+        ----------
+        command, solved, document, figures, files
+            As of :meth:`result`.
+        dataset : xarray.Dataset
+        begun : float
+            Time of the performance counter at which the study began [s].
+        """
+        return Result(
+            command,
+            self.case,
+            solved,
+            {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
+            _arrays=lambda: dataset,
+            _figures=figures,
+            _files=files,
+            _housing=self.housing,
+            _data_file=f"{command}.nc",
+            _started=begun,
             _title=self.title,
         )
