@@ -1008,15 +1008,12 @@ class CaseStudy(Study):
 
         return assumed_mesh_damping(self.case.gear_pair)
 
-    def _diagram_speeds(self) -> tuple[float, ...]:
-        from gearwhine.case.analysis_speeds import diagram_speeds
+    def _no_speeds(self, attribute: str, expected: str) -> Exception:
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.case.errors import UNSAID
 
-        return diagram_speeds(self.machine.speed, self.case.sweep, self._held_speeds())
-
-    def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        from gearwhine.case.analysis_speeds import branch_speeds
-
-        return branch_speeds(self.machine.speed, self.case.sweep, self._held_speeds(), downwards=down)
+        key = {"speed": "operation.speed", "speeds": "sweep.speed", "bearings": "bearing"}[attribute]
+        return CaseError([Problem(key, UNSAID, expected)])
 
 
 def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:
