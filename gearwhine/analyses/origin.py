@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearwhine.analyses.result import Result, no_figures, no_files
@@ -58,6 +58,7 @@ class Origin:
         figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = no_figures,
         files: Callable[..., Mapping[str, Any]] = no_files,
         options: tuple[Sequence[Option], Sequence[str]] = ((), ()),
+        data_file: str = "results.nc",
     ) -> Result[Solved]:
         """Return the result of an analysis.
 
@@ -69,19 +70,25 @@ class Origin:
             Its solution.
         document : dict
         *arrays : tuple
-            Declarations of quantities, each with the object that they are of, for its file beside those of the housing.
-        figures, files, options
+            Declarations of quantities, each with the object that they are of, for its file; without any it has none.
+            Beside them stand those of the housing, in a file of the usual name.
+        figures, files, options, data_file
             As the fields of :class:`gearwhine.analyses.result.Result`.
         """
+        of_housing: tuple[tuple[Fields, Any], ...] = ((HOUSING, self.housing),)
+        labels = self.labels
+        if data_file != "results.nc":
+            of_housing, labels = (), replace(labels, speed=None)
         return Result(
             command,
             self.case,
             solved,
             joined(document, origin_document(self.housing)),
-            _arrays=lambda: labelled(self.labels, (HOUSING, self.housing), *arrays),
+            _arrays=(lambda: labelled(labels, *of_housing, *arrays)) if arrays else None,
             _figures=figures,
             _files=files,
             _housing=self.housing,
+            _data_file=data_file,
             _options=options,
             _title=self.title,
         )
