@@ -29,7 +29,7 @@ from gearwhine.detection.samples import Design, DetectionCase, detection_design
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.results.detection import detection_dataset, detection_document
+from gearwhine.results.detection import DETECTION, detection_document
 from gearwhine.solve.machine import plan_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
@@ -183,9 +183,8 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
 
         return draw_detection(case.title, result)
 
-    document, dataset = detection_document(result), detection_dataset(result, case.title)
     origin = Origin(case.title, case=case, housing=housing)
-    return origin.study_result("detect", result, document, dataset, figures, start)
+    return origin.study_result("detect", result, detection_document(result), DETECTION, figures, start)
 
 
 def _observations(

@@ -42,7 +42,7 @@ from gearwhine.optimisation.goals import Goals, goals_of
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
-from gearwhine.results.optimisation import optimised_dataset, optimised_document
+from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solve.machine import plan_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import varied_inputs
@@ -501,5 +501,5 @@ def _result(
 
         return draw_optimisation(origin.title, optimised)
 
-    dataset = optimised_dataset(optimised, origin.title)
-    return origin.study_result("optimise", optimised, optimised_document(optimised), dataset, figures, begin, files)
+    document = optimised_document(optimised)
+    return origin.study_result("optimise", optimised, document, OPTIMISED, figures, begin, files)

@@ -98,7 +98,7 @@ class Origin:
         command: str,
         solved: Solved,
         document: dict[str, Any],
-        dataset: xr.Dataset,
+        arrays: Callable[[], xr.Dataset] | Fields,
         figures: Callable[[Progress], Iterable[tuple[str, Figure]]],
         begun: float,
         files: Callable[..., Mapping[str, Any]] = no_files,
@@ -109,7 +109,8 @@ class Origin:
         ----------
         command, solved, document, figures, files
             As of :meth:`result`.
-        dataset : xarray.Dataset
+        arrays : callable or tuple of Quantity, Part or Rows
+            Returns the dataset; or the quantities of the solution, which are declared.
         begun : float
             Time of the performance counter at which the study began [s].
         """
@@ -118,7 +119,9 @@ class Origin:
             self.case,
             solved,
             {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
-            _arrays=lambda: dataset,
+            _arrays=arrays
+            if callable(arrays)
+            else lambda: labelled(replace(self.labels, speed=None), (arrays, solved)),
             _figures=figures,
             _files=files,
             _housing=self.housing,

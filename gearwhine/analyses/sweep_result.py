@@ -107,4 +107,4 @@ def _result(
 
         return draw_sweep(origin.title, dataset)
 
-    return origin.study_result("sweep", swept, document, dataset, figures, start)
+    return origin.study_result("sweep", swept, document, lambda: dataset, figures, start)

@@ -27,7 +27,7 @@ from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems
-from gearwhine.results.variation import varied_dataset, varied_document
+from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.study_folder import StudyFolder
@@ -356,5 +356,4 @@ def _result(
 
         return draw_variation(origin.title, result)
 
-    dataset = varied_dataset(result, origin.title)
-    return origin.study_result("vary", result, varied_document(result), dataset, figures, start, files)
+    return origin.study_result("vary", result, varied_document(result), VARIED, figures, start, files)
