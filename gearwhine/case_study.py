@@ -8,13 +8,14 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
 
 from gearwhine.numerics.findings import Number
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.studied_machine import Settings
 from gearwhine.study import Study, require_either
+from gearwhine.study_folder import FolderOptions, StudyFolder
 from gearwhine.view_names import GearPart, View
 
 if TYPE_CHECKING:
@@ -621,13 +622,7 @@ class CaseStudy(Study):
             return sound_result(housing, chosen, self.origin, machine, warnings, self.progress)
 
     def sweep(  # type: ignore[override]  # a case is swept over its keys, with files and workers
-        self,
-        over: Sequence[str] = (),
-        *,
-        folder: str | os.PathLike[str],
-        workers: Annotated[int | None, _AtLeastOne] = None,
-        scheduler: str | None = None,
-        fresh: bool = False,
+        self, over: Sequence[str] = (), **options: Unpack[FolderOptions]
     ) -> "Result[Sequence[SweptPoint]]":
         """Parallel transients over the speeds of [sweep] or over any keys; a sweep in the same folder is resumed.
 
@@ -636,14 +631,8 @@ class CaseStudy(Study):
         over : sequence of str
             Vary a key: key.path=from:to:n or key.path=a,b,c, such as operation.torque='10 N*m:100 N*m:10'. Repeated,
             the keys and the speeds of [sweep] form a grid.
-        folder : path
-            Folder of the points; those that it holds already are not solved again.
-        workers : int, optional
-            Number of processes (default: number of cores).
-        scheduler : str, optional
-            Address of a running Dask scheduler; its workers replace the local ones.
-        fresh : bool
-            Solve again the points and modes that the folder holds.
+        **options
+            See :class:`gearwhine.study_folder.FolderOptions`.
 
         Raises
         ------
@@ -655,17 +644,7 @@ class CaseStudy(Study):
         from gearwhine.analyses.sweep_result import solve_sweep
         from gearwhine.case import swept_keys
 
-        keys = swept_keys(self.case, over)
-        return solve_sweep(
-            self.origin,
-            self._source,
-            keys,
-            Path(folder),
-            workers=workers,
-            scheduler=scheduler,
-            fresh=fresh or self.fresh,
-            progress=self.progress,
-        )
+        return solve_sweep(self.origin, self._source, swept_keys(self.case, over), self._study_folder(**options))
 
     def vary(
         self,
@@ -674,10 +653,7 @@ class CaseStudy(Study):
         indices: bool = False,
         widen: float | None = None,
         seed: Annotated[int | None, _NotNegative] = None,
-        folder: str | os.PathLike[str],
-        workers: Annotated[int | None, _AtLeastOne] = None,
-        scheduler: str | None = None,
-        fresh: bool = False,
+        **options: Unpack[FolderOptions],
     ) -> "Result[VariedResult]":
         """Many gearboxes as production makes them, by the distributions of [variation]: scatter, causes and yield.
 
@@ -695,14 +671,8 @@ class CaseStudy(Study):
             a class of ISO 1328. Of d inputs and n samples, n (d + 1) gearboxes are solved.
         seed : int, optional
             Seed of the samples (default: that of [variation]).
-        folder : path
-            Folder of the samples; those that it holds already are not solved again.
-        workers : int, optional
-            Number of processes (default: number of cores).
-        scheduler : str, optional
-            Address of a running Dask scheduler; its workers replace the local ones.
-        fresh : bool
-            Solve again the samples and modes that the folder holds.
+        **options
+            See :class:`gearwhine.study_folder.FolderOptions`.
 
         Raises
         ------
@@ -716,25 +686,14 @@ class CaseStudy(Study):
         return solve_variation(
             self.case,
             self._source,
-            Path(folder),
+            self._study_folder(**options),
             samples=samples,
             indices=indices,
             widen=widen,
             seed=seed,
-            workers=workers,
-            scheduler=scheduler,
-            fresh=fresh or self.fresh,
-            progress=self.progress,
         )
 
-    def detect(
-        self,
-        *,
-        folder: str | os.PathLike[str],
-        workers: Annotated[int | None, _AtLeastOne] = None,
-        scheduler: str | None = None,
-        fresh: bool = False,
-    ) -> "Result[DetectionResult]":
+    def detect(self, **options: Unpack[FolderOptions]) -> "Result[DetectionResult]":
         """Which sensor sees the fault of [detection] by which indicator, and from which size on, with what probability.
 
         Healthy gearboxes give the threshold, those with the fault the probability of detection. A study in the same
@@ -742,14 +701,8 @@ class CaseStudy(Study):
 
         Parameters
         ----------
-        folder : path
-            Folder of the gearboxes; those that it holds already are not solved again.
-        workers : int, optional
-            Number of processes (default: number of cores).
-        scheduler : str, optional
-            Address of a running Dask scheduler; its workers replace the local ones.
-        fresh : bool
-            Solve again the gearboxes and modes that the folder holds.
+        **options
+            See :class:`gearwhine.study_folder.FolderOptions`.
 
         Raises
         ------
@@ -763,14 +716,7 @@ class CaseStudy(Study):
         """
         from gearwhine.analyses.detection_result import solve_detection
 
-        return solve_detection(
-            self._source,
-            Path(folder),
-            workers=workers,
-            scheduler=scheduler,
-            fresh=fresh or self.fresh,
-            progress=self.progress,
-        )
+        return solve_detection(self._source, self._study_folder(**options))
 
     def optimise(
         self,
@@ -778,10 +724,7 @@ class CaseStudy(Study):
         *,
         method: Literal["search", "grid"] | None = None,
         seed: Annotated[int | None, _NotNegative] = None,
-        folder: str | os.PathLike[str],
-        workers: Annotated[int | None, _AtLeastOne] = None,
-        scheduler: str | None = None,
-        fresh: bool = False,
+        **options: Unpack[FolderOptions],
     ) -> "Result[Optimised]":
         """Which design is best, by the keys, aims and limits of [optimisation]; several aims have a Pareto front.
 
@@ -795,14 +738,8 @@ class CaseStudy(Study):
             Search, or every combination of values and levels (default: that of [optimisation]).
         seed : int, optional
             Seed of the search (default: that of [optimisation]).
-        folder : path
-            Folder of the designs; those that it holds already are not solved again.
-        workers : int, optional
-            Number of processes (default: number of cores).
-        scheduler : str, optional
-            Address of a running Dask scheduler; its workers replace the local ones.
-        fresh : bool
-            Solve again the designs and modes that the folder holds.
+        **options
+            See :class:`gearwhine.study_folder.FolderOptions`.
 
         Raises
         ------
@@ -817,14 +754,10 @@ class CaseStudy(Study):
 
         return solve_optimisation(
             self._source,
-            Path(folder),
+            self._study_folder(**options),
             evaluations=evaluations,
             method=method,
             seed=seed,
-            workers=workers,
-            scheduler=scheduler,
-            fresh=fresh or self.fresh,
-            progress=self.progress,
         )
 
     def export(
@@ -889,6 +822,16 @@ class CaseStudy(Study):
         housing = self._required_housing("export --reduced")
         component = component_of_housing(housing, participates=False, with_coarser=False)
         return export_reduced(self.case.title, component, Path(file))
+
+    def _study_folder(
+        self,
+        *,
+        folder: str | os.PathLike[str],
+        workers: int | None = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> StudyFolder:
+        return StudyFolder(Path(folder), workers, scheduler, fresh or self.fresh, self.progress)
 
     # What the analyses of a machine ask of its study, as the case has it.
 
@@ -1064,15 +1007,12 @@ class CaseStudy(Study):
 
         return assumed_mesh_damping(self.case.gear_pair)
 
-    def _diagram_speeds(self) -> tuple[float, ...]:
-        from gearwhine.case.analysis_speeds import diagram_speeds
+    def _no_speeds(self, attribute: str, expected: str) -> Exception:
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.case.errors import UNSAID
 
-        return diagram_speeds(self.machine.speed, self.case.sweep, self._held_speeds())
-
-    def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        from gearwhine.case.analysis_speeds import branch_speeds
-
-        return branch_speeds(self.machine.speed, self.case.sweep, self._held_speeds(), downwards=down)
+        key = {"speed": "operation.speed", "speeds": "sweep.speed", "bearings": "bearing"}[attribute]
+        return CaseError([Problem(key, UNSAID, expected)])
 
 
 def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:

@@ -286,34 +286,19 @@ class StudiedMachine:
         return ()
 
     def _diagram_speeds(self) -> tuple[float, ...]:
-        """Return the signed speeds of a diagram of the machine [rad/s], ascending in size.
-
-        Raises
-        ------
-        gearwhine.coupling.CouplingError
-            For a machine at rest, one speed alone, or bearings whose tables leave no range.
-        """
-        from gearwhine.coupling import CouplingError
+        """Return the signed speeds of a diagram [rad/s], ascending in size: the settings', else up beyond operation."""
         from gearwhine.numerics.speed_ranges import campbell_speeds
 
         if self.machine.speed == 0.0:
-            raise CouplingError("speed is 0; expected a machine that turns, for a diagram over speed")
-        chosen = tuple(sorted(self.settings.speeds, key=abs))
+            raise self._no_speeds("speed", "a speed: a diagram over speed is of a machine that turns")
+        chosen = tuple(sorted(set(self.settings.speeds), key=abs))
         speeds = chosen or campbell_speeds(self.machine.speed, self._held_speeds())
-        if len(set(speeds)) < 2:
-            source = "in the settings" if chosen else "that the tables of all bearings hold"
-            raise CouplingError(f"a diagram over speed: expected two or more speeds {source}, got {len(set(speeds))}")
+        if len(speeds) < 2:
+            raise self._no_speeds("speeds" if chosen else "bearings", "two or more speeds for a diagram over speed")
         return speeds
 
     def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        """Return the signed speeds from which and to which a motion is followed [rad/s].
-
-        Raises
-        ------
-        gearwhine.coupling.CouplingError
-            Where the settings, or the tables of the bearings, hold no range of speeds above zero in one sense.
-        """
-        from gearwhine.coupling import CouplingError
+        """Return the signed speeds from which and to which a motion is followed [rad/s], by default about operation."""
         from gearwhine.numerics.speed_ranges import BEYOND_OPERATION, SLOWEST_OF_BRANCH
 
         low, high = self._held_speeds()
@@ -323,9 +308,16 @@ class StudiedMachine:
             speeds = [sense * max(SLOWEST_OF_BRANCH * size, low), sense * min(BEYOND_OPERATION * size, high)]
         first, last = speeds[0], speeds[-1]
         if not 0.0 < abs(first) < abs(last) or min(speeds) * max(speeds) <= 0.0:
-            given = "the settings" if self.settings.speeds else "the tables of the bearings"
-            raise CouplingError(f"a branch over speed: expected a range of speeds above zero, of one sense, in {given}")
+            expected = "a range of speeds above zero, of one sense, over which a motion is followed"
+            raise self._no_speeds("speeds" if self.settings.speeds else "bearings", expected)
         return (last, first) if down else (first, last)
+
+    def _no_speeds(self, attribute: str, expected: str) -> Exception:
+        """Return the refusal of an analysis over speed; its speeds follow from the attribute."""
+        from gearwhine.coupling import CouplingError
+
+        where = {"speeds": "the speeds of the settings", "bearings": "the tables of the bearings"}
+        return CouplingError(f"{where.get(attribute, attribute)}: expected {expected}")
 
     def _held_speeds(self) -> tuple[float, float]:
         """Return the range of speeds of the first shaft, without sense, that the bearings' tables hold [rad/s]."""

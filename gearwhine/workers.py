@@ -15,16 +15,20 @@ from multiprocessing import resource_tracker
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import in_thread, uninterrupted
 from gearwhine.numerics.source_digest import source_digest
+from gearwhine.output import staging
 from gearwhine.output.files import PRESENTATION, ROOMS
+from gearwhine.study_folder import StudyFolder
 
 if TYPE_CHECKING:
-    from distributed import Client, LocalCluster, WorkerPlugin
+    from distributed import Client, Future, LocalCluster, WorkerPlugin
+
+Task = TypeVar("Task")
 
 # Every worker is one thread: BLAS and factorisations with threads of their own on top cost more than they give.
 _ONE_THREAD = dict.fromkeys(
@@ -127,6 +131,50 @@ def await_workers(client: Client, workers: int) -> None:
         in_thread(lambda: client.wait_for_workers(workers, timeout=_WORKERS_COME))
     except TimeoutError as error:
         raise WorkersError(f"the workers did not start: {error}") from error
+
+
+@contextmanager
+def called(folder: StudyFolder, workers: int) -> Iterator[Client]:
+    """Yield a client of the workers of a study, once they are there; see :func:`connected`."""
+    folder.progress(f"starting {workers} workers" if folder.scheduler is None else f"calling {folder.scheduler}")
+    with staging(folder.path) as place, connected(workers, folder.scheduler, place) as client:
+        if folder.scheduler is None:
+            await_workers(client, workers)
+        yield client
+
+
+def as_they_end(client: Client, futures: dict[Future[Any], Task], kind: str) -> Iterator[tuple[Task, Any]]:
+    """Yield the task of each future with its result, or the error in its place, as they come.
+
+    Parameters
+    ----------
+    client : Client
+    futures : dict
+        Tasks by their futures, which is emptied.
+    kind : str
+        Kind of the tasks, in a word.
+
+    Raises
+    ------
+    WorkersError
+        Where all workers are lost; where those at one task died, the error stands in place of its result.
+    """
+    from distributed import KilledWorker, as_completed
+
+    for future in as_completed(list(futures), loop=client.loop):
+        task = futures.pop(future)
+        error = future.exception() if future.status == "error" else None
+        if isinstance(error, KilledWorker):
+            died = f"the worker at this {kind} died again and again, perhaps for want of memory; try fewer --workers"
+            yield task, WorkersError(died)
+        elif error is not None:
+            yield task, error
+        elif future.cancelled():
+            raise WorkersError(f"the workers were lost; run the study again to do the {kind}s that are missing")
+        else:
+            yield task, future.result()
+        # Results need not stay in the workers' memory.
+        future.release()
 
 
 @contextmanager

@@ -70,18 +70,23 @@ class TakenMisalignment:
 
 
 def taken_misalignments(
-    machine: Machine, point: OperatingPoint | None, aligned_by_default: Collection[str] = ()
+    pairs: Sequence[GearPair],
+    point: OperatingPoint | None,
+    aligned_by_default: Collection[str] = (),
+    *,
+    is_sought: bool = True,
 ) -> tuple[TakenMisalignment, ...]:
     """Misalignment of every gear pair of a machine, beside that of its operating point where it is solved.
 
-    ``aligned_by_default`` are the labels of pairs that are aligned because nothing is said of their misalignment.
+    ``aligned_by_default`` are the labels of pairs that are aligned because nothing is said of their misalignment, and
+    ``is_sought`` is false before the point is sought: flanks that are left to it are not yet taken as aligned.
     """
     misalignments = []
-    for number, pair in enumerate(machine.gear_pairs):
+    for number, pair in enumerate(pairs):
         found = None if point is None or not point.pairs else point.pairs[number].misalignment
         if pair.misalignment is not None and pair.label not in aligned_by_default:
             misalignments.append(TakenMisalignment(pair.misalignment, "case", found))
-        elif pair.misalignment is None and found is not None:
+        elif pair.misalignment is None and not (is_sought and found is None):
             misalignments.append(TakenMisalignment(found, "operating point", found))
         else:
             misalignments.append(TakenMisalignment(0.0, "default", found))
@@ -322,7 +327,7 @@ def analyse_machine(
     ``pairs`` are those of the machine about that point, where they are loaded already.
     """
     pairs = machine.with_flanks_of(point).loaded_pairs(progress) if pairs is None else pairs
-    rows = zip(pairs, taken_misalignments(machine, point), machine.train.force_origins, strict=True)
+    rows = zip(pairs, taken_misalignments(machine.gear_pairs, point), machine.train.force_origins, strict=True)
     return tuple(replace(analyse_pair(pair, misalignment), force_origin=origin) for pair, misalignment, origin in rows)
 
 

@@ -234,7 +234,7 @@ def solve_load(
         )
         for bearing in point.bearings
     )
-    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine, point, aligned_by_default)))
+    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine.gear_pairs, point, aligned_by_default)))
     if over_hunting_period:
         pairs = tuple(
             replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)

@@ -6,13 +6,13 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
+from gearwhine.analyses.variation_result import in_solved_housing, sampled_points
 from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, require
 from gearwhine.case.bearings import Bearing
 from gearwhine.case.detection import MOST_GEARBOXES, Detection
@@ -27,16 +27,13 @@ from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.gears import GearError
 from gearwhine.detection.detectability import DetectionResult, Monitor, Observation, detected_parts
 from gearwhine.detection.samples import Design, DetectionCase, detection_design
-from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.distributions import correlated
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.sampling import sobol_points
-from gearwhine.results.detection import detection_dataset, detection_document
+from gearwhine.results.detection import DETECTION, detection_document
 from gearwhine.rotors.rolling_bearings import RollingSpall
-from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import plan_of, reduce_housing
+from gearwhine.solve.machine import plan_of
+from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
 from gearwhine.variation.quantities import Evaluation, Wanted
 from gearwhine.variation.run import run_samples
@@ -117,8 +114,7 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     bearing, spall = _spall(case, settings)
     beside = [one.name for one in case.gear if bearing is not None and one.rotor == bearing.rotor]
     gear = _gear(list(shafts), next(iter(beside), case.gear_pair[0].driver), settings)
-    plain = replace(source, written={key: table for key, table in source.written.items() if key not in _OWN})
-    plain = replace(plain, changes=tuple(text for text in source.changes if text.partition(".")[0] not in _OWN))
+    plain = source.without("detection", "variation")
     _require_severities(plain, settings, without)
     _require_turns(plan_of(case), shafts[gear] or "", case.parts.train.ratios)
     monitor = Monitor(
@@ -136,9 +132,6 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor, struck)
 
 
-_OWN = ("detection", "variation")
-
-
 def _indicators(settings: Detection, *, of_bearing: bool) -> tuple[str, ...]:
     """Return the indicators by default: of a bearing, whose strikes no average keeps, those of the signal."""
     if of_bearing:
@@ -146,27 +139,14 @@ def _indicators(settings: Detection, *, of_bearing: bool) -> tuple[str, ...]:
     return tuple(INDICATORS) if settings.baseline == "own" else OF_ONE_RECORD
 
 
-def solve_detection(
-    source: CaseSource,
-    folder: Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
-) -> Result[DetectionResult]:
+def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[DetectionResult]:
     """Solve the gearboxes of a detection study, and find where its fault is seen.
 
     Parameters
     ----------
     source : CaseSource
         Content that the case with its detection study is made of.
-    folder : path
-        Folder of the samples; those that it holds already are not solved again.
-    workers, scheduler
-        As of :meth:`gearwhine.case_study.CaseStudy.detect`.
-    fresh : bool
-    progress : callable
+    folder : StudyFolder
 
     Raises
     ------
@@ -181,12 +161,7 @@ def solve_detection(
     planned = plan_detection(source)
     case, settings, monitor = planned.case, planned.settings, planned.monitor
     varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
-    housing = None
-    if case.housing is not None:
-        housing = solve_housing(case, progress, command="detect", folder=folder, fresh=fresh)
-        varied = replace(
-            varied, housing=reduce_housing(case, housing), housing_key=housing_key(given_housing(case, "detect"))
-        )
+    varied, housing = in_solved_housing(varied, case, folder, "detect")
     written = {size: _text(value) for size, value in zip(settings.sizes, settings.severities, strict=True)}
     study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear, planned.spall)
     # Gearboxes that are all alike have one record, and as many noises.
@@ -196,13 +171,13 @@ def solve_detection(
     between = planned.between if is_varied and monitor.has_own_baseline else None
     design = detection_design(cube, settings.sizes, healthy, faulty, between)
     points = design.points
-    progress("the gearbox without the fault")
-    first = run_samples(study, points[:1], folder, workers=1, fresh=fresh, place=FOLDER, progress=silent)
+    folder.progress("the gearbox without the fault")
+    first = run_samples(study, points[:1], replace(folder, workers=1, scheduler=None, progress=silent), FOLDER)
     if isinstance(reference := first.outcomes[0], Failure):
         raise CouplingError(f"the gearbox without the fault: {reference.message}")
-    solved = run_samples(study, points, folder, progress, workers=workers, scheduler=scheduler, place=FOLDER)
+    solved = run_samples(study, points, replace(folder, fresh=False), FOLDER)
     outcomes = solved.outcomes
-    progress("thresholds and probabilities of detection")
+    folder.progress("thresholds and probabilities of detection")
     parts = detected_parts(monitor, list(_observations(design, outcomes, settings, is_varied=is_varied)))
     result = DetectionResult(
         fault=settings.fault,
@@ -217,7 +192,14 @@ def solve_detection(
         samples=len(points),
         resumed=solved.resumed - (0 if first.resumed else 1),
     )
-    return _result(Origin(case.title, case=case, housing=housing), result, start)
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures.detection import draw_detection
+
+        return draw_detection(case.title, result)
+
+    origin = Origin(case.title, case=case, housing=housing)
+    return origin.study_result("detect", result, detection_document(result), DETECTION, figures, start)
 
 
 def _observations(
@@ -233,39 +215,13 @@ def _observations(
                 yield Observation(found, earlier, size, noise)
 
 
-def _result(origin: Origin, result: DetectionResult, start: float) -> Result[DetectionResult]:
-    document = {"title": origin.title} | detection_document(result)
-    document["seconds"] = {"total": time.perf_counter() - start}
-    dataset = detection_dataset(result, origin.title)
-
-    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
-        from gearwhine.figures.detection import draw_detection
-
-        return draw_detection(origin.title, result)
-
-    return Result(
-        "detect",
-        origin.case,
-        result,
-        document,
-        _arrays=lambda: dataset,
-        _figures=figures,
-        _data_file="detect.nc",
-        _housing=origin.housing,
-        _started=start,
-        _title=origin.title,
-    )
-
-
 def _cube(planned: PlannedDetection, count: int) -> FloatArray:
     """Return a point of the unit cube for each gearbox, shape (n, d)."""
     if count > MOST_GEARBOXES:
         raise CaseError([Problem("detection.faulty", planned.settings.faulty, f"{MOST_GEARBOXES} gearboxes in all")])
     if not planned.inputs:
         return np.empty((count, 0))
-    correlation = correlation_matrix(planned.inputs, planned.variation)
-    points = sobol_points(count, len(planned.inputs), planned.settings.seed)
-    return points if correlation is None else correlated(points, correlation)
+    return sampled_points(planned.inputs, planned.variation, count, planned.settings.seed)
 
 
 def _text(written: str | float) -> str:

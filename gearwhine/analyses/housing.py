@@ -1,6 +1,7 @@
 """Analyses of the housing: its mesh, its natural modes, and these beside measured ones."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,14 +14,15 @@ from gearwhine.from_case.mesh import build_mesh, material_of
 from gearwhine.from_case.mesh_health import allowed_defects
 from gearwhine.housing import HousingError, HousingModes
 from gearwhine.housing.correlation.comparison import Comparison
+from gearwhine.housing.measured import MeasuredGeometry
 from gearwhine.housing.modal_test import ComparedTest, PlannedSurvey, ResponseCorrelation, comparison_warnings
 from gearwhine.housing.model_warnings import defect_warnings, resolution_warnings
 from gearwhine.meshes import Mesh
 from gearwhine.mode_pictures import ModeFormat, draw_lines, draw_measured, draw_modes
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.quantity import add_warnings, joined
+from gearwhine.output.quantity import add_warnings
 from gearwhine.results.comparison import (
     COMPARISON,
     comparison_document,
@@ -86,16 +88,8 @@ def modes_result(housing: HousingModes, origin: Origin, *, detail: bool = False)
         write_shapes(place / "modes.vtu", housing)
         return {}
 
-    return Result(
-        "modes",
-        origin.case,
-        housing,
-        modes_document(housing, detail=detail),
-        _arrays=lambda: labelled(origin.labels, (HOUSING, housing)),
-        _files=files,
-        _housing=housing,
-        _title=origin.title,
-    )
+    document = modes_document(housing, detail=detail)
+    return replace(origin, housing=housing).result("modes", housing, document, (HOUSING, housing), files=files)
 
 
 def compare_result(housing: HousingModes, compared: ComparedTest, origin: Origin) -> Result[Comparison]:
@@ -107,6 +101,32 @@ def compare_result(housing: HousingModes, compared: ComparedTest, origin: Origin
     document |= {} if likeness is None else {"responses": responses_document(likeness)}
     add_warnings(document, comparison_warnings(comparison, housing.modes, compared.test.modes))
     geometry = None if survey is None else survey.geometry
+    origin = replace(origin, housing=housing)
+    return comparison_result(origin, comparison, document, housing.modes.frequencies, geometry, likeness)
+
+
+def comparison_result(
+    origin: Origin,
+    comparison: Comparison,
+    document: dict[str, Any],
+    frequencies: FloatArray,
+    geometry: MeasuredGeometry | None,
+    likeness: ResponseCorrelation | str | None = None,
+) -> Result[Comparison]:
+    """Return the result of measured modes beside those of a housing.
+
+    Parameters
+    ----------
+    origin : Origin
+    comparison : Comparison
+    document : dict
+    frequencies : ndarray, shape (n,)
+        Circular frequencies of the housing's modes [rad/s].
+    geometry : MeasuredGeometry or None
+        Geometry of the survey.
+    likeness : ResponseCorrelation or str, optional
+        Correlation of the responses, which is written as a table, or the reason why there is none.
+    """
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_comparison(place, comparison, geometry)
@@ -117,20 +137,10 @@ def compare_result(housing: HousingModes, compared: ComparedTest, origin: Origin
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_comparison_figures
 
-        return draw_comparison_figures(origin.title, comparison, housing.modes.frequencies, geometry)
+        return draw_comparison_figures(origin.title, comparison, frequencies, geometry)
 
-    return Result(
-        "compare",
-        origin.case,
-        comparison,
-        joined(document, origin_document(housing)),
-        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(origin.labels)),
-        _figures=figures,
-        _files=files,
-        _housing=housing,
-        _data_file="comparison.nc",
-        _title=origin.title,
-    )
+    arrays, data_file = (COMPARISON, comparison), "comparison.nc"
+    return origin.result("compare", comparison, document, arrays, figures=figures, files=files, data_file=data_file)
 
 
 def survey_result(housing: HousingModes, planned: PlannedSurvey, origin: Origin) -> Result[PlannedSurvey]:
@@ -141,15 +151,7 @@ def survey_result(housing: HousingModes, planned: PlannedSurvey, origin: Origin)
         write_plan(place, planned)
         return {}
 
-    return Result(
-        "survey",
-        origin.case,
-        planned,
-        plan_document(planned, housing),
-        _files=files,
-        _housing=housing,
-        _title=origin.title,
-    )
+    return replace(origin, housing=housing).result("survey", planned, plan_document(planned, housing), files=files)
 
 
 def update(

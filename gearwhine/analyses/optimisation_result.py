@@ -13,21 +13,19 @@ import numpy as np
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
-from gearwhine.analyses.variation_result import wanted_of
+from gearwhine.analyses.variation_result import in_solved_housing, limits_of, sampled_points, wanted_of
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
 from gearwhine.case.errors import NOTHING, UNSAID
 from gearwhine.case.model import lacking
 from gearwhine.case.optimisation import Aim, Method, Optimisation, Robust
 from gearwhine.case.units import si_amount
-from gearwhine.case.variation import Limit, Variation
+from gearwhine.case.variation import Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.failures import explain
-from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.distributions import Discrete, Uniform, correlated
+from gearwhine.numerics.distributions import Discrete, Uniform
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.sampling import sobol_points
 from gearwhine.optimisation.design import (
     AS_WRITTEN,
     DesignInput,
@@ -44,10 +42,10 @@ from gearwhine.optimisation.goals import Goals, goals_of
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
-from gearwhine.results.optimisation import optimised_dataset, optimised_document
-from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import plan_of, reduce_housing
-from gearwhine.variation.inputs import correlation_matrix, varied_inputs
+from gearwhine.results.optimisation import OPTIMISED, optimised_document
+from gearwhine.solve.machine import plan_of
+from gearwhine.study_folder import StudyFolder
+from gearwhine.variation.inputs import varied_inputs
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.samples import Failure, outcome_of
 
@@ -61,15 +59,11 @@ MOST_GRID = 100_000
 
 def solve_optimisation(
     source: CaseSource,
-    folder: Path,
+    folder: StudyFolder,
     *,
     evaluations: int | None = None,
     method: Method | None = None,
     seed: int | None = None,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
 ) -> Result[Optimised]:
     """Find the best designs of a case, with the designs of a generation in parallel.
 
@@ -77,13 +71,9 @@ def solve_optimisation(
     ----------
     source : CaseSource
         Content of the case with its optimisation, from which the designs are made, too.
-    folder : path
-        Folder of the evaluations; those that it holds already are not solved again.
-    evaluations, method, seed, workers, scheduler
+    folder : StudyFolder
+    evaluations, method, seed
         As of :meth:`gearwhine.case_study.CaseStudy.optimise`.
-    fresh : bool
-        Whether to solve all anew.
-    progress : callable
 
     Raises
     ------
@@ -107,22 +97,18 @@ def solve_optimisation(
     )
     settings.require_library(optimisation.aim)
     inputs = design_inputs(source, optimisation)
-    plain = replace(source, written=_without(source.written), changes=tuple(filter(_is_kept, source.changes)))
+    plain = source.without("variation", "optimisation")
     require_values(plain, inputs)
     variation = None if optimisation.robust is None else case.variation
     scatter = _scatter(optimisation.robust, variation, plain, inputs)
     wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
-    housing = None
-    if case.housing is not None and case.rotor:
-        housing = solve_housing(case, progress, command="optimise", folder=folder, fresh=fresh)
-        key = housing_key(given_housing(case, "optimise"))
-        proposed = replace(proposed, housing=reduce_housing(case, housing), housing_key=key)
-    progress("the case as it is written")
+    proposed, housing = in_solved_housing(proposed, case, folder, "optimise")
+    folder.progress("the case as it is written")
     nominal = proposed.evaluation(proposed.case(None))
     goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)
     coordinates = start_point(plain, inputs)
-    evaluated = Evaluations(proposed, folder, workers, scheduler, fresh=fresh, progress=progress)
+    evaluated = Evaluations(proposed, folder)
 
     def tried(points: FloatArray, to_come: int) -> list[Design]:
         rows = np.vstack([_with_scatter(point, scatter) for point in points])
@@ -136,7 +122,7 @@ def solve_optimisation(
 
     with evaluated.opened():
         (start,) = tried(np.full((1, len(inputs)), AS_WRITTEN), 0)
-        designs, ended = _searched(inputs, goals, settings, coordinates, tried, progress)
+        designs, ended = _searched(inputs, goals, settings, coordinates, tried, folder.progress)
     document = case_document(plain.changed_case())
     optimised = Optimised(
         inputs=inputs,
@@ -150,7 +136,7 @@ def solve_optimisation(
         resumed=evaluated.resumed,
     )
     if optimisation.verify:
-        optimised = replace(optimised, verification=_verification(proposed, optimised, progress))
+        optimised = replace(optimised, verification=_verification(proposed, optimised, folder.progress))
     origin = Origin(case.title, case=case, housing=housing)
 
     def design_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
@@ -242,12 +228,7 @@ def optimise(
     _require_values(laws, levels)
     named = tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
     senses = _senses(aims)
-    try:
-        ranges = {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
-    except (TypeError, ValueError) as error:
-        raise CouplingError(
-            f"optimise: limits of {limits}; expected a least and a largest value, or None, each"
-        ) from error
+    ranges = limits_of("optimise", limits)
     if analyses is None:
         analyses = tuple(dict.fromkeys(filter(None, map(analysis_of, [*senses, *ranges]))))
     if unknown := [name for name in analyses if name not in ANALYSES]:
@@ -406,19 +387,7 @@ def _scatter(
         expected = "distributions of keys under [variation.vary], by which gearboxes scatter about each design"
         raise CaseError([Problem("variation", NOTHING, expected)])
     require_scatter(inputs, source, variation)
-    varied = varied_inputs(source, variation)
-    points = sobol_points(robust.samples, len(varied), variation.seed)
-    correlation = correlation_matrix(varied, variation)
-    return points if correlation is None else correlated(points, correlation)
-
-
-def _without(written: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables of a case without those that a design does not have."""
-    return {key: table for key, table in written.items() if key not in ("variation", "optimisation")}
-
-
-def _is_kept(change: str) -> bool:
-    return not change.startswith(("variation.", "optimisation."))
+    return sampled_points(varied_inputs(source, variation), variation, robust.samples, variation.seed)
 
 
 def _shown(one: DesignInput, value: object) -> str:
@@ -527,25 +496,10 @@ def _written_designs(optimised: Optimised) -> dict[str, int]:
 def _result(
     origin: Origin, optimised: Optimised, begin: float, files: Callable[..., Mapping[str, Any]] = no_files
 ) -> Result[Optimised]:
-    document = {"title": origin.title} | optimised_document(optimised)
-    document["seconds"] = {"total": time.perf_counter() - begin}
-    dataset = optimised_dataset(optimised, origin.title)
-
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures.optimisation import draw_optimisation
 
         return draw_optimisation(origin.title, optimised)
 
-    return Result(
-        "optimise",
-        origin.case,
-        optimised,
-        document,
-        _arrays=lambda: dataset,
-        _figures=figures,
-        _files=files,
-        _data_file="optimise.nc",
-        _housing=origin.housing,
-        _started=begin,
-        _title=origin.title,
-    )
+    document = optimised_document(optimised)
+    return origin.study_result("optimise", optimised, document, OPTIMISED, figures, begin, files)

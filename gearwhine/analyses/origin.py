@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearwhine.analyses.result import Result, no_figures, no_files
@@ -13,6 +14,7 @@ from gearwhine.output.quantity import Fields, joined
 from gearwhine.results.housing import HOUSING, origin_document
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
     from gearwhine.case import Case
@@ -56,6 +58,7 @@ class Origin:
         figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = no_figures,
         files: Callable[..., Mapping[str, Any]] = no_files,
         options: tuple[Sequence[Option], Sequence[str]] = ((), ()),
+        data_file: str = "results.nc",
     ) -> Result[Solved]:
         """Return the result of an analysis.
 
@@ -67,19 +70,62 @@ class Origin:
             Its solution.
         document : dict
         *arrays : tuple
-            Declarations of quantities, each with the object that they are of, for its file beside those of the housing.
-        figures, files, options
+            Declarations of quantities, each with the object that they are of, for its file; without any it has none.
+            Beside them stand those of the housing, in a file of the usual name.
+        figures, files, options, data_file
             As the fields of :class:`gearwhine.analyses.result.Result`.
         """
+        of_housing: tuple[tuple[Fields, Any], ...] = ((HOUSING, self.housing),)
+        labels = self.labels
+        if data_file != "results.nc":
+            of_housing, labels = (), replace(labels, speed=None)
         return Result(
             command,
             self.case,
             solved,
             joined(document, origin_document(self.housing)),
-            _arrays=lambda: labelled(self.labels, (HOUSING, self.housing), *arrays),
+            _arrays=(lambda: labelled(labels, *of_housing, *arrays)) if arrays else None,
             _figures=figures,
             _files=files,
             _housing=self.housing,
+            _data_file=data_file,
             _options=options,
+            _title=self.title,
+        )
+
+    def study_result(
+        self,
+        command: str,
+        solved: Solved,
+        document: dict[str, Any],
+        arrays: Callable[[], xr.Dataset] | Fields,
+        figures: Callable[[Progress], Iterable[tuple[str, Figure]]],
+        begun: float,
+        files: Callable[..., Mapping[str, Any]] = no_files,
+    ) -> Result[Solved]:
+        """Return the result of a study of many solutions, whose data file has the name of the command.
+
+        Parameters
+        ----------
+        command, solved, document, figures, files
+            As of :meth:`result`.
+        arrays : callable or tuple of Quantity, Part or Rows
+            Returns the dataset; or the quantities of the solution, which are declared.
+        begun : float
+            Time of the performance counter at which the study began [s].
+        """
+        return Result(
+            command,
+            self.case,
+            solved,
+            {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
+            _arrays=arrays
+            if callable(arrays)
+            else lambda: labelled(replace(self.labels, speed=None), (arrays, solved)),
+            _figures=figures,
+            _files=files,
+            _housing=self.housing,
+            _data_file=f"{command}.nc",
+            _started=begun,
             _title=self.title,
         )

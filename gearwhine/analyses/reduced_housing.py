@@ -1,38 +1,28 @@
 """Analyses of a housing of reduced matrices: its natural modes, and these beside measured ones."""
 
-from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from gearwhine.analyses.housing import comparison_result
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
 from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.housing.measured import MeasuredModes
 from gearwhine.housing.modal_test import ComparedTest, comparison_warnings
 from gearwhine.housing.reduced import ReducedHousing
-from gearwhine.numerics.progress import Progress
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
 from gearwhine.output.quantity import add_warnings
-from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, write_comparison
+from gearwhine.results.comparison import comparison_document, responses_document
 from gearwhine.results.modes import REDUCED_MODES, reduced_modes_document
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 
 def reduced_modes_result(housing: ReducedHousing, origin: Origin) -> Result[ReducedHousing]:
     """Return the result of the natural modes of a reduced housing."""
     document = reduced_modes_document(housing)
     add_warnings(document, housing.warnings)
-    return Result(
-        "modes",
-        origin.case,
-        housing,
-        document,
-        _arrays=lambda: labelled(origin.labels, (REDUCED_MODES, housing)),
-        _title=origin.title,
-    )
+    return origin.result("modes", housing, document, (REDUCED_MODES, housing))
 
 
 def reduced_compare_result(
@@ -63,24 +53,5 @@ def reduced_compare_result(
             )
             add_warnings(document, [warning("survey", message, left_out=left_out)])
 
-    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
-        write_comparison(place, comparison, kept.geometry)
-        return {}
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_comparison_figures
-
-        known = housing.modes.frequencies[: housing.modes.known]
-        return draw_comparison_figures(origin.title, comparison, known, kept.geometry)
-
-    return Result(
-        "compare",
-        origin.case,
-        comparison,
-        document,
-        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(origin.labels)),
-        _figures=figures,
-        _files=files,
-        _data_file="comparison.nc",
-        _title=origin.title,
-    )
+    known = housing.modes.frequencies[: housing.modes.known]
+    return comparison_result(origin, comparison, document, known, kept.geometry)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearwhine.analyses.origin import Origin
@@ -18,6 +17,7 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.output.quantity import add_warnings
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.study_folder import StudyFolder
 from gearwhine.sweep import collected_sweep, missed_peaks, run_sweep, sweep_document, sweep_points
 from gearwhine.sweep.grid import Solved
 from gearwhine.sweep.machine_sweep import SweptSpeed, sweep_speeds
@@ -30,15 +30,7 @@ if TYPE_CHECKING:
 
 
 def solve_sweep(
-    origin: Origin,
-    source: CaseSource,
-    keys: Sequence[SweptKey],
-    folder: Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
+    origin: Origin, source: CaseSource, keys: Sequence[SweptKey], folder: StudyFolder
 ) -> Result[Sequence[SweptPoint]]:
     """Integrate the transient at every point of a sweep, in parallel.
 
@@ -49,15 +41,7 @@ def solve_sweep(
     source : CaseSource
         Content that the case is made of, from which the points are made, too.
     keys : sequence of SweptKey
-    folder : path
-        Folder of the points; those that it holds already are not solved again.
-    workers : int, optional
-        Number of processes; as many as cores by default.
-    scheduler : str, optional
-        Address of a running Dask scheduler, whose workers are used instead.
-    fresh : bool
-        Whether to solve all points anew.
-    progress : callable
+    folder : StudyFolder
 
     Raises
     ------
@@ -66,8 +50,8 @@ def solve_sweep(
     """
     start = time.perf_counter()
     points = sweep_points(source, keys)
-    count = workers or default_workers()
-    swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    workers = folder.workers or default_workers()
+    swept = run_sweep(points, replace(folder, workers=workers))
     sound_warnings: list[dict[str, Any]] = []
     housing, radiated = None, None
     # The points need not have the housing and the acoustics of the case, even where all of them share one.
@@ -75,11 +59,10 @@ def solve_sweep(
     if sounding is not None:
         from gearwhine.sweep.sound import add_sound
 
-        sound_warnings, housing, radiated = add_sound(
-            sounding, keys, swept, solve_housing(sounding, progress, folder=folder), progress
-        )
-    origin = replace(origin, housing=housing)
-    return _result(origin, keys, swept, start, radiated, sound_warnings, count if scheduler is None else None)
+        solved = solve_housing(sounding, folder.progress, folder=folder.path)
+        sound_warnings, housing, radiated = add_sound(sounding, keys, swept, solved, folder.progress)
+    started = workers if folder.scheduler is None else None
+    return _result(replace(origin, housing=housing), keys, swept, start, radiated, sound_warnings, started)
 
 
 def solve_speed_sweep(
@@ -115,25 +98,13 @@ def _result(
     """Return the result of solved points, with the peaks between them."""
     peaks = missed_peaks(keys, swept, radiated)
     dataset = collected_sweep(origin.case, keys, swept, peaks, origin.title)
-    document = {"title": origin.title} | sweep_document(keys, swept, peaks)
+    document = sweep_document(keys, swept, peaks)
     add_warnings(document, warnings)
     document["workers"] = workers
-    document["seconds"] = {"total": time.perf_counter() - start}
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures import draw_sweep
 
         return draw_sweep(origin.title, dataset)
 
-    return Result(
-        "sweep",
-        origin.case,
-        swept,
-        document,
-        _arrays=lambda: dataset,
-        _figures=figures,
-        _data_file="sweep.nc",
-        _housing=origin.housing,
-        _started=start,
-        _title=origin.title,
-    )
+    return origin.study_result("sweep", swept, document, lambda: dataset, figures, start)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -28,9 +28,10 @@ from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems
-from gearwhine.results.variation import varied_dataset, varied_document
+from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
+from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, Wider, correlation_matrix, values_at, varied_inputs
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.run import run_samples
@@ -39,6 +40,8 @@ from gearwhine.variation.statistics import VariedResult, require_known_limits
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from gearwhine.housing import HousingModes
 
 _NEEDS = {
     "gears": ("gear_pair",),
@@ -58,16 +61,12 @@ MOST_WIDENED = 10.0
 def solve_variation(
     case: Case,
     source: CaseSource,
-    folder: Path,
+    folder: StudyFolder,
     *,
     samples: int | None = None,
     indices: bool = False,
     widen: float | None = None,
     seed: int | None = None,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
 ) -> Result[VariedResult]:
     """Solve the gearboxes of a varied case, in parallel.
 
@@ -77,13 +76,9 @@ def solve_variation(
         Case with its variation.
     source : CaseSource
         Content that the case is made of, from which the samples are made, too.
-    folder : path
-        Folder of the samples; those that it holds already are not solved again.
-    samples, indices, widen, seed, workers, scheduler
+    folder : StudyFolder
+    samples, indices, widen, seed
         As of :meth:`gearwhine.case_study.CaseStudy.vary`.
-    fresh : bool
-        Whether to solve all samples anew.
-    progress : callable
 
     Raises
     ------
@@ -104,31 +99,17 @@ def solve_variation(
     seed = variation.seed if seed is None else seed
     points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
     wanted = wanted_of(case, variation)
-    plain = replace(source, written={key: table for key, table in source.written.items() if key != "variation"})
-    plain = replace(plain, changes=tuple(text for text in source.changes if not text.startswith("variation.")))
-    varied = VariedCase(plain, inputs, wanted, wider=wider)
-    housing = None
-    if case.housing is not None and case.rotor:
-        housing = solve_housing(case, progress, command="vary", folder=folder, fresh=fresh)
-        key = housing_key(given_housing(case, "vary"))
-        varied = replace(varied, housing=reduce_housing(case, housing), housing_key=key)
+    varied = VariedCase(source.without("variation"), inputs, wanted, wider=wider)
+    varied, housing = in_solved_housing(varied, case, folder, "vary")
     _require_distributions(varied, variation)
-    progress("the gearbox without changes")
+    folder.progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
     _require_quantities(wanted, nominal)
     require_known_limits(variation.limit, list(nominal.numbers))
     if design is not None:
         aim = "Sobol' indices" if indices else "what wider ones cost"
-        progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
-    solved = run_samples(
-        varied,
-        points,
-        folder,
-        progress,
-        workers=workers,
-        scheduler=scheduler,
-        fresh=fresh,
-    )
+        folder.progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
+    solved = run_samples(varied, points, folder)
     speeds = np.array(wanted.speeds or ([] if case.operation is None else [case.operation.speed]))
     result = VariedResult(
         inputs=inputs,
@@ -230,10 +211,7 @@ def vary(
             raise CouplingError(f"vary: {name!r} is {law!r}; expected a distribution, such as Normal(1.0, 0.1)")
     inputs = tuple(Input(name, law, "", (), ()) for name, law in laws.items())
     wanted = Wanted(asked, tuple(speeds), plan)
-    try:
-        ranges = {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
-    except (TypeError, ValueError) as error:
-        raise CouplingError(f"vary: limits of {limits}; expected a least and a largest value, or None, each") from error
+    ranges = limits_of("vary", limits)
     wider = _wider(inputs, widen)
     points, design = _points(inputs, Variation(), samples, seed, indices=indices, wider=wider)
     values = values_at(inputs, points, wider)
@@ -287,12 +265,45 @@ def _points(
             raise CaseError([Problem("variation.correlation", UNSAID, expected)])
         design = index_points(samples, tuple((number,) for number in range(len(inputs))), seed)
         return design.points, design
-    points = sobol_points(samples, len(inputs), seed)
-    points = points if correlation is None else correlated(points, correlation)
+    points = sampled_points(inputs, variation, samples, seed)
     if not widened:
         return points, None
     of_wider = widened_points(points, widened)
     return of_wider.points, of_wider
+
+
+def sampled_points(inputs: Sequence[Input], variation: Variation, samples: int, seed: int) -> FloatArray:
+    """Return points of the unit cube for inputs with the correlations of a variation, shape (n, d)."""
+    points, correlation = sobol_points(samples, len(inputs), seed), correlation_matrix(inputs, variation)
+    return points if correlation is None else correlated(points, correlation)
+
+
+AnyVaried = TypeVar("AnyVaried", bound=VariedCase)
+
+
+def in_solved_housing(
+    varied: AnyVaried, case: Case, folder: StudyFolder, command: str
+) -> tuple[AnyVaried, HousingModes | None]:
+    """Return a varied case with the solved housing of the case without changes, and that; None without one."""
+    if case.housing is None or not case.rotor:
+        return varied, None
+    housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)
+    key = housing_key(given_housing(case, command))
+    return replace(varied, housing=reduce_housing(case, housing), housing_key=key), housing
+
+
+def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | None]] | None) -> dict[str, Limit]:
+    """Return limits of quantities that are given by their least and largest values.
+
+    Raises
+    ------
+    CouplingError
+    """
+    try:
+        return {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
+    except (TypeError, ValueError) as error:
+        expected = "a least and a largest value, or None, each"
+        raise CouplingError(f"{command}: limits of {limits}; expected {expected}") from error
 
 
 def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "vary") -> Wanted:
@@ -361,25 +372,9 @@ def _require_distributions(varied: VariedCase, variation: Variation) -> None:
 def _result(
     origin: Origin, result: VariedResult, start: float, files: Callable[..., Mapping[str, Any]] = no_files
 ) -> Result[VariedResult]:
-    document = {"title": origin.title} | varied_document(result)
-    document["seconds"] = {"total": time.perf_counter() - start}
-    dataset = varied_dataset(result, origin.title)
-
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures.variation import draw_variation
 
         return draw_variation(origin.title, result)
 
-    return Result(
-        "vary",
-        origin.case,
-        result,
-        document,
-        _arrays=lambda: dataset,
-        _figures=figures,
-        _files=files,
-        _data_file="vary.nc",
-        _housing=origin.housing,
-        _started=start,
-        _title=origin.title,
-    )
+    return origin.study_result("vary", result, varied_document(result), VARIED, figures, start, files)

@@ -1,6 +1,6 @@
-"""Speeds of analyses over speed, as given in a case or by default: of whirl, diagrams, responses and branches.
+"""Speeds of the analyses of a rotor, as given in a case or by default: of whirl, diagrams and responses.
 
-Those of a rotor are its own [rad/s], positive counter-clockwise from +z; others are those of the first driver's rotor.
+They are its own [rad/s], positive counter-clockwise from +z.
 """
 
 from __future__ import annotations
@@ -10,17 +10,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem
 from gearwhine.case.model import Case
-from gearwhine.case.operation import Operation, Sweep, listed
-from gearwhine.numerics.speed_ranges import (
-    BEYOND_OPERATION,
-    CAMPBELL_STEPS,
-    SLOWEST_OF_BRANCH,
-    campbell_speeds,
-    evenly,
-    response_speeds,
-)
+from gearwhine.case.operation import Operation, listed
+from gearwhine.numerics.speed_ranges import campbell_speeds, response_speeds
 
 
 def with_sense_of(operation: Operation | None, speeds: Iterable[float]) -> tuple[float, ...]:
@@ -28,11 +20,7 @@ def with_sense_of(operation: Operation | None, speeds: Iterable[float]) -> tuple
 
     Lists and ranges of speeds hold absolute values. Without an operation the speeds stay as they are.
     """
-    return tuple(speeds) if operation is None else _in_sense(operation.speed, speeds)
-
-
-def _in_sense(speed: float, speeds: Iterable[float]) -> tuple[float, ...]:
-    return tuple(math.copysign(one, speed) for one in speeds)
+    return tuple(speeds if operation is None else (math.copysign(one, operation.speed) for one in speeds))
 
 
 @dataclass(frozen=True)
@@ -82,60 +70,3 @@ def rotor_speeds(case: Case, rotor: str) -> RotorSpeeds:
     else:
         response = response_speeds(diagram)
     return RotorSpeeds((*operation, *swept), diagram, response)
-
-
-def diagram_speeds(speed: float, sweep: Sweep | None, held: tuple[float, float]) -> tuple[float, ...]:
-    """Speeds of the first driver [rad/s] for the diagram: the sweep's, else up to beyond operation; ascending in size.
-
-    ``speed`` is that of operation, and ``held`` the range of speeds, without sense, that the tables of all bearings
-    hold.
-
-    Raises
-    ------
-    CaseError
-        For a machine that stands still, whose bearings' tables leave no range, or a sweep of one speed.
-    """
-    if speed == 0.0:
-        raise CaseError([Problem("operation.speed", 0.0, "a speed: a diagram over speed is of a machine that turns")])
-    if sweep is not None:
-        speeds = sorted({abs(one) for one in sweep.speeds})
-        if len(speeds) < 2:
-            raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
-        return _in_sense(speed, speeds)
-    low, high = _range_within(held, 0.0, BEYOND_OPERATION * abs(speed))
-    return _in_sense(speed, evenly(low, high, CAMPBELL_STEPS))
-
-
-def branch_speeds(
-    speed: float, sweep: Sweep | None, held: tuple[float, float], *, downwards: bool = False
-) -> tuple[float, float]:
-    """Return the speeds from which and to which a motion is followed [rad/s]: the sweep's range, or about operation.
-
-    ``speed`` is that of operation, and ``held`` the range of speeds, without sense, that the tables of all bearings
-    hold.
-
-    Raises
-    ------
-    CaseError
-        Where the sweep holds no range of speeds above zero, or the bearings' tables leave none.
-    """
-    if sweep is None:
-        low, high = _range_within(held, SLOWEST_OF_BRANCH * abs(speed), BEYOND_OPERATION * abs(speed))
-    else:
-        speeds = [abs(one) for one in sweep.speeds]
-        low, high = min(speeds), max(speeds)
-        if not 0.0 < low < high:
-            expected = "a range of speeds above zero, over which a motion is followed"
-            raise CaseError([Problem("sweep.speed", UNSAID, expected)])
-    first, last = _in_sense(speed, (high, low) if downwards else (low, high))
-    return first, last
-
-
-def _range_within(held: tuple[float, float], lowest: float, highest: float) -> tuple[float, float]:
-    """Return the part of a range of speeds that the tables of all bearings hold; CaseError where there is none."""
-    low, high = max(lowest, held[0]), min(highest, held[1])
-    if not low < high:
-        raise CaseError(
-            [Problem("bearing", NOTHING, "tables over speed with a range in common, for a diagram over speed")]
-        )
-    return low, high

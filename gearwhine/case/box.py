@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import Field, StrictBool, Tag, model_validator
 
 from gearwhine.case import units
-from gearwhine.case.fields import Length, LengthFromZero, Name, PositiveLength, Quantity, Table, Whole, wrong
+from gearwhine.case.fields import Length, LengthFromZero, Name, PositiveLength, Quantity, Table, Whole, by_table, wrong
 
 Face = Literal["left", "right", "bottom", "top", "back", "front"]
 
@@ -26,10 +26,6 @@ MOST_PARTS = 200
 """Most ribs, and most bolts, of a box."""
 
 BoxLength = Annotated[float, Quantity(units.LENGTH, at_least=1e-3, at_most=20.0)]
-
-
-def _scalar_or_table(value: Any) -> str:
-    return "~table" if isinstance(value, (dict, Table)) else "~scalar"
 
 
 def wall_by_face(wall: Any) -> dict[str, Any]:
@@ -150,7 +146,7 @@ class Box(Table):
     """Outside size along x, y, z."""
     wall: Annotated[
         Annotated[PositiveLength, Tag("~scalar")] | Annotated[Walls, Tag("~table")],
-        Discriminator(_scalar_or_table),
+        by_table("~scalar"),
     ]
     """Wall thickness: one for all walls, or one for each face."""
     mesh_size: PositiveLength | None = None

@@ -275,11 +275,17 @@ class Table(BaseModel):
     )
 
 
+def by_table(other: str) -> Discriminator:
+    """Tell a table, which has the tag ``~table``, from another form with its tag."""
+    return Discriminator(lambda value: "~table" if isinstance(value, (dict, Table)) else other)
+
+
+def by_list(other: str) -> Discriminator:
+    """Tell a list, which has the tag ``~list``, from another form with its tag."""
+    return Discriminator(lambda value: "~list" if isinstance(value, (list, tuple)) else other)
+
+
 UnitVector = tuple[float, float, float]
-
-
-def _direction_form(value: Any) -> str:
-    return "~list" if isinstance(value, (list, tuple)) else "~axis"
 
 
 def _has_length(vector: UnitVector) -> UnitVector:
@@ -293,7 +299,7 @@ Vector = Annotated[tuple[PlainNumber, PlainNumber, PlainNumber], AfterValidator(
 
 Direction = Annotated[
     Annotated[Literal["x", "y", "z"], Tag("~axis")] | Annotated[Vector, Tag("~list")],
-    Discriminator(_direction_form),
+    by_list("~axis"),
 ]
 """'x', 'y', 'z' or a vector of some length."""
 

@@ -251,6 +251,12 @@ class CaseSource:
         companions = [companion for path in named for companion in companion_files(path)]
         return [*([self.folder / self.name] if self.name else []), *named, *companions]
 
+    def without(self, *tables: str) -> CaseSource:
+        """Return the content without some tables, and without changes of them."""
+        written = {key: table for key, table in self.written.items() if key not in tables}
+        changes = tuple(text for text in self.changes if text.partition(".")[0] not in tables)
+        return replace(self, written=written, changes=changes)
+
     def changed(self, changes: Sequence[str] = ()) -> LoadedCase:
         """Make the case with further changes, and check it.
 

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
-    Discriminator,
     Field,
     GetCoreSchemaHandler,
     PrivateAttr,
@@ -34,6 +33,8 @@ from gearwhine.case.fields import (
     Quantity,
     Table,
     Whole,
+    by_list,
+    by_table,
     wrong,
 )
 from gearwhine.case.input_files import ChangedFileError, InputFiles, files_of
@@ -90,33 +91,19 @@ class Pairing(Table):
     """MAC from which on two measured modes may be one."""
 
 
-def _table_or_flag(value: Any) -> str:
-    return "~table" if isinstance(value, (dict, Table)) else "~flag"
-
-
-def _table_or_word(value: Any) -> str:
-    return "~table" if isinstance(value, (dict, Table)) else "~word"
-
-
-def _list_or_file(value: Any) -> str:
-    return "~list" if isinstance(value, (list, tuple)) else "~file"
-
-
 FileOrFiles = Annotated[
     Annotated[CaseFile, Tag("~file")]
     | Annotated[tuple[CaseFile, ...], Field(min_length=1, max_length=MOST_ENTRIES), Tag("~list")],
-    Discriminator(_list_or_file),
+    by_list("~file"),
 ]
 """A file, or several of one survey."""
 
-FlagOrAlign = Annotated[
-    Annotated[StrictBool, Tag("~flag")] | Annotated[Align, Tag("~table")], Discriminator(_table_or_flag)
-]
+FlagOrAlign = Annotated[Annotated[StrictBool, Tag("~flag")] | Annotated[Align, Tag("~table")], by_table("~flag")]
 """Whether to align, or by what."""
 
 WordOrPairing = Annotated[
     Annotated[Literal["order", "nearest", "dominance", "shapes"], Tag("~word")] | Annotated[Pairing, Tag("~table")],
-    Discriminator(_table_or_word),
+    by_table("~word"),
 ]
 """How modes are paired, or the conditions of a pair of shapes."""
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import ConfigDict, Field, StrictBool, Tag, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -27,6 +27,7 @@ from gearwhine.case.fields import (
     SpeedFromZero,
     Table,
     Whole,
+    by_table,
     wrong,
 )
 
@@ -518,14 +519,10 @@ class SpeedRange(Table):
         return self
 
 
-def _range_or_list(value: Any) -> str:
-    return "~table" if isinstance(value, (dict, Table)) else "~list"
-
-
 Speeds = Annotated[
     Annotated[SpeedRange, Tag("~table")]
     | Annotated[tuple[SpeedFromZero, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)],
-    Discriminator(_range_or_list),
+    by_table("~list"),
 ]
 """Speeds as a range or as a list [rad/s]."""
 

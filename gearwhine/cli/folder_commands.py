@@ -74,9 +74,7 @@ def report(
     interactive: Annotated[
         bool,
         Parameter(
-            name="--interactive",
-            negative=(),
-            help="Write report-interactive.html: shapes move, curves can be zoomed and tables sorted.",
+            negative=(), help="Write report-interactive.html: shapes move, curves can be zoomed and tables sorted."
         ),
     ] = False,
     common: Common = NONE_GIVEN,
@@ -127,17 +125,14 @@ def _on_results(
 def export(
     results: _Results,
     *,
-    csv: Annotated[bool, Parameter(name=["--csv"], negative=(), help="The report's tables, one file each.")] = False,
+    csv: Annotated[bool, Parameter(negative=(), help="The report's tables, one file each.")] = False,
     uff: Annotated[
         bool,
-        Parameter(
-            name=["--uff"], negative=(), help="Histories, spectra and transmissibilities as universal files (58)."
-        ),
+        Parameter(negative=(), help="Histories, spectra and transmissibilities as universal files (58)."),
     ] = False,
     wav: Annotated[
         bool,
         Parameter(
-            name=["--wav"],
             negative=(),
             help="Accelerations of sensors and sound pressures of microphones as sound, with their full scale.",
         ),
@@ -145,27 +140,24 @@ def export(
     seconds: Annotated[
         float | None,
         Parameter(
-            name=["--seconds"],
             help="With --wav: least length of a steady record, which is repeated without a seam; 0 for one period. "
-            "Default: 5. A run-up is as long as it is.",
+            "Default: 5. A run-up is as long as it is."
         ),
     ] = None,
     all_signals: Annotated[
         bool,
-        Parameter(name=["--all-signals"], negative=(), help="With --uff: forces and motions of the machine, too."),
+        Parameter(negative=(), help="With --uff: forces and motions of the machine, too."),
     ] = False,
     rexs: Annotated[
         Path | None,
         Parameter(
-            name=["--rexs"],
-            help="The case's gear unit as this REXS file (.rexs), with the operating point that `load` left in OUT.",
+            help="The case's gear unit as this REXS file (.rexs), with the operating point that `load` left in OUT."
         ),
     ] = None,
     reduced: Annotated[
         Path | None,
         Parameter(
-            name=["--reduced"],
-            help="The case's housing as reduced matrices (.npz, .nc, .pch, .op4, .mtx), with a case's tables for them.",
+            help="The case's housing as reduced matrices (.npz, .nc, .pch, .op4, .mtx), with a case's tables for them."
         ),
     ] = None,
     common: Common = NONE_GIVEN,

@@ -8,7 +8,7 @@ import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Required, Unpack, get_args, get_origin, get_type_hints
 
 from cyclopts import Parameter, Token, validators
 from docstring_parser.numpydoc import parse
@@ -169,11 +169,25 @@ def _on_one_line(text: str) -> str:
     return " ".join(text.split())
 
 
+def _documented_parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str]]:
+    """Yield the parameters of a method but the first, with their texts; those of a class of options for its ``**``."""
+    texts = {one.arg_name: _on_one_line(one.description or "") for one in parse(function.__doc__ or "").params}
+    for parameter in list(inspect.signature(function).parameters.values())[1:]:
+        if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
+            yield parameter, texts[parameter.name]
+        elif get_origin(parameter.annotation) is Unpack:
+            (options,) = get_args(parameter.annotation)
+            texts |= {one.arg_name: _on_one_line(one.description or "") for one in parse(options.__doc__).params}
+            for name, kind in get_type_hints(options, include_extras=True).items():
+                kind = get_args(kind)[0] if get_origin(kind) is Required else kind
+                default = False if kind is bool else None
+                yield inspect.Parameter(name, parameter.KEYWORD_ONLY, default=default, annotation=kind), texts[name]
+
+
 def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
     """Yield the parameters of a method as options."""
-    texts = {one.arg_name: _on_one_line(one.description or "") for one in parse(entry.function.__doc__ or "").params}
-    for parameter in list(inspect.signature(entry.function).parameters.values())[1:]:
-        if parameter.kind is inspect.Parameter.VAR_KEYWORD or parameter.name in entry.without:
+    for parameter, text in _documented_parameters(entry.function):
+        if parameter.name in entry.without:
             continue
         kind, rules = parameter.annotation, list[Number]()
         if get_origin(kind) is Annotated:
@@ -187,7 +201,6 @@ def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
         limits = [validators.Number(gte=rule.at_least, lte=rule.at_most) for rule in rules]
         # A flag that is off by default needs no option that puts it off.
         negative = None if parameter.default is True else ()
-        text = texts[parameter.name]
         is_whole = int in (kind, *get_args(kind))
         marker = Parameter(
             name=names,

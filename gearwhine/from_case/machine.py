@@ -6,7 +6,7 @@ from gearwhine.case import Case
 from gearwhine.case.model import lacking
 from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
-from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.coupling.analyses.shafts_alone import BearingsUnderLoad, bearings_under_load
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.coupling.gears.geometry.pair import pair_label
@@ -110,17 +110,5 @@ def aligned_by_default(parts: Parts) -> tuple[str, ...]:
 def misalignments_of_case(
     parts: Parts, point: OperatingPoint | None, *, is_sought: bool = True
 ) -> tuple[TakenMisalignment, ...]:
-    """Misalignment of every gear pair of a case, beside that of its operating point where it is solved.
-
-    ``is_sought`` is false before that point is sought: flanks that are left to it are not yet taken as aligned.
-    """
-    misalignments = []
-    for number, entry in enumerate(parts.gear_pair):
-        at_operating_point = None if point is None or not point.pairs else point.pairs[number].misalignment
-        if parts.finds_misalignment(entry) and not (is_sought and at_operating_point is None):
-            misalignments.append(TakenMisalignment(at_operating_point, "operating point", at_operating_point))
-        elif isinstance(entry.misalignment, float | int):
-            misalignments.append(TakenMisalignment(entry.misalignment, "case", at_operating_point))
-        else:
-            misalignments.append(TakenMisalignment(0.0, "default", at_operating_point))
-    return tuple(misalignments)
+    """Misalignment of every gear pair of a case, as the library's `taken_misalignments` has it of a machine."""
+    return taken_misalignments(parts.gear_pairs, point, aligned_by_default(parts), is_sought=is_sought)

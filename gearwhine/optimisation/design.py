@@ -109,7 +109,7 @@ def design_inputs(source: CaseSource, optimisation: Optimisation) -> tuple[Desig
         raise CaseError(problems)
     taken = dict[str, str]()
     for one in inputs:
-        for path in _paths(one):
+        for path in [path for part in (one, *one.along) for path, _ in part.keys]:
             if path in taken:
                 expected = f"each key once: {path} is designed by {taken[path]!r}, too"
                 problems.append(Problem(key_of((*_TABLE, one.name)), UNSAID, expected))
@@ -128,10 +128,6 @@ def _as_varied(designed: DesignKey) -> Varied:
 def _as_written(key: str) -> str:
     """Return the key of a problem of a distribution as the design has it."""
     return key.removesuffix(".uniform") + ".range" if key.endswith(".uniform") else key
-
-
-def _paths(one: DesignInput) -> list[str]:
-    return [path for part in (one, *one.along) for path, _ in part.keys]
 
 
 def written_value(document: Mapping[str, object], one: Input) -> object:

@@ -5,20 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.progress import Progress
 from gearwhine.optimisation.design import ProposedCase
-from gearwhine.output import staging
+from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.run import outcomes_as_they_end
 from gearwhine.variation.samples import Failure, Outcome, Record, solve_samples
-from gearwhine.workers import await_workers, code_digest, connected, default_workers
+from gearwhine.workers import called, code_digest, default_workers
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -32,15 +30,7 @@ class Evaluations:
     Parameters
     ----------
     proposed : ProposedCase
-    folder : path
-        Results folder.
-    workers : int or None
-        Number of processes; None: as many as cores where that is worth their start.
-    scheduler : str or None
-        See :func:`gearwhine.workers.connected`.
-    fresh : bool
-        Whether to forget what the folder holds.
-    progress : callable
+    folder : StudyFolder
 
     Attributes
     ----------
@@ -48,20 +38,10 @@ class Evaluations:
         Number of evaluations that were on file.
     """
 
-    def __init__(
-        self,
-        proposed: ProposedCase,
-        folder: Path,
-        workers: int | None,
-        scheduler: str | None,
-        *,
-        fresh: bool,
-        progress: Progress,
-    ) -> None:
-        self._proposed, self._folder, self._progress = proposed, folder, progress
-        self._workers, self._scheduler = workers, scheduler
-        self._record = Record(folder, proposed.key)
-        if fresh:
+    def __init__(self, proposed: ProposedCase, folder: StudyFolder) -> None:
+        self._proposed, self._folder = proposed, folder
+        self._record = Record(folder.path, proposed.key)
+        if folder.fresh:
             self._record.file.unlink(missing_ok=True)
         # Gearboxes that failed before are tried again.
         self._on_file = {
@@ -111,8 +91,8 @@ class Evaluations:
         self, todo: Sequence[tuple[float, ...]], to_come: int
     ) -> Iterator[list[tuple[tuple[float, ...], Outcome]]]:
         for number, key in enumerate(todo):
-            is_worth = self._workers is not None or self._each * to_come > _WORTH_WORKERS
-            calls = self._scheduler is not None or (self._workers != 1 and is_worth)
+            is_worth = self._folder.workers is not None or self._each * to_come > _WORTH_WORKERS
+            calls = self._folder.scheduler is not None or (self._folder.workers != 1 and is_worth)
             if self._client is not None or (self._each and calls and len(todo) - number > 1):
                 yield from self._by_workers(todo[number:])
                 return
@@ -138,12 +118,7 @@ class Evaluations:
     def _connected(self) -> Client:
         """Return the client of the workers, which are started at the first call."""
         if self._client is None:
-            workers = self._workers or default_workers()
-            self._progress(f"starting {workers} workers" if self._scheduler is None else f"calling {self._scheduler}")
-            place = self._stack.enter_context(staging(self._folder))
-            client = self._stack.enter_context(connected(workers, self._scheduler, place))
-            if self._scheduler is None:
-                await_workers(client, workers)
+            client = self._stack.enter_context(called(self._folder, self._folder.workers or default_workers()))
             self._everywhere = in_thread(lambda: client.scatter(self._proposed, broadcast=True, hash=False))
             self._client = client
         return self._client

@@ -235,7 +235,7 @@ def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
         Column(
             quantity.heading,
             quantity.key,
-            _form(quantity),
+            (quantity.shown if isinstance(quantity.shown, str) and quantity.shown else ".4g"),
             quantity.scale,
             shown=quantity.shown if callable(quantity.shown) else None,
             numbers=quantity.numbers,
@@ -277,7 +277,3 @@ def is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _form(quantity: Quantity) -> str:
-    return quantity.shown if isinstance(quantity.shown, str) and quantity.shown else ".4g"

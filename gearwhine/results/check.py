@@ -429,27 +429,21 @@ def _in_words(parts: Iterable[tuple[str, list[str]]]) -> tuple[Section, ...]:
 
 
 def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
-    parts = {
-        "imported": imported_lines(document["imported"]) if "imported" in document else [],
+    """Yield the parts with a line or a few each; others than here have all their lines."""
+    thrust = [location for location in document.get("axial_location", ()) if _is_worth_a_line(location)]
+    carriers = [one["carrier"] for one in document.get("planetary", ())]
+    rotors = [one["name"] for one in document.get("rotors", ())]
+    shorter = {
         "housing": _housing_summary(document["housing"]) if "housing" in document else reduced_lines(document),
-        "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
-        "bearings": _bearing_summary(
-            document.get("bearings", ()),
-            [one["carrier"] for one in document.get("planetary", ())],
-            [one["name"] for one in document.get("rotors", ())],
-        ),
-        "thrust": [
-            _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
-        ],
-        "gear pairs": [_pair_summary(pair) for pair in _listed_pairs(document)],
+        "bearings": _bearing_summary(document.get("bearings", ()), carriers, rotors),
+        "thrust": list(map(_location_line, thrust)),
+        "gear pairs": list(map(_pair_summary, _listed_pairs(document))),
         "planetary": [line for one in document.get("planetary", ()) for line in set_summary(one)],
-        "damping": damping_lines(document.get("damping", ())),
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
-        "transient": [_transient_line(document)] if "transient" in document else [],
-        "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
-        "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
     }
-    return ((part, lines) for part, lines in parts.items() if lines)
+    for part, lines in _parts(document):
+        if part not in ("analysis", "gear bodies", "standing") and (shown := shorter.get(part, lines)):
+            yield part, shown
 
 
 def imported_lines(imported: Document) -> list[str]:

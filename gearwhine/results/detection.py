@@ -9,10 +9,9 @@ from gearwhine.coupling.analyses.gear_condition import INDICATORS
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, finite, in_file
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gearwhine.detection.detectability import DetectionResult
 
 _MOST_FAILURES = 5  # told one by one
@@ -29,8 +28,8 @@ DETECTABILITY = (
         "threshold",
         (
             Quantity("value"),
-            Quantity("low", lambda one: _finite(one.low)),
-            Quantity("high", lambda one: _finite(one.high)),
+            Quantity("low", lambda one: finite(one.low)),
+            Quantity("high", lambda one: finite(one.high)),
             Quantity("false_alarm_low"),
             Quantity("false_alarm_high"),
             Quantity("law"),
@@ -57,6 +56,23 @@ DETECTABILITY = (
 """Quantities of the detectability by an indicator at a sensor; a row is a
 :class:`gearwhine.detection.detectability.Detectability`."""
 
+_EACH, _IN_SI = "see the end of the indicator's name", "in SI, as the key of the fault has it"
+
+
+def _keys(found: "DetectionResult") -> list[str]:
+    return [INDICATORS[name].key for name in found.monitor.indicators]
+
+
+def _in_file(name: str, of: Callable[[Any], Any], long_name: str, unit: str = "", *along: str) -> Quantity:
+    """Declare values of every sensor and indicator for the file, NaN where there is none."""
+
+    def values(found: "DetectionResult") -> Any:
+        rows = np.array([np.nan if (row := of(one)) is None else row for one in found.parts], dtype=np.float64)
+        return rows.reshape(len(found.monitor.sensors), len(found.monitor.indicators), *rows.shape[1:])
+
+    return Quantity("", values, name, ("sensor", "indicator", *along), unit, long_name)
+
+
 DETECTION = (
     Quantity("fault"),
     Quantity("gear"),
@@ -78,17 +94,17 @@ DETECTION = (
         "best",
         lambda found: {sensor: None if one is None else one.indicator for sensor, one in found.best.items()},
     ),
-    Rows(
-        "failed",
-        lambda found: list(found.failures.items()),
-        (
-            Quantity("number", "0"),
-            Quantity("message", "1.message"),
-            Quantity("traceback", lambda row: row[1].traceback or None, optional=True),
-        ),
-    ),
+    FAILED,
     Quantity("samples"),
     Quantity("resumed"),
+    in_file("sensor", "sensor", "monitor.sensors", "sensor"),
+    in_file("indicator", "indicator", _keys, "condition indicator, with its unit at the end"),
+    in_file("fault_size", "faulty_sample", lambda found: found.parts[0].sizes, f"size of the fault, {_IN_SI}"),
+    _in_file("healthy", lambda one: one.healthy, "healthy value", _EACH, "healthy_sample"),
+    _in_file("faulty", lambda one: one.responses, "faulty value", _EACH, "faulty_sample"),
+    _in_file("threshold", lambda one: None if one.threshold is None else one.threshold.value, "threshold", _EACH),
+    _in_file("a90", lambda one: one.a90, f"size that is found with 0.9, {_IN_SI}"),
+    _in_file("a90_95", lambda one: one.a90_95, f"the same with a confidence of 95 %, {_IN_SI}"),
 )
 """Quantities of a detection study; the object is a :class:`gearwhine.detection.detectability.DetectionResult`."""
 
@@ -98,23 +114,13 @@ def _of_known(values: Any, of: Callable[[Any], Any]) -> float | None:
     return float(of(known)) if known.size > 1 else None
 
 
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None
-
-
 def detection_document(found: "DetectionResult") -> dict[str, Any]:
     """Return a detection study as the command's JSON."""
     return document_of(DETECTION, found) | {"warnings": list(_warnings(found))}
 
 
 def _warnings(found: "DetectionResult") -> Iterator[ResultWarning]:
-    if failed := len(found.failures):
-        first = next(iter(found.failures.values()))
-        yield warning(
-            "failed samples",
-            f"{failed} of {found.samples} gearboxes cannot be solved: {first.message}",
-            failed=failed,
-        )
+    yield from failed_warnings(found, found.samples, "failed samples", "gearboxes")
     odd = [
         f"{INDICATORS[one.indicator].title} at {one.sensor}"
         for one in found.parts
@@ -127,45 +133,6 @@ def _warnings(found: "DetectionResult") -> Iterator[ResultWarning]:
             'them: its threshold has another false-alarm rate than that; threshold = "order" holds for any distribution'
         )
         yield warning("distribution of healthy values", message, parts=len(odd))
-
-
-def detection_dataset(found: "DetectionResult", title: str) -> "xr.Dataset":
-    """Return every value of every gearbox, with thresholds and sizes that are seen, as one labelled dataset."""
-    import xarray as xr
-
-    from gearwhine import __version__
-
-    shape = len(found.monitor.sensors), len(found.monitor.indicators)
-    where = ("sensor", "indicator")
-    keys = [INDICATORS[name].key for name in found.monitor.indicators]
-
-    def table(of: Callable[[Any], Any]) -> Any:
-        rows = [of(one) for one in found.parts]
-        return np.array([np.nan if row is None else row for row in rows], dtype=np.float64).reshape(shape)
-
-    def values(of: Callable[[Any], Any]) -> Any:
-        rows = np.array([of(one) for one in found.parts])
-        return rows.reshape(*shape, rows.shape[-1])
-
-    unit = "in SI, as the key of the fault has it"
-    each = {"units": "see the end of the indicator's name"}
-    variables: dict[str, Any] = {
-        "healthy": ((*where, "healthy_sample"), values(lambda one: one.healthy), each | {"long_name": "healthy value"}),
-        "faulty": ((*where, "faulty_sample"), values(lambda one: one.responses), each | {"long_name": "faulty value"}),
-        "threshold": (
-            where,
-            table(lambda one: None if one.threshold is None else one.threshold.value),
-            each | {"long_name": "threshold"},
-        ),
-        "a90": (where, table(lambda one: one.a90), {"long_name": f"size that is found with 0.9, {unit}"}),
-        "a90_95": (where, table(lambda one: one.a90_95), {"long_name": f"the same with a confidence of 95 %, {unit}"}),
-    }
-    coordinates: dict[str, Any] = {
-        "sensor": ("sensor", list(found.monitor.sensors), {"long_name": "sensor"}),
-        "indicator": ("indicator", keys, {"long_name": "condition indicator, with its unit at the end"}),
-        "fault_size": ("faulty_sample", found.parts[0].sizes, {"long_name": f"size of the fault, {unit}"}),
-    }
-    return xr.Dataset(variables, coordinates, {"title": title, "source": f"gearwhine {__version__}"})
 
 
 def _size(document: Document, row: Document, key: str) -> str:
@@ -223,8 +190,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         ]
         more = f" and {len(where) - _MOST_NAMED} more" if len(where) > _MOST_NAMED else ""
         yield f"Undefined: {', '.join(where[:_MOST_NAMED])}{more}: {reason}."
-    for failure in document["failed"][:_MOST_FAILURES]:
-        yield f"Gearbox {failure['number']} failed: {failure['message']}"
+    yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
     noise = document["sensor_noise_m_per_s2"]
     alike = "" if document["is_varied"] else "; no key varies: healthy records of the one gearbox differ by noise alone"
     against = "; indicators over those of an earlier record of the same gearbox" if document["has_own_baseline"] else ""
@@ -234,9 +200,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         f"{document['averages']} turns; a false-alarm rate of {document['false_alarm']:g} of each indicator "
         f"alone{alike}{against}"
     )
-    resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
-    failed = f"; {len(document['failed'])} failed" if document["failed"] else ""
-    yield f"{document['samples']} gearboxes{resumed}{failed}"
+    yield f"{document['samples']} gearboxes{ending(document)}"
 
 
 def _best_rows(document: Document) -> Iterator[Document]:

@@ -90,10 +90,6 @@ def path_place(sensor: str, frequency_hz: float) -> str:
     return f"path {sensor} {frequency_hz:.1f} Hz"
 
 
-def _paths_of(row: Document) -> tuple[str, ...]:
-    return (path_place(row["sensor"], row["frequency_hz"]),)
-
-
 def _shapes_of(row: Document) -> tuple[str, ...]:
     """Return the places of a line's operating shape, and of the housing mode with the largest part of the line."""
     shape = f"picture line-{row['frequency_hz']:.1f}Hz"
@@ -214,7 +210,7 @@ CAUSE_COLUMNS = (
 
 LINE_COLUMNS = (
     Column("sensor", "sensor"),
-    line_frequency(_paths_of),
+    line_frequency(lambda row: (path_place(row["sensor"], row["frequency_hz"]),)),
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", shown=amplitude_words),
     Column("level [dB re 1e-6 m/s²]", "level_db", shown=level_words),
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),

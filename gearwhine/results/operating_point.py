@@ -66,14 +66,6 @@ def _components(
     return Quantity(key, labelled, name, along, long_name=long_name, document=listed, optional=optional)
 
 
-def _force(axis: int) -> Column:
-    return Column(f"{_AXES[axis]} [N]", f"force_n.{axis}", "z.0f")
-
-
-def _moment(axis: int) -> Column:
-    return Column(f"{_TILTS[axis]} [N m]", f"moment_n_m.{axis}", "z.1f")
-
-
 BEARING = (
     Quantity("name", "load.name", "loaded_bearing", heading="bearing"),
     Quantity("shaft", "load.mounted.rotor"),
@@ -114,8 +106,8 @@ _DIAGONAL = tuple(f"stiffness.{axis}.{axis}" for axis in range(3))
 _NAME, _TILT, *_OF_ELEMENTS = columns_of(BEARING)
 _BEARING_COLUMNS = (
     _NAME,
-    *(_force(axis) for axis in range(3)),
-    *(_moment(axis) for axis in range(2)),
+    *(Column(f"{_AXES[axis]} [N]", f"force_n.{axis}", "z.0f") for axis in range(3)),
+    *(Column(f"{_TILTS[axis]} [N m]", f"moment_n_m.{axis}", "z.1f") for axis in range(2)),
     _TILT,
 )
 _ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness, numbers=_DIAGONAL))

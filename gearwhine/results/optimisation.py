@@ -7,12 +7,11 @@ import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.named_quantities import part_of, shown_quantity
-from gearwhine.output.quantity import unit_of
+from gearwhine.output.quantity import document_of, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+from gearwhine.results.many_solutions import FAILED, failed_sentences, failed_warnings, finite, in_file, numbered
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gearwhine.optimisation.goals import LimitEnd
     from gearwhine.optimisation.optimised import Optimised
     from gearwhine.optimisation.verification import Motion, Verification
@@ -57,8 +56,8 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
                 "unit": unit_of(goal.name),
                 "sense": "least" if goal.sign > 0.0 else "most",
                 "weight": goal.weight,
-                "start": _finite(float(optimised.start.aims[place])),
-                "designs": [_finite(float(design.aims[place])) for _, _, design in chosen],
+                "start": finite(float(optimised.start.aims[place])),
+                "designs": [finite(float(design.aims[place])) for _, _, design in chosen],
             }
             for place, goal in enumerate(optimised.goals.aims)
         ],
@@ -67,9 +66,9 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
                 "name": limit.name,
                 "unit": unit_of(limit.name),
                 "at_most" if limit.sign > 0.0 else "at_least": limit.end,
-                "start": _finite(limit.value(optimised.start.sides)),
-                "designs": [_finite(limit.value(design.sides)) for _, _, design in chosen],
-                "margin": None if not chosen else _finite(-limit.excess(chosen[0][2].sides)),
+                "start": finite(limit.value(optimised.start.sides)),
+                "designs": [finite(limit.value(design.sides)) for _, _, design in chosen],
+                "margin": None if not chosen else finite(-limit.excess(chosen[0][2].sides)),
                 "active": limit in optimised.active_limits,
             }
             for limit in optimised.goals.limits
@@ -84,12 +83,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
             }
             for number in (optimised.front if optimised.goals.count > 1 else [])
         ],
-        "failed": [
-            {"number": number, "message": failure.message}
-            | ({"traceback": failure.traceback} if failure.traceback else {})
-            for number, failure in optimised.failures.items()
-        ],
-    }
+    } | document_of((FAILED,), optimised)
     if not optimised.front and chosen:
         document["missed"] = [_missed(limit, value) for limit, value in optimised.missed]
     if optimised.verification is not None:
@@ -100,10 +94,6 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
 def _of(name: str) -> str:
     """Return what a quantity is of; of several ones as they are named."""
     return name.rpartition(".")[0] if "*" in name else part_of(name)
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None
 
 
 def _allowed(one: Any) -> str:
@@ -146,16 +136,13 @@ def _motion(motion: "Motion | Failure") -> dict[str, Any]:
     return {
         "linear_level_db": dict(motion.linear),
         "motion_level_db": dict(motion.motion),
-        "peak_force_ratio": {name: _finite(value) for name, value in motion.peak_force_ratio.items()},
+        "peak_force_ratio": {name: finite(value) for name, value in motion.peak_force_ratio.items()},
         "contact_loss": dict(motion.contact_loss),
     }
 
 
 def _warnings(optimised: "Optimised") -> Iterator[ResultWarning]:
-    if optimised.failures:
-        first = next(iter(optimised.failures.values()))
-        message = f"{len(optimised.failures)} of {len(optimised.designs)} designs cannot be solved: {first.message}"
-        yield warning("failed designs", message, failed=len(optimised.failures))
+    yield from failed_warnings(optimised, len(optimised.designs), "failed designs", "designs")
     if optimised.best is not None and not optimised.front:
         missed = "; ".join(_missed(limit, value)["text"] for limit, value in optimised.missed)
         yield warning("missed limits", f"no design meets all limits; the nearest one misses {missed}")
@@ -169,65 +156,50 @@ def _warnings(optimised: "Optimised") -> Iterator[ResultWarning]:
         yield warning("transient disagrees", message)
 
 
-def optimised_dataset(optimised: "Optimised", title: str) -> "xr.Dataset":
-    """Return every design with its values, aims and limits as one labelled dataset."""
-    import xarray as xr
+def _sides(optimised: "Optimised") -> Any:
+    """Return both sides of all quantities of each design, NaN where it has none."""
+    rows = [[one.sides.get(name, (np.nan, np.nan)) for name in _names(optimised)] for one in optimised.designs]
+    return np.array(rows, dtype=np.float64).reshape(len(rows), len(_names(optimised)), 2)
 
-    from gearwhine import __version__
 
-    designs, goals = optimised.designs, optimised.goals
-    names = list(dict.fromkeys(name for one in (optimised.start, *designs) for name in one.sides))
-    shape = (len(designs), len(names), 2)
-    none = (np.nan, np.nan)
-    sides = np.array([[one.sides.get(name, none) for name in names] for one in designs], dtype=np.float64).reshape(
-        shape
-    )
-    failures = optimised.failures
-    return xr.Dataset(
-        {
-            "input_value": (
-                ("design", "input"),
-                optimised.values(),
-                {"units": "see input_unit", "long_name": "value of the designed key, the number of a word from 0"},
-            ),
-            "aim_value": (
-                ("design", "aim"),
-                np.array([one.aims for one in designs]).reshape(len(designs), len(goals.aims)),
-                {"units": "see aim_unit", "long_name": "value of the aim"},
-            ),
-            "excess": (
-                "design",
-                [one.excess for one in designs],
-                {"units": "1", "long_name": "sum of the excesses over the limits, each over its limit"},
-            ),
-            "value": (
-                ("design", "quantity", "side"),
-                sides,
-                {"units": "see quantity_unit", "long_name": "value of the quantity, low and high side of its scatter"},
-            ),
-            "on_front": (
-                "design",
-                np.isin(np.arange(len(designs)), optimised.front),
-                {"long_name": "whether on the front"},
-            ),
-            "failure": (
-                "design",
-                [failures[number].message if number in failures else "" for number in range(len(designs))],
-                {"long_name": "why there is no result"},
-            ),
-        },
-        {
-            "design": ("design", np.arange(len(designs)), {"long_name": "number of the design, in the order of trial"}),
-            "input": ("input", [one.name for one in optimised.inputs], {"long_name": "designed key of the case"}),
-            "input_unit": ("input", [one.unit or "1" for one in optimised.inputs], {}),
-            "aim": ("aim", [goal.name for goal in goals.aims], {"long_name": "name of the aim"}),
-            "aim_unit": ("aim", [unit_of(goal.name) or "1" for goal in goals.aims], {}),
-            "quantity": ("quantity", names, {"long_name": "name of the quantity, with its unit at the end"}),
-            "quantity_unit": ("quantity", [unit_of(name) or "1" for name in names], {}),
-            "side": ("side", ["low", "high"], {"long_name": "side of the scatter; both are the value without scatter"}),
-        },
-        {"title": title, "source": f"gearwhine {__version__}"},
-    )
+def _names(optimised: "Optimised") -> list[str]:
+    return list(dict.fromkeys(name for one in (optimised.start, *optimised.designs) for name in one.sides))
+
+
+def _aims(optimised: "Optimised") -> Any:
+    return np.array([one.aims for one in optimised.designs]).reshape(-1, len(optimised.goals.aims))
+
+
+def _excesses(optimised: "Optimised") -> list[float]:
+    return [one.excess for one in optimised.designs]
+
+
+def _on_front(optimised: "Optimised") -> Any:
+    return np.isin(np.arange(len(optimised.designs)), optimised.front)
+
+
+OPTIMISED = (
+    *numbered("design", lambda found: len(found.designs), "number of the design, in the order of trial"),
+    in_file("input", "input", lambda found: [one.name for one in found.inputs], "designed key of the case"),
+    in_file("input_unit", "input", lambda found: [one.unit or "1" for one in found.inputs]),
+    in_file("aim", "aim", lambda found: [goal.name for goal in found.goals.aims], "name of the aim"),
+    in_file("aim_unit", "aim", lambda found: [unit_of(goal.name) or "1" for goal in found.goals.aims]),
+    in_file("quantity", "quantity", _names, "name of the quantity, with its unit at the end"),
+    in_file("quantity_unit", "quantity", lambda found: [unit_of(name) or "1" for name in _names(found)]),
+    in_file("side", "side", lambda found: ["low", "high"], "side of the scatter; both are the value without scatter"),
+    in_file(
+        "input_value",
+        "design input",
+        lambda found: found.values(),
+        "value of the designed key, the number of a word from 0",
+        "see input_unit",
+    ),
+    in_file("aim_value", "design aim", _aims, "value of the aim", "see aim_unit"),
+    in_file("excess", "design", _excesses, "sum of the excesses over the limits, each over its limit", "1"),
+    in_file("value", "design quantity side", _sides, "value, low and high side of its scatter", "see quantity_unit"),
+    in_file("on_front", "design", _on_front, "whether on the front"),
+)
+"""Quantities of every design, for the file; the object is a :class:`gearwhine.optimisation.optimised.Optimised`."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -387,10 +359,7 @@ def _sentences(document: Document) -> Iterator[str]:
             yield f"{row['key']} is at its {row['at_bound']} value: a wider range may be better."
     for row in document.get("missed", ()):
         yield f"Missed: {row['text']}."
-    for failure in document["failed"][:_MOST_FAILURES]:
-        yield f"Design {failure['number']} failed: {failure['message']}"
-    if len(document["failed"]) > _MOST_FAILURES:
-        yield f"and {len(document['failed']) - _MOST_FAILURES} more"
+    yield from failed_sentences(document, "design", _MOST_FAILURES)
     about = document["gearboxes_about_each"]
     scatter = f", {about} gearboxes about each" if about > 1 else ""
     resumed = f"; {document['resumed']} evaluations by an earlier run" if document["resumed"] else ""

@@ -7,12 +7,11 @@ import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.named_quantities import part_of, shown_quantity
-from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, in_file, numbered
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gearwhine.numerics.sobol_indices import SobolIndices
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
 
@@ -78,6 +77,31 @@ WIDENED = (
 )
 """Quantities of a wider input; a row is a :class:`gearwhine.variation.statistics.WidenedInput`."""
 
+_EACH = "see quantity_unit"
+
+
+def _names_of(parts: str) -> Callable[["VariedResult"], list[str]]:
+    return lambda varied: [one.name for one in getattr(varied, parts)]
+
+
+def _units_of(parts: str) -> Callable[["VariedResult"], list[str]]:
+    return lambda varied: [one.unit or "1" for one in getattr(varied, parts)]
+
+
+def _values(varied: "VariedResult") -> Any:
+    """Return the values of all quantities, of a row for each sample."""
+    values = [varied.all_values(one.name) for one in varied.quantities]
+    return np.array(values).reshape(len(values), len(varied.outcomes)).T
+
+
+def _nominal(varied: "VariedResult") -> list[float]:
+    return [one.nominal for one in varied.quantities]
+
+
+def _curves(varied: "VariedResult") -> Any:
+    return np.array([varied.curve(name) for name in varied.nominal.curves]).swapaxes(0, 1)
+
+
 VARIED = (
     Quantity("samples", lambda varied: len(varied.outcomes)),
     Quantity("representative", lambda varied: int(varied.representative.sum())),
@@ -93,19 +117,29 @@ VARIED = (
             Quantity("std", lambda row: float(row[1].std())),
         ),
     ),
-    Rows(
-        "failed",
-        lambda varied: list(varied.failures.items()),
-        (
-            Quantity("number", "0"),
-            Quantity("message", "1.message"),
-            Quantity("traceback", lambda row: row[1].traceback or None, optional=True),
-        ),
-    ),
+    FAILED,
     Rows("quantities", "quantities", QUANTITY),
     Quantity("headlines", lambda varied: [one.name for one in varied.headlines]),
     Part("yield", "yielded", SHARE, optional=True),
     Rows("widened", lambda varied: varied.widened or None, WIDENED, optional=True),
+    *numbered("sample", lambda varied: len(varied.outcomes), "number of the gearbox"),
+    in_file("input", "input", _names_of("inputs"), "varied key of the case"),
+    in_file("input_unit", "input", _units_of("inputs")),
+    in_file("quantity", "quantity", _names_of("quantities"), "name of the quantity, with its unit at the end"),
+    in_file("quantity_unit", "quantity", _units_of("quantities")),
+    in_file("input_value", "sample input", "values", "value of the varied key", "see input_unit"),
+    in_file("value", "sample quantity", _values, "value of the quantity", _EACH),
+    in_file("nominal", "quantity", _nominal, "value of the gearbox without changes", _EACH),
+    in_file("representative", "sample", "representative", "whether it stands for the production"),
+    Part(
+        "",
+        lambda varied: varied if varied.nominal.curves else None,
+        (
+            in_file("speed", "speed", lambda varied: np.abs(varied.speeds) * RPM, "speed of the first driver", "rpm"),
+            in_file("curve", "curve", lambda varied: list(varied.nominal.curves), "name of the quantity over speed"),
+            in_file("value_over_speed", "sample curve speed", _curves, "level over speed", "dB"),
+        ),
+    ),
 )
 """Quantities of a varied case; the object is a :class:`gearwhine.variation.statistics.VariedResult`."""
 
@@ -116,11 +150,7 @@ def varied_document(varied: "VariedResult") -> dict[str, Any]:
 
 
 def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
-    failed = len(varied.failures)
-    if failed:
-        first = next(iter(varied.failures.values()))
-        message = f"{failed} of {len(varied.outcomes)} gearboxes cannot be solved: {first.message}"
-        yield warning("failed samples", message, failed=failed)
+    yield from failed_warnings(varied, len(varied.outcomes), "failed samples", "gearboxes")
     wide = [
         one.name
         for one in varied.headlines
@@ -131,52 +161,6 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
             f"the total-order indices of {', '.join(wide[:3])} are known to no better than ±0.1: take more samples"
         )
         yield warning("few samples", message)
-
-
-def varied_dataset(varied: "VariedResult", title: str) -> "xr.Dataset":
-    """Return every sample with its inputs and its quantities as one labelled dataset."""
-    import xarray as xr
-
-    from gearwhine import __version__
-
-    names = [one.name for one in varied.quantities]
-    curves = list(varied.nominal.curves)
-    coordinates: dict[str, Any] = {
-        "sample": ("sample", np.arange(len(varied.outcomes)), {"long_name": "number of the gearbox"}),
-        "input": ("input", [one.name for one in varied.inputs], {"long_name": "varied key of the case"}),
-        "input_unit": ("input", [one.unit or "1" for one in varied.inputs], {}),
-        "quantity": ("quantity", names, {"long_name": "name of the quantity, with its unit at the end"}),
-        "quantity_unit": ("quantity", [one.unit or "1" for one in varied.quantities], {}),
-    }
-    each = "see input_unit", "see quantity_unit"
-    values = np.array([varied.all_values(name) for name in names]).reshape(len(names), len(varied.outcomes)).T
-    variables: dict[str, Any] = {
-        "input_value": (("sample", "input"), varied.values, {"units": each[0], "long_name": "value of the varied key"}),
-        "value": (("sample", "quantity"), values, {"units": each[1], "long_name": "value of the quantity"}),
-        "nominal": (
-            "quantity",
-            [one.nominal for one in varied.quantities],
-            {"units": each[1], "long_name": "value of the gearbox without changes"},
-        ),
-        "representative": (
-            "sample",
-            varied.representative,
-            {"long_name": "whether the sample stands for the production, and not for the indices alone"},
-        ),
-        "failure": (
-            "sample",
-            [varied.failures[n].message if n in varied.failures else "" for n in range(len(varied.outcomes))],
-            {"long_name": "why there is no result"},
-        ),
-    }
-    if curves:
-        rpm = np.abs(varied.speeds) * 30.0 / np.pi
-        coordinates["speed"] = ("speed", rpm, {"units": "rpm", "long_name": "speed of the first driver"})
-        coordinates["curve"] = ("curve", curves, {"long_name": "name of the quantity over speed"})
-        over_speed = np.array([varied.curve(name) for name in curves]).swapaxes(0, 1)
-        attributes = {"units": "dB", "long_name": "level over speed"}
-        variables["value_over_speed"] = (("sample", "curve", "speed"), over_speed, attributes)
-    return xr.Dataset(variables, coordinates, {"title": title, "source": f"gearwhine {__version__}"})
 
 
 def _limit(row: Document) -> str:
@@ -252,20 +236,15 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_COLUMNS, rows, "Distributions")
     yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
     yield from _what_wider_ones_cost(document.get("widened", []))
-    for failure in document["failed"][:_MOST_FAILURES]:
-        yield f"Gearbox {failure['number']} failed: {failure['message']}"
-    if len(document["failed"]) > _MOST_FAILURES:
-        yield f"and {len(document['failed']) - _MOST_FAILURES} more"
+    yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
     if "yield" in document:
         share = document["yield"]
         low, value, high = (100.0 * share[key] for key in ("low", "share", "high"))
         yield f"Yield: {value:.1f} % of the gearboxes are within all limits (95 % interval {low:.1f} to {high:.1f} %)."
-    resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
-    failed = f"; {len(document['failed'])} failed" if document["failed"] else ""
     standing = ""
     if document["representative"] < document["samples"]:
         standing = f", {document['representative']} of which stand for the production in the table of distributions"
-    yield f"{document['samples']} gearboxes{standing}{resumed}{failed}"
+    yield f"{document['samples']} gearboxes{standing}{ending(document)}"
 
 
 def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:

@@ -5,14 +5,13 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-from gearwhine.case import Case, CaseError, Housing, Operation, Problem, Transient
+from gearwhine.case import Case, CaseError, Housing, Problem
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.errors import UNSAID, key_of
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.sound.acoustics import Acoustics as AcousticsSettings
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.findings import Finding, in_mm
-from gearwhine.numerics.result_warnings import ResultWarning
 
 _LENGTHS = ("mesh_size", "floor", "microphone_box", "position")
 
@@ -53,15 +52,6 @@ def _require_on_mesh(acoustics: AcousticsSettings, bore: float | None, limit_hz:
 
     with refused_by_key(acoustics):
         require_acoustics(acoustics, mesh, bore, acoustics.highest_frequency or limit_hz)
-
-
-def sound_left_out(operation: Operation | None, transient: Transient | None) -> list[ResultWarning]:
-    """Return the warning that the sound of the lines of a motion is left out; none where it is not."""
-    from gearwhine.coupling.sound.motion_lines import left_out_warnings
-
-    base_moves = operation is not None and operation.base is not None
-    speed_changes = transient is not None and transient.run is not None
-    return left_out_warnings(base_moves=base_moves, speed_changes=speed_changes)
 
 
 @contextmanager

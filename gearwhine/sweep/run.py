@@ -17,6 +17,7 @@ from gearwhine.output import staging
 from gearwhine.solve.acoustics import check_before_modes
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
+from gearwhine.study_folder import StudyFolder
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import (
     PointFailure,
@@ -27,7 +28,7 @@ from gearwhine.sweep.solution import (
     solve_point_housing,
     write_point,
 )
-from gearwhine.workers import await_workers, code_digest, connected
+from gearwhine.workers import as_they_end, await_workers, code_digest, connected, default_workers
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -44,15 +45,7 @@ class SweptPoint:
     resumed: bool
 
 
-def run_sweep(
-    points: Sequence[Point],
-    folder: Path,
-    progress: Progress,
-    *,
-    workers: int,
-    scheduler: str | None = None,
-    fresh: bool = False,
-) -> tuple[SweptPoint, ...]:
+def run_sweep(points: Sequence[Point], study: StudyFolder) -> tuple[SweptPoint, ...]:
     """Solve every point that the folder does not hold yet; each is written there as it ends.
 
     Points that failed before are tried again. Where all points share the housing's modes, these are solved here and
@@ -62,21 +55,16 @@ def run_sweep(
     ----------
     points : sequence of Point
         Points of :func:`gearwhine.sweep.sweep_points`.
-    folder : path
-        Folder for the results.
-    progress : callable
-    workers, scheduler
-        See :func:`gearwhine.workers.connected`.
-    fresh : bool
-        Whether to solve points that the folder holds as well.
+    study : StudyFolder
 
     Raises
     ------
     CaseError, WorkersError, gearwhine.housing.HousingError, gearwhine.housing.IncompleteModesError, ...
         Where the housing that all points share cannot be solved, or there are no workers.
     """
+    folder, progress, scheduler = study.path, study.progress, study.scheduler
     outcomes: dict[int, Outcome] = {}
-    if not fresh:
+    if not study.fresh:
         stored = ((number, read_point(folder, point)) for number, point in enumerate(points) if not point.refusal)
         outcomes = {number: outcome for number, outcome in stored if isinstance(outcome, PointResult)}
     resumed = frozenset(outcomes)
@@ -85,13 +73,13 @@ def run_sweep(
     if todo:
         from gearwhine.sweep.warm_up import WarmUp
 
-        workers = min(workers, len(todo))
+        workers = min(study.workers or default_workers(), len(todo))
         with staging(folder) as place:
             progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
             with connected(workers, scheduler, place, [WarmUp()]) as client:
                 # Long points go first, lest all wait for them at the end.
                 todo.sort(key=lambda number: -points[number].duration)
-                shared, uncached = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                shared, uncached = _shared_housings([points[number] for number in todo], study)
                 if scheduler is None:
                     await_workers(client, workers)
                 report = _teller(len(points), len(outcomes), progress)
@@ -100,7 +88,8 @@ def run_sweep(
                 # The cache is written now, since the points need not wait for it.
                 _cache(uncached, folder)
                 _preload_writers()
-                for count, (number, outcome) in enumerate(each_from_thread(_as_they_end(client, futures)), start=1):
+                ended = each_from_thread(_outcomes_as_they_end(client, futures))
+                for count, (number, outcome) in enumerate(ended, start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
                     report(count)
@@ -110,7 +99,7 @@ def run_sweep(
 
 
 def _shared_housings(
-    points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
+    points: Sequence[Point], study: StudyFolder
 ) -> tuple[dict[str | None, HousingComponent], HousingModes | None]:
     """Solve the housings that points share, by key; none where their modes differ or they have no housing.
 
@@ -124,13 +113,13 @@ def _shared_housings(
         if point.housing_key in housings:
             continue
         # The next housing reads the modes that this one caches.
-        _cache(solved, folder)
+        _cache(solved, study.path)
         solved = solve_housing(
             point.case,
-            progress,
+            study.progress,
             command="sweep",
-            folder=folder,
-            fresh=fresh and not housings,
+            folder=study.path,
+            fresh=study.fresh and not housings,
             before=check_before_modes(point.case.acoustics, point.case.housing),
         )
         housings[point.housing_key] = reduce_housing(point.case, solved)
@@ -167,28 +156,15 @@ def _submitted(
     return futures
 
 
-def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tuple[int, Outcome]]:
+def _outcomes_as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tuple[int, Outcome]]:
     """Yield each point's number and outcome as it comes."""
-    from distributed import KilledWorker, as_completed
-
-    for future in as_completed(list(futures), loop=client.loop):
-        number = futures.pop(future)
-        error = future.exception() if future.status == "error" else None
-        if isinstance(error, KilledWorker):
-            yield (
-                number,
-                PointFailure(
-                    "the worker at this point died again and again, perhaps for want of memory; try fewer --workers"
-                ),
-            )
-        elif error is not None:
-            yield number, PointFailure(f"unexpected {type(error).__name__}: {error}")
-        elif future.cancelled():
-            raise WorkersError("the workers were lost; run the sweep again to do the points that are missing")
+    for number, outcome in as_they_end(client, futures, "point"):
+        if isinstance(outcome, WorkersError):
+            yield number, PointFailure(str(outcome))
+        elif isinstance(outcome, BaseException):
+            yield number, PointFailure(f"unexpected {type(outcome).__name__}: {outcome}")
         else:
-            yield number, future.result()
-        # Written results need not stay in the workers' memory.
-        future.release()
+            yield number, outcome
 
 
 def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:

@@ -9,6 +9,7 @@ import json
 import os
 import time
 import traceback
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,6 +36,7 @@ from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.output import finite, json_text
+from gearwhine.output.attributes import meaning_of
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
@@ -48,7 +50,7 @@ from gearwhine.workers import OtherCodeError, require_same_code
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
 
-FloatArray = npt.NDArray[np.float64]
+_Declared = Mapping[str, tuple[str, tuple[str, ...], str]]
 
 _TWO_PI = 2.0 * np.pi
 
@@ -178,14 +180,34 @@ def _document(
 POINTS = "points"
 """Folder of the points within the results folder."""
 
-# Group of results, its dimension, unit and long name.
-_SPECTRA = {
-    "sensor_spectra": ("sensor", "m/s2", "peak amplitude of acceleration"),
-    "force_spectra": ("contact", "N", "peak amplitude of the gear-mesh force"),
+# Attributes of a motion and of its resonances: variable of each in the file, dimensions and unit. Complex numbers have
+# their parts along a last dimension; empty arrays are left out.
+_MOTION = {
+    "orders": ("order", ("order",), "1"),
+    "housing_frequencies_hz": ("housing_frequencies_hz", ("housing_mode",), "Hz"),
+    "line_frequencies": ("line_frequencies", ("sound_line",), "Hz"),
+    "line_rates": ("line_rates", ("sound_line", "coordinate", "part"), "m kg^0.5 / s"),
+    "line_names": ("line_names", ("sound_line",), ""),
+    "line_kinds": ("line_kinds", ("sound_line",), ""),
 }
-_FORCES = {
-    "bearing_force_mean": "mean load of the shaft on its bearing",
-    "bearing_force_rms": "root mean square of that load without its mean",
+_RESONANCES = {
+    "frequencies": ("coupled_frequency", ("coupled_mode",), "Hz"),
+    "half_widths": ("coupled_half_width", ("coupled_mode",), "Hz"),
+    "names": ("coupled_name", ("coupled_mode",), ""),
+    "lines": ("line", ("line",), ""),
+    "line_orders": ("line_order", ("line",), "1"),
+    "outputs": ("output", ("output",), ""),
+    "line_levels": ("line_level", ("output", "line"), "dB"),
+    "levels_near": ("level_near", ("output", "line", "coupled_mode", "place_near"), "dB"),
+    "line_rates": ("line_response_rates", ("line", "coordinate", "part"), "m kg^0.5 / s"),
+    "mode_rates": ("mode_rates", ("line", "coupled_mode", "coordinate", "part"), "m kg^0.5 / s"),
+}
+# Attributes that have values by name: the dimension of the names, the other one, and the unit.
+_BY_NAME = {
+    "sensor_spectra": ("sensor", "order", "m/s2"),
+    "force_spectra": ("contact", "order", "N"),
+    "bearing_force_mean": ("bearing", "load", "N, N m of moments"),
+    "bearing_force_rms": ("bearing", "load", "N, N m of moments"),
 }
 _LOADS = ("x", "y", "z", "moment about x", "moment about y")
 
@@ -246,113 +268,52 @@ def outdated_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
 
 
 def _arrays(motion: ReducedMotion) -> Variables:
-    arrays: Variables = {
-        "order": ("order", motion.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
-    }
-    for group, (dimension, unit, long_name) in _SPECTRA.items():
-        spectra = getattr(motion, group)
-        if spectra:
-            arrays[dimension] = (dimension, list(spectra), {})
-            values = np.array(list(spectra.values()))
-            arrays[group] = ((dimension, "order"), values, {"units": unit, "long_name": long_name})
-    for group, long_name in _FORCES.items():
-        forces = getattr(motion, group)
-        if forces:
-            arrays |= {"bearing": ("bearing", list(forces), {}), "load": ("load", list(_LOADS), {})}
-            values = np.array(list(forces.values()))
-            arrays[group] = (("bearing", "load"), values, {"units": "N, N m of moments", "long_name": long_name})
-    if motion.line_frequencies.size:
-        line_attributes = {"units": "Hz", "long_name": "frequency of a line whose sound is wanted"}
-        arrays["line_frequencies"] = ("sound_line", motion.line_frequencies, line_attributes)
-        line_attributes = {
-            "units": "m kg^0.5 / s",
-            "long_name": "rates of the housing's coordinates, real and imaginary",
-        }
-        arrays["line_rates"] = (("sound_line", "coordinate", "part"), motion.line_rates, line_attributes)
-        arrays["line_names"] = ("sound_line", list(motion.line_names), {"long_name": "name of the line"})
-        arrays["line_kinds"] = ("sound_line", list(motion.line_kinds), {"long_name": "cause of the line"})
-    if motion.resonances is not None:
-        arrays |= _resonance_arrays(motion.resonances)
-    attributes = {"units": "Hz", "long_name": "housing natural frequency"}
-    arrays["housing_frequencies_hz"] = ("housing_mode", motion.housing_frequencies_hz, attributes)
+    arrays = _declared_arrays(motion, _MOTION)
+    for attribute, (names, other, unit) in _BY_NAME.items():
+        if values := getattr(motion, attribute):
+            described = {"units": unit, "long_name": meaning_of(ReducedMotion, attribute)}
+            arrays |= {names: (names, list(values), {})} | (
+                {"load": ("load", list(_LOADS), {})} if other == "load" else {}
+            )
+            arrays[attribute] = ((names, other), np.array(list(values.values())), described)
+    return arrays if motion.resonances is None else arrays | _declared_arrays(motion.resonances, _RESONANCES)
+
+
+def _declared_arrays(of: ReducedMotion | Resonances, declared: _Declared) -> Variables:
+    arrays: Variables = {}
+    for attribute, (name, dimensions, unit) in declared.items():
+        values = getattr(of, attribute)
+        if np.iscomplexobj(values):
+            values = np.stack([values.real, values.imag], axis=-1)
+        if np.size(values):
+            described = ({"units": unit} if unit else {}) | {"long_name": meaning_of(type(of), attribute)}  # type: ignore[arg-type]
+            arrays[name] = (dimensions, list(values) if isinstance(values, tuple) else values, described)
     return arrays
 
 
-def _resonance_arrays(resonances: Resonances) -> Variables:
-    mode, line, output, near = "coupled_mode", "line", "output", "place_near"
-    arrays: Variables = {
-        "coupled_frequency": (mode, resonances.frequencies, {"units": "Hz", "long_name": "damped natural frequency"}),
-        "coupled_half_width": (
-            mode,
-            resonances.half_widths,
-            {"units": "Hz", "long_name": "half the half-power bandwidth"},
-        ),
-        "coupled_name": (mode, list(resonances.names), {"long_name": "kind and place of the coupled mode"}),
-        "line": (line, list(resonances.lines), {"long_name": "mesh harmonic with all meshes that drive it"}),
-        "line_order": (line, resonances.line_orders, {"units": "1", "long_name": "order over the first driver"}),
-        "output": (output, list(resonances.outputs), {}),
-        "line_level": (
-            (output, line),
-            resonances.line_levels,
-            {"units": "dB", "long_name": "level of the line by the linear response, of a sensor re 1e-6 m/s2"},
-        ),
-        "level_near": (
-            (output, line, mode, near),
-            resonances.levels_near,
-            {"units": "dB", "long_name": "level that the line would have about the mode"},
-        ),
-    }
-    if resonances.mode_rates.size:
-        of_rates = {"units": "m kg^0.5 / s", "long_name": "rates of the housing's coordinates by the linear response"}
-        arrays |= {
-            "line_response_rates": ((line, "coordinate", "part"), _parts(resonances.line_rates), of_rates),
-            "mode_rates": ((line, mode, "coordinate", "part"), _parts(resonances.mode_rates), of_rates),
-        }
-    return arrays
-
-
-def _parts(values: npt.NDArray[np.complex128]) -> FloatArray:
-    return np.stack([values.real, values.imag], axis=-1)
+def _declared_attributes(arrays: dict[str, npt.NDArray[Any]], declared: _Declared) -> dict[str, Any]:
+    """Return the attributes that a file has, texts as tuples."""
+    found = {attribute: arrays[name] for attribute, (name, _, _) in declared.items() if name in arrays}
+    return {name: values if values.dtype.kind in "fc" else tuple(map(str, values)) for name, values in found.items()}
 
 
 def _resonances(arrays: dict[str, npt.NDArray[Any]]) -> Resonances | None:
-    if "level_near" not in arrays:
+    found = _declared_attributes(arrays, _RESONANCES)
+    if "levels_near" not in found:
         return None
-    lines, modes = len(arrays["line"]), len(arrays["coupled_frequency"])
-    of_lines = arrays.get("line_response_rates", np.zeros((lines, 0, 2)))
-    of_modes = arrays.get("mode_rates", np.zeros((lines, modes, 0, 2)))
-    return Resonances(
-        frequencies=arrays["coupled_frequency"],
-        half_widths=arrays["coupled_half_width"],
-        names=tuple(map(str, arrays["coupled_name"])),
-        lines=tuple(map(str, arrays["line"])),
-        line_orders=arrays["line_order"],
-        outputs=tuple(map(str, arrays["output"])),
-        line_levels=arrays["line_level"],
-        levels_near=arrays["level_near"],
-        line_rates=of_lines[..., 0] + 1j * of_lines[..., 1],
-        mode_rates=of_modes[..., 0] + 1j * of_modes[..., 1],
-    )
+    lines, modes = len(found["lines"]), len(found["frequencies"])
+    for name, shape in (("line_rates", (lines, 0, 2)), ("mode_rates", (lines, modes, 0, 2))):
+        parts = found.get(name, np.zeros(shape))
+        found[name] = parts[..., 0] + 1j * parts[..., 1]
+    return Resonances(**found)
 
 
 def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> PointResult:
-    named: dict[str, Any] = {
-        group: dict(zip(map(str, arrays[dimension]), arrays[group], strict=True))
-        for group, dimension in (
-            *((group, labels[0]) for group, labels in _SPECTRA.items()),
-            *((group, "bearing") for group in _FORCES),
-        )
-        if group in arrays
+    by_name: dict[str, Any] = {
+        attribute: dict(zip(map(str, arrays[names]), arrays[attribute], strict=True))
+        for attribute, (names, _, _) in _BY_NAME.items()
+        if attribute in arrays
     }
-    motion = ReducedMotion(
-        orders=arrays["order"],
-        housing_frequencies_hz=arrays["housing_frequencies_hz"],
-        window=attributes["window"],
-        line_frequencies=arrays.get("line_frequencies", np.empty(0)),
-        line_rates=arrays.get("line_rates", np.empty((0, 0, 2))),
-        line_names=tuple(map(str, arrays.get("line_names", ()))),
-        line_kinds=tuple(map(str, arrays.get("line_kinds", ()))),
-        resonances=_resonances(arrays),
-        **named,
-    )
+    found = {"orders": np.empty(0)} | _declared_attributes(arrays, _MOTION)
+    motion = ReducedMotion(**found, **by_name, window=attributes["window"], resonances=_resonances(arrays))
     return PointResult(json.loads(attributes["document"]), motion)

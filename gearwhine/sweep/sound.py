@@ -183,11 +183,14 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
 
 def _without_lines(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> tuple[int, list[dict[str, Any]]]:
     """Return the number of points whose motion has no lines that drive the housing, and the warnings that say why."""
-    from gearwhine.solve.acoustics import sound_left_out
+    from gearwhine.coupling.sound.motion_lines import left_out_warnings
 
     reasons: dict[str, list[Point]] = {}
     for swept_point in swept:
-        for entry in sound_left_out(swept_point.point.case.operation, swept_point.point.case.transient):
+        operation, transient = swept_point.point.case.operation, swept_point.point.case.transient
+        base_moves = operation is not None and operation.base is not None
+        speed_changes = transient is not None and transient.run is not None
+        for entry in left_out_warnings(base_moves=base_moves, speed_changes=speed_changes):
             reasons.setdefault(str(entry["message"]), []).append(swept_point.point)
     warnings = []
     for message, points in reasons.items():

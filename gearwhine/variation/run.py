@@ -5,17 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
-from gearwhine.output import staging
+from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import FOLDER, Failure, Outcome, Record, Sampled, solve_samples
-from gearwhine.workers import await_workers, code_digest, connected, default_workers
+from gearwhine.workers import as_they_end, called, code_digest, default_workers
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -42,17 +41,7 @@ class Solved:
     resumed: int
 
 
-def run_samples(
-    varied: Sampled,
-    points: FloatArray,
-    folder: Path,
-    progress: Progress,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    place: str = FOLDER,
-) -> Solved:
+def run_samples(varied: Sampled, points: FloatArray, folder: StudyFolder, place: str = FOLDER) -> Solved:
     """Solve every sample that the folder does not hold yet; each is on file soon after it is found.
 
     Parameters
@@ -60,15 +49,7 @@ def run_samples(
     varied : Sampled
     points : ndarray, shape (n, d)
         Points of the unit cube.
-    folder : path
-        Results folder.
-    progress : callable
-    workers : int, optional
-        Number of processes; by default as many as cores where that is worth their start.
-    scheduler
-        See :func:`gearwhine.workers.connected`.
-    fresh : bool
-        Whether to solve samples that the folder holds as well.
+    folder : StudyFolder
     place : str
         Folder of the record within the results folder.
 
@@ -77,14 +58,14 @@ def run_samples(
     CaseError, WorkersError
         Where there are no workers.
     """
-    record = Record(folder, varied.key, place)
-    if fresh:
+    record = Record(folder.path, varied.key, place)
+    if folder.fresh:
         record.file.unlink(missing_ok=True)
     # Samples that failed before are tried again.
     found = {number: outcome for number, outcome in record.read(points).items() if isinstance(outcome, Evaluation)}
     todo = [number for number in range(len(points)) if number not in found]
     outcomes: dict[int, Outcome] = dict(found)
-    resumed, told = len(points) - len(todo), _Teller(len(points), len(points) - len(todo), progress)
+    resumed, told = len(points) - len(todo), _Teller(len(points), len(points) - len(todo), folder.progress)
     if todo:
         # The first one is timed, with what is compiled and read once behind it.
         first = todo[0]
@@ -94,16 +75,16 @@ def run_samples(
         record.append([(first, outcomes[first])], points)
         told.took([(first, outcomes[first])])
         rest = todo[1:]
-        is_short = workers is None and each * len(rest) < _WORTH_WORKERS
-        alone = not rest or (scheduler is None and (workers == 1 or is_short))
-        workers = workers or default_workers()
+        is_short = folder.workers is None and each * len(rest) < _WORTH_WORKERS
+        alone = not rest or (folder.scheduler is None and (folder.workers == 1 or is_short))
+        workers = folder.workers or default_workers()
         size = max(1, min(_LARGEST_BATCH, int(_BATCH_TIME / max(each, 1e-3)), -(-len(rest) // (4 * workers))))
         batches = [rest[begin : begin + size] for begin in range(0, len(rest), size)]
         solved_batches: Iterable[list[tuple[int, Outcome]]]
         if alone:
             solved_batches = ([(number, varied.solve(points[number])) for number in batch] for batch in batches)
         else:
-            solved_batches = _solved_by_workers(varied, points, batches, folder, workers, scheduler, progress)
+            solved_batches = _solved_by_workers(varied, points, batches, folder, workers)
         for solved in solved_batches:
             record.append(solved, points)
             outcomes |= dict(solved)
@@ -113,20 +94,10 @@ def run_samples(
 
 
 def _solved_by_workers(
-    varied: Sampled,
-    points: FloatArray,
-    batches: Sequence[Sequence[int]],
-    folder: Path,
-    workers: int,
-    scheduler: str | None,
-    progress: Progress,
+    varied: Sampled, points: FloatArray, batches: Sequence[Sequence[int]], folder: StudyFolder, workers: int
 ) -> Iterator[list[tuple[int, Outcome]]]:
     """Yield each batch as workers have solved it."""
-    workers = min(workers, len(batches))
-    progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
-    with staging(folder) as place, connected(workers, scheduler, place) as client:
-        if scheduler is None:
-            await_workers(client, workers)
+    with called(folder, min(workers, len(batches))) as client:
         futures = in_thread(lambda: _submitted(client, varied, points, batches))
         yield from each_from_thread(outcomes_as_they_end(client, futures))
 
@@ -149,20 +120,13 @@ def outcomes_as_they_end(
     client: Client, futures: dict[Future[Any], Sequence[int]]
 ) -> Iterator[list[tuple[int, Outcome]]]:
     """Yield the outcomes of each batch as it comes."""
-    from distributed import KilledWorker, as_completed
-
-    for future in as_completed(list(futures), loop=client.loop):
-        batch = futures.pop(future)
-        error = future.exception() if future.status == "error" else None
-        if isinstance(error, KilledWorker):
-            message = "the worker at this sample died again and again, perhaps for want of memory; try fewer --workers"
-            yield [(number, Failure(message)) for number in batch]
-        elif error is not None:
-            raise error
-        elif future.cancelled():
-            raise WorkersError("the workers were lost; run the study again to do the samples that are missing")
+    for batch, outcomes in as_they_end(client, futures, "sample"):
+        if isinstance(outcomes, WorkersError):
+            yield [(number, Failure(str(outcomes))) for number in batch]
+        elif isinstance(outcomes, BaseException):
+            raise outcomes
         else:
-            yield future.result()
+            yield outcomes
 
 
 class _Teller:

@@ -64,7 +64,7 @@ class Placements:
             return self._known[component.number]
         if component.number in asked:
             raise wrong(component.label, "a place that is not relative to itself, by way of others either")
-        placed = Placement(_origin(component), _axes(component))
+        placed = Placement(np.array(component.vector("support_vector") or (0.0, 0.0, 0.0)), _axes(component))
         reference = component.whole("reference_component_for_position")
         if reference is not None and reference != component.number:
             other = self.model.components.get(reference)
@@ -77,10 +77,6 @@ class Placements:
             placed = placed.within(self._in_file(other, (*asked, component.number)))
         self._known[component.number] = placed
         return placed
-
-
-def _origin(component: Component) -> FloatArray:
-    return np.array(component.vector("support_vector") or (0.0, 0.0, 0.0))
 
 
 def _axes(component: Component) -> FloatArray:

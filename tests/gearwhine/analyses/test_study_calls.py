@@ -22,7 +22,7 @@ def test_the_points_of_a_sweep_are_made_of_the_case_with_its_changes(
     _, source, keys, folder = calls[0]
     point = source.changed(["operation.speed=1000 rpm"]).case
     assert (point.operation.torque, point.operation.speed) == (20.0, pytest.approx(1000.0 * math.pi / 30.0))
-    assert ([key.key for key in keys], folder) == (["operation.speed"], tmp_path)
+    assert ([key.key for key in keys], folder.path) == (["operation.speed"], tmp_path)
 
 
 def test_truth_values_in_changes_are_those_of_the_file() -> None:

@@ -1,11 +1,11 @@
 """Loads over time that a result cannot follow are told: unbalanced torques, and those that steady motions leave out."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 import gearwhine as gw
-from gearwhine.case.analysis_speeds import branch_speeds
 from gearwhine.coupling.analyses.shafts_alone import held_speeds
 from gearwhine.from_case.machine import describe_machine
 
@@ -55,8 +55,7 @@ def test_a_branch_over_speed_keeps_within_the_tables_of_the_bearings() -> None:
     held = held_speeds(describe_machine(case))
     assert held == pytest.approx((low, high))
     # The branch goes from half the speed to one and a half times it.
-    speed = 0.5 * (low + high)
-    assert branch_speeds(speed, None, held) == pytest.approx((max(low, 0.5 * speed), min(high, 1.5 * speed)))
-    assert branch_speeds(-0.5 * high, None, held) == pytest.approx((-max(low, 0.25 * high), -0.75 * high))
-    with pytest.raises(gw.CaseError, match="tables over speed with a range in common"):
-        branch_speeds(3.0 * high, None, held)
+    for speed in (0.5 * (low + high), -high):
+        solved = gw.Study(replace(describe_machine(case), speed=speed))
+        ends = max(low, 0.5 * abs(speed)), min(high, 1.5 * abs(speed))
+        assert solved._branch_speeds(down=False) == pytest.approx(tuple(math.copysign(end, speed) for end in ends))

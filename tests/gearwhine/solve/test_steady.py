@@ -11,7 +11,6 @@ from coupled_cases import coupled
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
-from gearwhine.case.analysis_speeds import branch_speeds
 from gearwhine.cli import run_command
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.steady_state import solve_steady
@@ -141,10 +140,8 @@ def test_a_branch_that_is_left_is_told_on_screen() -> None:
 
 
 def test_what_stands_still_or_has_no_range_is_refused() -> None:
-    case = load_case("spur-pair", [*FEW, "sweep.speed=['3000 rpm']"]).case
-    assert case.operation is not None
-    with pytest.raises(CaseError, match="a range of speeds"):
-        branch_speeds(case.operation.speed, case.sweep, (0.0, 1e4))
+    with pytest.raises(CaseError, match=r"sweep\.speed: expected a range of speeds"):
+        gw.load("spur-pair", [*FEW, "sweep.speed=['3000 rpm']"]).steady(curve=True)
     still = load_case("spur-pair", [*FEW, "operation.speed=0 rpm", "transient="]).case
     with pytest.raises(CouplingError, match="stands still"):
         solve_steady(coupled(still))

@@ -22,6 +22,7 @@ from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
+from gearwhine.study_folder import StudyFolder
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
 from gearwhine.sweep.run import run_sweep
 from gearwhine.sweep.solution import outdated_points, read_point, solve_point, write_point
@@ -325,6 +326,6 @@ def test_points_of_the_case_as_it_was_are_cleared_away(tmp_path: Path) -> None:
     slow, fast = points_of()
     for number, point in enumerate((slow, fast)):
         write_point(tmp_path, tmp_path, point, made_up(number))
-    (taken,) = run_sweep([slow], tmp_path, lambda message, fraction=None: None, workers=1)
+    (taken,) = run_sweep([slow], StudyFolder(tmp_path, workers=1))
     assert taken.resumed
     assert [path.name for path in (tmp_path / "points").iterdir()] == [slow.file]

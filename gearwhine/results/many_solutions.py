@@ -1,0 +1,64 @@
+"""Studies of many gearboxes or designs: quantities and sentences of those that failed, which all of them have."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from gearwhine.numerics.result_warnings import ResultWarning, warning
+from gearwhine.output.quantity import Getter, Quantity, Rows
+from gearwhine.output.sections import Document
+
+FAILED = Rows(
+    "failed",
+    lambda study: list(study.failures.items()),
+    (
+        Quantity("number", "0"),
+        Quantity("message", "1.message"),
+        Quantity("traceback", lambda row: row[1].traceback or None, optional=True),
+    ),
+)
+"""Solutions that failed, by their number in the study."""
+
+
+def finite(value: float) -> float | None:
+    """Return a number; None in place of NaN and infinity."""
+    return value if np.isfinite(value) else None
+
+
+def in_file(name: str, along: str, of: Getter, long_name: str = "", unit: str = "") -> Quantity:
+    """Declare a quantity of the file alone; ``along`` names its dimensions."""
+    return Quantity("", of, name, tuple(along.split()), unit, long_name)
+
+
+def numbered(dimension: str, count: Callable[[Any], int], long_name: str) -> tuple[Quantity, Quantity]:
+    """Declare the numbers of a study's solutions from 0, and why there is no result, for the file."""
+
+    def failures(study: Any) -> list[str]:
+        return [study.failures[n].message if n in study.failures else "" for n in range(count(study))]
+
+    return (
+        in_file(dimension, dimension, lambda study: np.arange(count(study)), long_name),
+        in_file("failure", dimension, failures, "why there is no result"),
+    )
+
+
+def failed_warnings(study: Any, total: int, name: str, nouns: str) -> Iterator[ResultWarning]:
+    """Yield the warning of that name that some of all solutions failed, with the reason of the first."""
+    if failed := len(study.failures):
+        message = f"{failed} of {total} {nouns} cannot be solved: {next(iter(study.failures.values())).message}"
+        yield warning(name, message, failed=failed)
+
+
+def failed_sentences(document: Document, noun: str, most: int) -> Iterator[str]:
+    """Yield a sentence on each of the first solutions that failed, and the number of the others."""
+    for failure in document["failed"][:most]:
+        yield f"{noun.capitalize()} {failure['number']} failed: {failure['message']}"
+    if len(document["failed"]) > most:
+        yield f"and {len(document['failed']) - most} more"
+
+
+def ending(document: Document) -> str:
+    """Return how many solutions an earlier run had found, and how many failed, as the end of a sentence."""
+    resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
+    return resumed + (f"; {len(document['failed'])} failed" if document["failed"] else "")
