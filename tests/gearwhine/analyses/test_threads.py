@@ -12,7 +12,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 import gearwhine as gw
 
-COARSE = {"housing.box.mesh_size": "45 mm", "housing.frequency_limit": "2 kHz", "measured": "", "provenance": ""}
+COARSE = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "2 kHz", "measured": "", "provenance": ""}
 
 def first_modes(wall):
     study = gw.load("small-gearbox", COARSE | {"housing.box.wall": wall})

@@ -142,13 +142,9 @@ def test_a_fault_of_one_gear_is_in_the_average_of_its_shaft_and_not_of_the_other
     ]
     study = gw.load("small-gearbox", changes)
     cracked = study.changed(['gear.pinion.fault={ kind = "crack", tooth = 3, depth = "2 mm" }'])
-    rise = {}
-    for gear in ("pinion", "wheel"):
-        values = [
-            next(one for one in each.simulate().solved.indicators(["difference_rms"]).gears if one.gear.gear == gear)
-            .sensors[0]
-            .values["difference_rms"]
-            for each in (study, cracked)
-        ]
-        rise[gear] = values[1] - values[0]
+    sound, faulty = (
+        {one.gear.gear: one.sensors[0].values["difference_rms"] for one in found.gears}
+        for found in (each.simulate().solved.indicators(["difference_rms"]) for each in (study, cracked))
+    )
+    rise = {gear: faulty[gear] - sound[gear] for gear in ("pinion", "wheel")}
     assert rise["pinion"] > 5.0 * np.abs(rise["wheel"])
