@@ -73,8 +73,8 @@ def with_less_effort(words: list[str]) -> list[str]:
     case = Path(words[1]).stem
     settings = LESS_EFFORT["steel-box" if case == "updated" else case]
     if words[0] == "detect":
-        # A record of few turns has no averages.
-        settings = tuple(setting for setting in settings if not setting.startswith("transient."))
+        # A record of fewer turns has no averages.
+        settings = ("transient.revolutions=12", "transient.discard=6")
     changes = [part for setting in settings for part in ("--set", setting)]
     for many, few in FEWER_POINTS.items():
         words = [word.replace(many, few) for word in words]

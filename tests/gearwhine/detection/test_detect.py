@@ -13,7 +13,10 @@ from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
 
 CRACK = 'gear.pinion.fault={ kind = "crack", tooth = 3, depth = "1 mm" }'
-SHORT = ["transient.revolutions=12", "transient.discard=6", "housing.frequency_limit=2.8 kHz"]
+SHORT = [
+    *("transient.revolutions=12", "transient.discard=6"),
+    *("housing.frequency_limit=2.8 kHz", "housing.box.mesh_size=40 mm"),
+]
 STUDY = """
 [detection]
 fault        = "gear.pinion.fault.depth"
@@ -137,7 +140,7 @@ def test_the_command_finds_writes_and_resumes_a_study(tmp_path: Path, capsys: py
 def test_a_fault_of_one_gear_is_in_the_average_of_its_shaft_and_not_of_the_other(tmp_path: Path) -> None:
     """27 and 29 teeth: a cracked tooth of the pinion repeats with its turns, 29 of which fill a hunting period."""
     changes = [
-        *("gear.pinion.teeth=27", "gear.wheel.teeth=29", "rotor.input.unbalance=", "housing.frequency_limit=2.8 kHz"),
+        *("gear.pinion.teeth=27", "gear.wheel.teeth=29", "rotor.input.unbalance=", *SHORT),
         *("transient.revolutions=36", "transient.discard=7"),
     ]
     study = gw.load("small-gearbox", changes)
