@@ -34,7 +34,11 @@ EQUIVALENT = LISTS / "equivalent.toml"
 _SECONDS_OF_TESTS = 60.0  # of a fault's tests by the map, which is made at about half the speed
 _FILES_OF_TESTS = 15
 # Tests that read the source of what they hold, and so run no line of it.
-_READING = {"gearwhine/results/": "tests/gearwhine/results/test_units_of_declarations.py"}
+_READING = {
+    "gearwhine/results/": "tests/gearwhine/results/test_units_of_declarations.py",
+    "gearwhine/": "tests/test_written_slips.py",
+    "coupling/": "tests/test_written_slips.py",
+}
 _TIMEOUT = 300.0  # s of one run: a fault that never ends is caught
 
 _KEY = re.compile(r"[a-z][a-z0-9_]+")

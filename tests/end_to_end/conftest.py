@@ -15,6 +15,8 @@ import xarray as xr
 
 import gearwhine as gw
 from gearwhine.cli import run_command
+from gearwhine.from_case import mesh
+from gearwhine.meshes import mesh_cad
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -27,6 +29,12 @@ def _figures_unrendered(request: pytest.FixtureRequest) -> None:
 @pytest.fixture(scope="module", autouse=True)
 def _modes_solved_once(modes_solved_once: None) -> None:
     """Modes of a housing that another test of this process has solved are not solved again."""
+
+
+@pytest.fixture
+def linear_drawings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mesh drawings by linear tetrahedra: their bolts, not the size of elements, say how many there are."""
+    monkeypatch.setattr(mesh, "mesh_cad", lambda *drawing, **how: mesh_cad(*drawing, **how | {"order": 1}))
 
 
 @dataclass(frozen=True)

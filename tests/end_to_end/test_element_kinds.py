@@ -1,4 +1,4 @@
-"""Every kind of solid element that is documented, through every command that reads a housing."""
+"""Every kind of solid element that is documented, through every command that takes elements of a housing."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -38,19 +38,22 @@ in_run = true
 name = "above"
 position = ["100 mm", "1 m", "60 mm"]
 """
-COMMANDS = (
-    ("check",),
+OF_ELEMENTS = (
     ("mesh", "--format", "vtu"),
     ("modes",),
-    ("compare",),
-    ("survey", "--sensors", "3", "--modes", "2"),
     ("render", "--modes", "1"),
     ("render", "--modes", "1", "--format", "glb"),
     ("sound",),
+)
+OF_MODES = (
+    ("check",),
+    ("compare",),
+    ("survey", "--sensors", "3", "--modes", "2"),
     ("run", "--no-pictures"),
     ("report",),
     ("export",),
 )
+"""Commands that take the modes, whatever the elements were: of one kind."""
 
 # CPENTA lists the middles of the edges along the axis before those of the upper triangle.
 NASTRAN = """BEGIN BULK
@@ -104,11 +107,10 @@ def test_every_kind_goes_through_every_command(
 ) -> None:
     write_mesh(block_of(kind, (200.0, 150.0, 120.0), (2, 2, 2)), tmp_path / "block.inp")
     _case(tmp_path, "block.inp")
-    for command, *options in COMMANDS:
+    for command, *options in OF_ELEMENTS if kind != SOLIDS[-1] else (*OF_ELEMENTS, *OF_MODES):
         outcome = gearwhine(command, "case.toml", *options, "-q", "-o", "out")
         assert outcome.code == 0, f"{command} of {kind}: {outcome.err}"
         assert "Traceback" not in outcome.err
     pictures = {path.name for path in (tmp_path / "out").rglob("mode-01-*")}
     assert {Path(name).suffix for name in pictures} == {".png", ".glb"}
     assert list(read_mesh(tmp_path / "out" / "modes.vtu").kinds) == [kind]
-    assert (tmp_path / "out" / "report.html").is_file()

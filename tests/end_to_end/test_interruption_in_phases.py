@@ -15,15 +15,10 @@ SOUND = ("--set", "acoustics.mesh_size=45 mm", "--set", "acoustics.highest_frequ
 PHASES = (
     ("run", "small-gearbox", "meshing the housing", COARSE),
     ("run", "small-gearbox", "counting the modes below the limit", COARSE),
-    ("run", "small-gearbox", "attaching the static response at the ports", COARSE),
-    ("run", "small-gearbox", "checking the housing against its geometry", COARSE),
-    ("run", "small-gearbox", "preparing the time stepper", COARSE),
     ("run", "small-gearbox", "marching through the transient", COARSE),
     ("run", "small-gearbox", "writing results", COARSE),
     ("run", "small-gearbox", "drawing", COARSE),
-    ("sound", "steel-box", "wrapping the housing", SOUND),
     ("sound", "steel-box", "sound of the housing's modes", SOUND),
-    ("load", "small-gearbox", "responses of the housing at the lines", (*COARSE, "--sensitivity")),
     ("load", "small-gearbox", "gradients by the housing", (*COARSE, "--sensitivity")),
     ("gears", "helical-pair", "best tip relief", ()),
 )

@@ -65,12 +65,6 @@ def _json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
     return document
 
 
-@pytest.fixture(scope="module")
-def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Results folder that all tests share, so that the housing is solved once."""
-    return tmp_path_factory.mktemp("helical") / "out"
-
-
 @pytest.mark.slow
 def test_check_has_speeds_torques_and_mesh_frequencies_of_both_stages(capsys: pytest.CaptureFixture[str]) -> None:
     document = _json(capsys, "check", NAME)
@@ -108,9 +102,10 @@ def _mesh_force(on_wheel: bool) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_bearings_carry_both_stages(capsys: pytest.CaptureFixture[str], out: Path) -> None:
+@pytest.mark.usefixtures("linear_drawings")
+def test_bearings_carry_both_stages(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Reactions of the bearings by the equilibrium of each shaft, from the planets' shares and the helical mesh."""
-    document = _json(capsys, "load", NAME, "-o", str(out), *COARSE)
+    document = _json(capsys, "load", NAME, "-o", str(tmp_path / "out"), *COARSE)
     bearings = {bearing["name"]: bearing for bearing in document["bearings"]}
     (stage,) = document["planetary"]
     shares = np.array([planet["load_share"] for planet in stage["planets"]])

@@ -74,6 +74,7 @@ def test_check_tells_the_turns_of_the_carrier_in_a_record_and_the_outside_of_the
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("linear_drawings")
 def test_planets_share_the_load_on_the_housing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     out = tmp_path / "out"
     document = _json(capsys, "load", NAME, "--carrier-turn", "-o", str(out), *COARSE)

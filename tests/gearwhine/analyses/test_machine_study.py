@@ -190,11 +190,6 @@ def equal(found: gw.Result[Any], expected: gw.Result[Any]) -> None:
     assert [name for name, _ in found.figures()] == [name for name, _ in expected.figures()]
 
 
-def test_rotors_and_gears_are_those_of_the_case(study: gw.CaseStudy, machine: gw.Study) -> None:
-    for found, expected in ((machine.rotors(), study.rotors()), (machine.gears(), study.gears())):
-        equal(found, expected)
-
-
 def test_a_whole_run_is_that_of_the_case(study: gw.CaseStudy) -> None:
     """A machine with the settings of a case; the case adds what it says of its damping, and other times."""
     found, expected = gw.Study(study.machine, study.settings).run(), study.run()

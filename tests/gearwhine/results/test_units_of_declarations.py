@@ -176,6 +176,7 @@ NAMES = {
     "time": {"s"},
     "level": {"dB"},
     "ratio": {"1"},
+    "phase": {"rad", "1"},  # of a mesh period, too
     "spectrum": {"m/s2", "N", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
 }
 """Last word of a name in the file: units that it may have."""

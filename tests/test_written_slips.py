@@ -1,0 +1,255 @@
+"""Slips of the pen that the source itself shows: a unit that is not its value's, a name or an argument in two places.
+
+The source is read, not run, so that every sentence, table and message is held, whatever analysis it is of. Units of
+declared columns are in ``tests/gearwhine/results/test_units_of_declarations.py``, whose tables of units these are.
+"""
+
+import ast
+import re
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from itertools import pairwise
+from math import isclose
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / "tests" / "gearwhine" / "results"))
+
+from test_units_of_declarations import NAMES, SHOWN, dimension_of  # noqa: E402
+
+ROOMS = ("coupling", "gearwhine")
+"""Rooms whose texts and tables users see."""
+UNITS = SHOWN | {"dB(A)": ("dB", 1.0), "kg m²": ("kg m2", 1.0), "‰": ("%", 0.1), "deg": SHOWN["°"]}
+_UNIT = re.compile(rf"\s?({'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![\w/·*²(°-])")
+_BETWEEN = (" to ", " and ", ", ", " ± ")  # of two numbers of one unit
+WORDS = {"speed": "rpm", "torque": "N m", "force": "N", "frequency": "Hz"}
+"""Names without a unit of values in the unit of the document."""
+PARTS = {"share", "part", "covered", "axial_share", "damping_ratio", "load_share", "contact_loss_fraction", "margin"}
+"""Names of parts of 1."""
+
+
+class Source:
+    """A file of the product: its tree, and the nodes of each kind in it."""
+
+    def __init__(self, text: str) -> None:
+        self.tree = ast.parse(text)
+        self.kinds: defaultdict[type, list[Any]] = defaultdict(list)
+        for node in ast.walk(self.tree):
+            self.kinds[type(node)].append(node)
+
+    def of(self, *kinds: type) -> Iterator[Any]:
+        """Nodes of these kinds."""
+        for kind in kinds:
+            yield from self.kinds[kind]
+
+
+Slips = Iterator[tuple[int, str]]
+
+
+@cache
+def sources() -> dict[str, Source]:
+    """Files of the rooms by path; a room's link in ``gearwhine`` is not followed."""
+    return {
+        str(path.relative_to(ROOT)): Source(path.read_text(encoding="utf-8"))
+        for room in ROOMS
+        for path in sorted((ROOT / room).rglob("*.py"))
+        if not any(place.is_symlink() for place in (path, *path.parents))
+    }
+
+
+def slips(check: Callable[[Source], Iterable[tuple[int, str]]]) -> list[str]:
+    """What a check finds, with file and line."""
+    return [f"{name}:{line}: {what}" for name, source in sources().items() for line, what in check(source)]
+
+
+def constants(tree: ast.Module) -> dict[str, float]:
+    """Numbers of a module by their names."""
+    return {
+        target.id: float(node.value.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+        if isinstance(node.value.value, int | float)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+
+
+def factor_and_name(node: ast.expr, numbers: dict[str, float]) -> tuple[float, str] | None:
+    """A number times a key, an attribute or a name; None of another expression."""
+    match node:
+        case ast.BinOp(left=left, op=ast.Mult(), right=right):
+            for one, other in ((left, right), (right, left)):
+                number = numbers.get(one.id) if isinstance(one, ast.Name) else getattr(one, "value", None)
+                if isinstance(number, int | float) and (rest := factor_and_name(other, numbers)):
+                    return number * rest[0], rest[1]
+        case ast.Call(func=ast.Name(id="abs" | "float" | "max" | "min"), args=[inner], keywords=[]):
+            return factor_and_name(inner, numbers)
+        case ast.Subscript(slice=ast.Constant(value=str(key))):
+            return 1.0, key
+        case ast.Subscript(value=value):
+            return factor_and_name(value, numbers)
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return 1.0, name
+    return None
+
+
+def values_with_units(source: Source) -> Iterator[tuple[int, str, float, str]]:
+    """Line, name, factor and unit of each value in a text that a unit follows, there or after the next value."""
+    numbers = constants(source.tree)
+    for text in (node.values for node in source.of(ast.JoinedStr)):
+        for place, part in enumerate(text):
+            if not isinstance(part, ast.FormattedValue) or not (found := factor_and_name(part.value, numbers)):
+                continue
+            for after in text[place + 1 :: 2]:
+                words = str(after.value) if isinstance(after, ast.Constant) else ""
+                if unit := _UNIT.match(words):
+                    yield part.lineno, found[1], found[0], unit[1]
+                if unit or words not in _BETWEEN:
+                    break
+
+
+def wrong_units(source: Source) -> Slips:
+    """Values whose unit is not that of their name, times the factor."""
+    for line, name, factor, shown in values_with_units(source):
+        dimension, size = UNITS[shown]
+        said = "%" if "percent" in name else "kg m2" if name.endswith("_kg_m2") else dimension_of(name)
+        if name in PARTS and dimension == "%":
+            said, size = "%", 1e-2 * size
+        if said is None:
+            wrong = name in WORDS and dimension not in (WORDS[name], "%")
+        else:
+            wrong = said != dimension or not (isclose(factor * size, 1.0) or name.startswith("half_"))
+        if wrong:
+            yield line, f"{factor:g} {name} in {shown}"
+
+
+def test_a_value_in_a_sentence_is_in_the_unit_that_follows_it() -> None:
+    assert slips(wrong_units) == []
+    assert sum(1 for source in sources().values() for _ in values_with_units(source)) > 250
+
+
+_DECLARED = {"Quantity", "Column", "Rows", "Part"}
+_PLACES = {"Quantity": ("key", "of", "name"), "Column": ("heading", "of"), "Rows": ("key", "of"), "Part": ("key",)}
+ALIKE = {"static", "motions", "name", "level\n[dB]", "lambda solved: list(_MOTIONS)"}
+"""Parts of which one is there; names of rows and of their parts; headings under two names of speeds; two dimensions."""
+
+
+def declared_twice(source: Source) -> Slips:
+    """Keys, attributes, names in the file and headings that two declarations of one list share."""
+    for node in source.of(ast.Tuple, ast.List):
+        calls = [one for one in node.elts if isinstance(one, ast.Call)]
+        if not any(isinstance(call.func, ast.Name) and call.func.id in _DECLARED for call in calls):
+            continue
+        found: Counter[tuple[str, Any]] = Counter()
+        for call in calls:
+            kind = ast.unparse(call.func)
+            given = dict(zip(_PLACES.get(kind, ()), call.args, strict=False))
+            given |= {one.arg: one.value for one in call.keywords if one.arg in ("heading", "key", "of")}
+            said = {(place, one.value) for place, one in given.items() if isinstance(one, ast.Constant) and one.value}
+            getters = {("of", ast.unparse(value)) for value in call.args if isinstance(value, ast.Lambda)}
+            found.update(said if kind == "Part" else said | getters)
+        for (place, what), number in found.items():
+            if number > 1 and what not in ALIKE:
+                yield node.lineno, f"{place} {what!r} {number} times"
+
+
+def test_no_two_declarations_of_one_list_are_of_the_same() -> None:
+    assert slips(declared_twice) == []
+
+
+def said_twice(source: Source) -> Slips:
+    """The same value twice in one difference, quotient, order or condition, as a number of a text, or in one row."""
+    for node in source.of(ast.JoinedStr, ast.Compare, ast.BinOp, ast.BoolOp, ast.Tuple, ast.Dict):
+        values: list[Any] = []
+        keyed = isinstance(node, ast.Tuple | ast.Dict)
+        match node:
+            case ast.JoinedStr(values=parts):
+                values = [one.value for one in parts if isinstance(one, ast.FormattedValue) and one.format_spec]
+            case ast.Compare(left=left, ops=[ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE()], comparators=[right]):
+                values = [left, right]
+            case ast.BinOp(left=left, op=ast.Sub() | ast.Div(), right=right):
+                values = [left, right]
+            case ast.BoolOp(values=several) | ast.Tuple(elts=several, ctx=ast.Load()) | ast.Dict(values=several):
+                values = several
+        looked_up = [
+            ast.unparse(one)
+            for one in values
+            if isinstance(one, ast.Subscript | ast.Attribute)
+            if not keyed or (isinstance(one, ast.Subscript) and isinstance(getattr(one.slice, "value", 0), str))
+        ]
+        for what, number in Counter(looked_up).items():
+            if number > 1:
+                yield node.lineno, f"{what} twice in {ast.unparse(node)[:80]}"
+
+
+def test_no_value_stands_twice_where_each_is_said_once() -> None:
+    assert slips(said_twice) == []
+
+
+@cache
+def parameters() -> dict[str, tuple[str, ...]]:
+    """Parameters of functions and fields of dataclasses by a name that only one of them has."""
+    found: defaultdict[str, set[tuple[str, ...]]] = defaultdict(set)
+    for source in sources().values():
+        for node in source.of(ast.FunctionDef, ast.ClassDef):
+            if isinstance(node, ast.FunctionDef):
+                names = [one.arg for one in (*node.args.posonlyargs, *node.args.args)]
+                found[node.name].add(tuple(names[1:] if names[:1] in (["self"], ["cls"]) else names))
+            else:
+                fields = [ast.unparse(one.target) for one in node.body if isinstance(one, ast.AnnAssign)]
+                inherits = {ast.unparse(base) for base in node.bases} - {"NamedTuple"}
+                found[node.name].add(() if inherits else tuple(fields))
+    return {name: next(iter(several)) for name, several in found.items() if len(several) == 1}
+
+
+def word_of(node: ast.expr) -> str:
+    """Name, attribute or key that an argument is, without its unit."""
+    match node:
+        case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Subscript(slice=ast.Constant(value=str(name))):
+            return re.sub(r"_(hz|rpm|n_m|rad|m|s|n)$", "", name.lstrip("_"))
+    return ""
+
+
+def swapped(source: Source) -> Slips:
+    """Neighbours among the arguments that have each other's names, and a class in the place of its object."""
+    for node in source.of(ast.Call):
+        name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
+        if name == "isinstance" and word_of(node.args[0])[:1].isupper():
+            yield node.lineno, ast.unparse(node)
+        places = [*zip(parameters().get(name, ()), node.args, strict=False)]
+        places += [(keyword.arg, keyword.value) for keyword in node.keywords if keyword.arg]
+        for (one, first), (other, second) in pairwise(places):
+            # What `replace` makes of an object may be its mirror image.
+            if one != other and (word_of(first), word_of(second)) == (other, one) and name != "replace":
+                yield node.lineno, f"{name}: {other} as {one}, {one} as {other}"
+
+
+def test_arguments_stand_in_the_places_of_their_names() -> None:
+    assert slips(swapped) == []
+
+
+_SIDES = {"at_least": "≥", "at_most": "≤", "low": "≥", "high": "≤"}
+_FILE_NAME = re.compile(r"[a-z]+(_[a-z]+)+")
+_FILE_UNITS = {unit for units in NAMES.values() for unit in units if unit} | {"rad", "deg", "nm", "µm", "mm", "kN"}
+
+
+def wrong_pairs(source: Source) -> Slips:
+    """Signs of the wrong side of a limit, and units beside a name in the file whose last word has another."""
+    for node in source.of(ast.Tuple, ast.Call):
+        if isinstance(node, ast.Tuple):
+            words = [one.value for one in node.elts if isinstance(one, ast.Constant)]
+            if len(words) == len(node.elts) == 2 and words[1] in _SIDES.values() and _SIDES.get(words[0]) != words[1]:
+                yield node.lineno, f"{words[0]}: {words[1]}"
+        else:
+            words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+            named = [one.rpartition("_")[2] for one in words if _FILE_NAME.fullmatch(one)]
+            units = [one for one in words if one in _FILE_UNITS]
+            if len(units) == 1 and named and named[0] in NAMES and units[0] not in NAMES[named[0]]:
+                yield node.lineno, f"{named[0]} in {units[0]}"
+
+
+def test_signs_and_units_fit_the_words_beside_them() -> None:
+    assert slips(wrong_pairs) == []
