@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
 from gearwhine.output.quantity import RPM, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, table_of
 from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, in_file, numbered
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
 
 _MOST_INPUTS = 3  # of a quantity in the table of what matters
+_MOST_RANKS, _MOST_RANKED = 3, 4  # worst gearboxes of a quantity, and quantities up to which they are told
 _MOST_FAILURES = 5  # told one by one
 _WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
 
@@ -34,8 +35,8 @@ def _indices(which: str) -> Any:
     return of
 
 
-SHARE = (Quantity("share"), Quantity("low"), Quantity("high"))
-"""Quantities of a part of the gearboxes, with its interval."""
+SHARE = (Quantity("share"), Quantity("low"), Quantity("high"), Quantity("good"), Quantity("total"))
+"""Quantities of a part of the gearboxes, with its interval and the numbers that it is of."""
 
 QUANTITY = (
     Quantity("name"),
@@ -113,6 +114,7 @@ VARIED = (
             Quantity("key", "0.name"),
             Quantity("unit", "0.unit"),
             Quantity("distribution", lambda row: type(row[0].law).__name__.lower()),
+            Quantity("tolerance", "0.tolerance"),
             Quantity("mean", lambda row: float(row[1].mean())),
             Quantity("std", lambda row: float(row[1].std())),
         ),
@@ -120,6 +122,18 @@ VARIED = (
     FAILED,
     Rows("quantities", "quantities", QUANTITY),
     Quantity("headlines", lambda varied: [one.name for one in varied.headlines]),
+    Quantity("speeds_rpm", lambda varied: (np.abs(varied.speeds) * RPM).tolist()),
+    Rows(
+        "worst",
+        lambda varied: [worst for one in varied.headlines for worst in varied.worst_gearboxes(one)],
+        (
+            Quantity("quantity", "name"),
+            Quantity("rank"),
+            Quantity("gearbox", "number"),
+            Quantity("value"),
+            Quantity("speed_rpm", lambda one: None if one.speed is None else abs(one.speed) * RPM, optional=True),
+        ),
+    ),
     Part("yield", "yielded", SHARE, optional=True),
     Rows("widened", lambda varied: varied.widened or None, WIDENED, optional=True),
     *numbered("sample", lambda varied: len(varied.outcomes), "number of the gearbox"),
@@ -170,9 +184,10 @@ def _limit(row: Document) -> str:
     return ", ".join(f"{sign} {factor * limit[key]:.4g}" for key, sign in ends if key in limit)
 
 
-def _share(row: Document) -> str:
-    share = row.get("within")
-    return "" if share is None else f"{100.0 * share['share']:.1f} %"
+def _percents(share: Document) -> str:
+    """Return a part of the gearboxes with its interval."""
+    low, value, high = (100.0 * share[key] for key in ("low", "share", "high"))
+    return f"{value:.1f} % ({low:.1f} to {high:.1f} %)"
 
 
 def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callable[[Document], str]:
@@ -185,12 +200,38 @@ def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callab
     return text
 
 
+def _drawn(of: str, form: str) -> Callable[[Document], str]:
+    """Return the function that shows a number of an input in the unit that is shown; none of words and pitches."""
+
+    def text(row: Document) -> str:
+        # The numbers of words have no mean; of pitches the file holds the range, which is no tolerance of theirs.
+        is_number = row["distribution"] != "pitches" and (row["unit"] or row["distribution"] != "discrete")
+        return format(shown_unit(row["unit"])[1] * row[of], form) if is_number else ""
+
+    return text
+
+
 _INPUT_COLUMNS = (
     Column("key", "key"),
-    Column("unit", "unit"),
-    Column("distribution", "distribution"),
-    Column("mean", "mean", ".5g"),
-    Column("std", "std", ".3g"),
+    Column("tolerance", lambda row: row["tolerance"] or row["distribution"]),
+    Column("unit", lambda row: shown_unit(row["unit"])[0] if _drawn("mean", "g")(row) else ""),
+    Column("mean", _drawn("mean", "z.4g")),
+    Column("std", _drawn("std", ".3g")),
+)
+_LIMIT_COLUMNS = (
+    Column("of", lambda row: part_of(row["name"])),
+    Column("quantity", lambda row: shown_quantity(row["name"])[0]),
+    Column("limit", _limit),
+    Column("nominal", _number(lambda row: row["nominal"])),
+    Column("beyond", lambda row: f"{row['within']['total'] - row['within']['good']} of {row['within']['total']}"),
+    Column("within", lambda row: _percents(row["within"])),
+)
+_WORST_COLUMNS = (
+    Column("of", lambda row: part_of(row["quantity"])),
+    Column("quantity", lambda row: shown_quantity(row["quantity"])[0]),
+    Column("gearbox", "gearbox", "d"),
+    Column("value", lambda row: format(shown_quantity(row["quantity"])[1] * row["value"], ".5g")),
+    Column("at [rpm]", "speed_rpm", ".5g"),
 )
 _COLUMNS = (
     Column("of", lambda row: part_of(row["name"])),
@@ -201,8 +242,6 @@ _COLUMNS = (
     Column("5 %", _number(lambda row: row["quantiles"]["0.05"])),
     Column("median", _number(lambda row: row["quantiles"]["0.5"])),
     Column("95 %", _number(lambda row: row["quantiles"]["0.95"])),
-    Column("limit", _limit),
-    Column("within", _share),
 )
 
 
@@ -212,8 +251,25 @@ def _told(document: Document) -> list[Document]:
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """Return the distributions, what matters, and the yield."""
-    return (Section("", tuple(_content(document))),)
+    """Return the yield and the worst gearboxes, the inputs, the distributions, and what matters."""
+    return (Section("", (*summary(document), *_content(document))),)
+
+
+def summary(document: Document) -> Iterator[str | Table]:
+    """Yield what a quality engineer asks first: the yield, gearboxes beyond each limit, the worst, speeds, inputs."""
+    if "yield" in document:
+        share = document["yield"]
+        yield f"Yield: {share['good']} of {share['total']} gearboxes are within all limits, {_percents(share)}."
+    limited = [row for row in _told(document) if "within" in row]
+    yield from table_of(_LIMIT_COLUMNS, limited, "Gearboxes beyond the limits; in brackets: 95 % interval")
+    ranks = _MOST_RANKS if len(document["headlines"]) <= _MOST_RANKED else 1
+    files = ", each with a case of its own, worst-….toml" if any(row["tolerance"] for row in document["inputs"]) else ""
+    worst = [row for row in document["worst"] if row["rank"] <= ranks]
+    yield from table_of(_WORST_COLUMNS, worst, f"Worst gearboxes{files}")
+    if speeds := document["speeds_rpm"]:
+        ends = f"{min(speeds):.5g} to {max(speeds):.5g} rpm" if len(speeds) > 1 else f"{speeds[0]:.5g} rpm"
+        yield f"{counted(len(speeds), 'speed')} of the first driver: {ends}."
+    yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys; mean and standard deviation as drawn")
 
 
 def report(document: Document) -> Section:
@@ -227,20 +283,15 @@ def report(document: Document) -> Section:
             "vary-speeds", "Levels over speed: the gearbox without changes, and the band of nine in ten gearboxes."
         ),
     )
-    return Section("Varied gearboxes", tuple(_content(document)), pictures=pictures)
+    return Section("Varied gearboxes", (*summary(document), *_content(document)), pictures=pictures)
 
 
 def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
-    yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys")
     yield from table_of(_COLUMNS, rows, "Distributions")
     yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
     yield from _what_wider_ones_cost(document.get("widened", []))
     yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
-    if "yield" in document:
-        share = document["yield"]
-        low, value, high = (100.0 * share[key] for key in ("low", "share", "high"))
-        yield f"Yield: {value:.1f} % of the gearboxes are within all limits (95 % interval {low:.1f} to {high:.1f} %)."
     standing = ""
     if document["representative"] < document["samples"]:
         standing = f", {document['representative']} of which stand for the production in the table of distributions"

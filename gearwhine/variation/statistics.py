@@ -34,17 +34,21 @@ class Share:
     Attributes
     ----------
     share, low, high : float
+    good, total : int
+        Number of the good gearboxes, and of all.
     """
 
     share: float
     low: float
     high: float
+    good: int
+    total: int
 
     @classmethod
     def of(cls, good: int, total: int) -> Share:
         """Return the share of some good ones of all."""
         interval = stats.binomtest(good, total).proportion_ci(CONFIDENCE, method="exact")
-        return cls(good / total, float(interval.low), float(interval.high))
+        return cls(good / total, float(interval.low), float(interval.high), good, total)
 
 
 @dataclass(frozen=True)
@@ -246,6 +250,30 @@ class QuantityStatistics:
         return self.explained
 
 
+@dataclass(frozen=True)
+class WorstGearbox:
+    """One of the worst gearboxes of a quantity.
+
+    Attributes
+    ----------
+    name : str
+        Name of the quantity.
+    rank : int
+        1 is the worst.
+    number : int
+        Number of the sample.
+    value : float
+    speed : float or None
+        Signed speed at which the value is the highest over speed [rad/s]; None of a quantity without speeds.
+    """
+
+    name: str
+    rank: int
+    number: int
+    value: float
+    speed: float | None
+
+
 @dataclass(frozen=True, eq=False)
 class VariedResult:
     """A varied case with all its samples.
@@ -320,6 +348,21 @@ class VariedResult:
         return np.array(
             [one.numbers.get(name, math.nan) if isinstance(one, Evaluation) else math.nan for one in self.outcomes]
         )
+
+    def worst_gearboxes(self, one: QuantityStatistics) -> list[WorstGearbox]:
+        """Return the worst gearboxes of a quantity, the worst first."""
+        return [
+            WorstGearbox(one.name, rank, number, float(one.values[number]), self.speed_of_highest(one.name, number))
+            for rank, number in enumerate(one.worst, start=1)
+        ]
+
+    def speed_of_highest(self, name: str, number: int) -> float | None:
+        """Signed speed at which a quantity of a sample is the highest over speed [rad/s]; None of another quantity."""
+        found = self.outcomes[number]
+        curve = found.curves.get(name) if isinstance(found, Evaluation) else None
+        if curve is None or len(curve) != len(self.speeds):
+            return None
+        return float(self.speeds[int(np.argmax(curve))])
 
     def curve(self, name: str) -> FloatArray:
         """Curve of a quantity of all samples, shape (n, s)."""
