@@ -122,6 +122,7 @@ def solve_variation(
         speeds=speeds,
         design=design,
         resumed=solved.resumed,
+        widening=widen,
     )
     origin = Origin(case.title, case=case, housing=housing)
 
@@ -248,7 +249,7 @@ def vary(
     for number, row in enumerate(values):
         progress(f"machine {number + 1} of {len(values)}")
         outcomes.append(outcome_of(partial(found, row)))
-    result = VariedResult(inputs, points, values, nominal, tuple(outcomes), ranges, np.array(speeds), design, 0)
+    result = VariedResult(inputs, points, values, nominal, tuple(outcomes), ranges, np.array(speeds), design, 0, widen)
     return _result(Origin(title), result, start)
 
 

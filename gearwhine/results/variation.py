@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 _MOST_INPUTS = 3  # of a quantity in the table of what matters
 _MOST_RANKS, _MOST_RANKED = 3, 4  # worst gearboxes of a quantity, and quantities up to which they are told
 _MOST_FAILURES = 5  # told one by one
+_MANY_AT_END = 0.05  # part of the gearboxes that are the loudest at an end of the speeds above which it is warned of
 _WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
 
 
@@ -51,6 +52,8 @@ QUANTITY = (
     Part("within", "share", SHARE, optional=True),
     Quantity("explained", "explained"),
     Quantity("rank_correlation", "rank_correlations"),
+    Quantity("rank_chance", "rank_chances"),
+    Quantity("leading_ranks"),
     Quantity("sobol_first", _indices("first"), optional=True),
     Quantity("sobol_total", _indices("total"), optional=True),
     Quantity("worst"),
@@ -135,6 +138,7 @@ VARIED = (
         ),
     ),
     Part("yield", "yielded", SHARE, optional=True),
+    Quantity("widening", optional=True),
     Rows("widened", lambda varied: varied.widened or None, WIDENED, optional=True),
     *numbered("sample", lambda varied: len(varied.outcomes), "number of the gearbox"),
     in_file("input", "input", _names_of("inputs"), "varied key of the case"),
@@ -175,6 +179,20 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
             f"the total-order indices of {', '.join(wide[:3])} are known to no better than ±0.1: take more samples"
         )
         yield warning("few samples", message)
+    for one in varied.headlines:
+        part = varied.at_end_of_speeds(one.name)
+        if part is not None and part > _MANY_AT_END:
+            message = (
+                f"{part_of(one.name)} is the loudest at an end of the speeds, {_speeds(varied.speeds)}, in "
+                f"{100.0 * part:.0f} % of the gearboxes: beyond that end the level may be higher; take a wider range"
+            )
+            yield warning("loudest speed", message, share=part)
+
+
+def _speeds(speeds: Any) -> str:
+    """Return the ends of some speeds [rad/s] in words."""
+    rpm = np.abs(np.asarray(speeds)) * RPM
+    return f"{rpm.min():.5g} to {rpm.max():.5g} rpm"
 
 
 def _limit(row: Document) -> str:
@@ -195,7 +213,11 @@ def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callab
 
     def text(row: Document) -> str:
         value = of(row)
-        return "" if value is None or value != value else format(shown_quantity(row["name"])[1] * value, form)
+        if value is None or value != value:
+            return ""
+        shown = format(shown_quantity(row["name"])[1] * value, form)
+        # Lives of millions of hours are narrower without a power of ten.
+        return f"{float(shown):.0f}" if "e+0" in shown else shown
 
     return text
 
@@ -267,7 +289,7 @@ def summary(document: Document) -> Iterator[str | Table]:
     worst = [row for row in document["worst"] if row["rank"] <= ranks]
     yield from table_of(_WORST_COLUMNS, worst, f"Worst gearboxes{files}")
     if speeds := document["speeds_rpm"]:
-        ends = f"{min(speeds):.5g} to {max(speeds):.5g} rpm" if len(speeds) > 1 else f"{speeds[0]:.5g} rpm"
+        ends = _speeds(np.array(speeds) / RPM) if len(speeds) > 1 else f"{speeds[0]:.5g} rpm"
         yield f"{counted(len(speeds), 'speed')} of the first driver: {ends}."
     yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys; mean and standard deviation as drawn")
 
@@ -290,7 +312,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
     yield from table_of(_COLUMNS, rows, "Distributions")
     yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
-    yield from _what_wider_ones_cost(document.get("widened", []))
+    yield from _what_wider_ones_cost(document)
     yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
     standing = ""
     if document["representative"] < document["samples"]:
@@ -305,7 +327,8 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
     for row in rows:
         total, ranks = row.get("sobol_total"), row["rank_correlation"]
         values = {key: value[0] for key, value in total.items()} if total else row["explained"]
-        first = sorted(values, key=lambda key: -values[key])[:_MOST_INPUTS]
+        by_rank = [key for key in row["leading_ranks"] if key not in values]
+        first = [*sorted(values, key=lambda key: -values[key]), *by_rank][:_MOST_INPUTS]
         if not first:
             unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
         for place, key in enumerate(first):
@@ -314,16 +337,16 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
                     "of": "" if place else part_of(row["name"]),
                     "quantity": "" if place else shown_quantity(row["name"])[0].partition(" [")[0],
                     "input": key,
-                    "value": f"{values[key]:.2f}",
+                    "value": f"{values[key]:.2f}" if key in values else "",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
                     "alone": f"{row['sobol_first'][key][0]:.2f}" if total else "",
-                    "rank": f"{ranks[key]:+.2f}" if key in ranks else "",
+                    "rank": f"{ranks[key]:+.2f} (p = {row['rank_chance'][key]:.0e})" if key in ranks else "",
                 }
             )
     caption = (
         "What matters: Sobol' indices, the part of the variance that goes with the input in all and alone"
         if by_index
-        else "What matters: part of the variance that goes with the input alone, where the samples prove it"
+        else "What matters: part of the variance by the input alone, and rank correlation, where the samples prove one"
     )
     columns = (
         Column("of", "of"),
@@ -332,16 +355,19 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
         Column("in all" if by_index else "part", "value"),
         Column("95 % interval", "interval"),
         Column("alone", "alone"),
-        Column("rank correlation", "rank"),
+        Column("rank correlation (p: by chance)", "rank"),
     )
     yield from table_of(columns, shown, caption)
     if unexplained:
-        yield f"No input alone explains {'; '.join(unexplained)}: more samples, or --indices, may tell."
+        yield (
+            f"No input alone explains {'; '.join(unexplained)}, and no rank correlation is beyond chance: more "
+            "samples, or --indices, may tell."
+        )
 
 
-def _what_wider_ones_cost(rows: Sequence[Document]) -> Iterator[str | Table]:
+def _what_wider_ones_cost(document: Document) -> Iterator[str | Table]:
     """Yield a table of wider inputs: the yield, its change, and how far the first quantity moves."""
-    rows = [row for row in rows if row["quantities"]]
+    rows = [row for row in document.get("widened", ()) if row["quantities"]]
     if not rows:
         return
     first = rows[0]["quantities"][0]["name"]
@@ -366,8 +392,27 @@ def _what_wider_ones_cost(rows: Sequence[Document]) -> Iterator[str | Table]:
         Column("bad end", _from_to("quantile_before", "quantile", ".4g")),
     )
     of_first = f"std and bad end of {part_of(first)}, {shown_quantity(first)[0]}"
-    caption = f"What wider tolerances cost, the dearest first; {of_first}"
+    caption = f"What tolerances wider by a factor of {document['widening']:g} cost, the dearest first; {of_first}"
     yield from table_of(columns, shown, caption)
+    yield from _unproven(document)
+
+
+def _unproven(document: Document) -> Iterator[str]:
+    """Yield a sentence where every change of the yield may be chance, with how many gearboxes may prove the largest."""
+    changes = [row for row in document["widened"] if "change" in row]
+    if not changes or any(row["change"]["low"] > 0.0 or row["change"]["high"] < 0.0 for row in changes):
+        return
+    text = "No change of the yield is proven: each interval contains 0"
+    largest = max(changes, key=lambda row: abs(row["change"]["difference"]))
+    if difference := abs(largest["change"]["difference"]):
+        # Half of an interval falls with the root of the number of gearboxes.
+        half = 0.5 * (largest["change"]["high"] - largest["change"]["low"])
+        count = document["representative"] * max(half / difference, 1.0) ** 2
+        text += (
+            f". About {float(f'{count:.1g}'):.0f} gearboxes of each in place of {document['representative']} would "
+            f"prove that of {largest['input']} if it stays as large"
+        )
+    yield f"{text}."
 
 
 def _from_to(before: str, after: str, form: str) -> Callable[[Document], str]:
