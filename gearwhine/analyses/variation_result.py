@@ -18,6 +18,7 @@ from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, requ
 from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.model import lacking
+from gearwhine.case.operation import Operation
 from gearwhine.case.optimisation import Optimisation
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
@@ -26,6 +27,7 @@ from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems
 from gearwhine.output.quantity import RPM
@@ -131,27 +133,32 @@ def solve_variation(
         for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
             for worst in result.worst_gearboxes(one):
                 drawn = varied.case(result.points[worst.number])
-                text = dump_case(_reproducing(drawn, worst, at_speeds=bool(wanted.speeds)))
+                told = _told(worst, drawn.title, drawn.notes, drawn.operation if wanted.speeds else None)
+                text = dump_case(drawn.model_copy(update=told))
                 (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
         return {}
 
-    return _result(origin, result, start, worst_cases)
+    return _result(origin, result, start, worst_cases, varied.start_warnings)
 
 
-def _reproducing(drawn: Case, worst: WorstGearbox, *, at_speeds: bool) -> Case:
-    """Return the case of one of the worst gearboxes, at the speed at which its quantity has the value of its title."""
+def _told(worst: WorstGearbox, title: str, notes: str, operation: Operation | None) -> dict[str, Any]:
+    """Return title, notes and operation of a worst gearbox's case, with the speed of the value in its title.
+
+    Without an operation to change, the value is one at the speed of the case.
+    """
     number = f"gearbox {worst.number}, {worst.name} = {worst.value:.6g}"
-    changes: dict[str, Any] = {}
-    if at_speeds and worst.speed is not None and drawn.operation is not None:
-        number += f" at {RPM * abs(worst.speed):.5g} rpm"
-        note = (
-            f"The speed of operation is {RPM * abs(worst.speed):.5g} rpm, at which {worst.name} is the highest over "
-            f"the speeds of the study; the study finds the operating point at {RPM * abs(drawn.operation.speed):.5g} "
-            "rpm."
-        )
-        changes["operation"] = drawn.operation.model_copy(update={"speed": worst.speed})
-        changes["notes"] = f"{drawn.notes}\n{note}".strip()
-    return drawn.model_copy(update=changes | {"title": f"{drawn.title}: {number}".strip(": ")})
+    if worst.speed is None or operation is None:
+        return {"title": f"{title}: {number}".strip(": ")}
+    rpm = f"{RPM * abs(worst.speed):.5g} rpm"
+    note = (
+        f"The speed of operation is {rpm}, at which {worst.name} is the highest over the speeds of the study; that "
+        f"has the operating point at {RPM * abs(operation.speed):.5g} rpm."
+    )
+    return {
+        "title": f"{title}: {number} at {rpm}".strip(": "),
+        "notes": f"{notes}\n{note}".strip(),
+        "operation": operation.model_copy(update={"speed": worst.speed}),
+    }
 
 
 def vary(
@@ -387,11 +394,15 @@ def _require_distributions(varied: VariedCase, variation: Variation) -> None:
 
 
 def _result(
-    origin: Origin, result: VariedResult, start: float, files: Callable[..., Mapping[str, Any]] = no_files
+    origin: Origin,
+    result: VariedResult,
+    start: float,
+    files: Callable[..., Mapping[str, Any]] = no_files,
+    warnings: Sequence[ResultWarning] = (),
 ) -> Result[VariedResult]:
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures.variation import draw_variation
 
         return draw_variation(origin.title, result)
 
-    return origin.study_result("vary", result, varied_document(result), VARIED, figures, start, files)
+    return origin.study_result("vary", result, varied_document(result), VARIED, figures, start, files, warnings)
