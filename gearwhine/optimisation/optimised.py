@@ -144,15 +144,12 @@ class Optimised:
         one, at = self.inputs[place], float(design.point[place])
         if at == AS_WRITTEN:
             return self.written[place]
-        value = one.value(at)
-        if one.words:
-            return one.words[round(value)]
-        return f"{value:.6g} {one.unit}".strip()
+        return _shown(one, one.value(at))
 
     def shown_along(self, place: int, along: Input, design: Design) -> str:
         """Return the value in a design of a key that changes in step with an input; empty where it is as written."""
         at = float(design.point[place])
-        return "" if at == AS_WRITTEN else along.text(along.value(at))
+        return "" if at == AS_WRITTEN else _shown(along, along.value(at))
 
     @property
     def at_bounds(self) -> dict[str, str]:
@@ -198,6 +195,11 @@ class Optimised:
         """Values of the inputs of each design, shape (n, d)."""
         rows = [[one.value(float(at)) for one, at in zip(self.inputs, d.point, strict=True)] for d in self.designs]
         return np.array(rows).reshape(len(self.designs), len(self.inputs))
+
+
+def _shown(one: Input, value: float) -> str:
+    """Return a value of an input with its unit, or the word that it stands for."""
+    return one.words[round(value)] if one.words else f"{value:.6g} {one.unit}".strip()
 
 
 def design_of(point: FloatArray, found: Sequence[Mapping[str, float]], failure: Failure | None, goals: Goals) -> Design:

@@ -420,9 +420,9 @@ def test_keys_in_step_ends_of_lists_and_numbers_of_designs_are_told_as_the_case_
     assert "operation.force[1].x is the last of its list: a longer list may be better." in shown
     assert diameter["at_bound"] == ""  # of a list that neither rises nor falls
     (along,) = force["with"]
-    assert (along["key"], along["designs"]) == ("operation.speed", ["1100.0 rpm"])
+    assert (along["key"], along["designs"]) == ("operation.speed", ["1100 rpm"])
     (row,) = [line for line in shown.splitlines() if line.startswith(" operation.speed ")]
-    assert "1100.0 rpm" in row
+    assert "1100 rpm" in row
     assert row.rstrip().endswith("operation.force[1].x")
     # The number in the table, in the title of the case and in the file is one; the picture counts from 0, too.
     (chosen,) = document["chosen"]
