@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from gearwhine.figures.style import (
@@ -18,13 +19,19 @@ from gearwhine.figures.style import (
     INK,
     LABEL,
     RED,
+    RPM,
+    SERIES,
     TICK,
+    legend_below,
+    legend_height,
+    name_in_legend,
     panel,
     panel_pair,
     panel_title,
     sheet,
     shortened,
 )
+from gearwhine.optimisation.verification import Motion, Verification
 from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
@@ -50,6 +57,35 @@ def draw_optimisation(title: str, optimised: Optimised) -> Iterator[tuple[str, F
     if optimised.goals.count > 1:
         yield "optimise-front", _fronts(begins, optimised)
     yield "optimise-keys", _over_keys(optimised)
+    checked = optimised.verification
+    if checked is not None and isinstance(checked.start, Motion) and checked.start.over_speed:
+        yield "optimise-levels", _over_speed(begins, optimised.chosen.values(), checked, checked.start)
+
+
+def _over_speed(begins: str, labels: Iterable[str], checked: Verification, start: Motion) -> Figure:
+    """Draw the levels of start and proposed designs over the speed range, and at the speeds of the study."""
+    sensors = list(start.over_speed)[:_MOST_PANELS]
+    designs = [("start", start), *zip(labels, checked.designs, strict=True)][: len(SERIES)]
+    solved = [(label, one) for label, one in designs if isinstance(one, Motion)]
+    low = legend_height(len(solved))
+    figure = sheet(
+        HEAD + _TITLES + FOOT + low + len(sensors) * _HEIGHT + (len(sensors) - 1) * _GAP,
+        "Levels over the speed range",
+        f"{begins}lines of the teeth by the linear machine under load.",
+    )
+    for row, sensor in enumerate(reversed(sensors)):
+        axes = panel(figure, FOOT + low + row * (_HEIGHT + _GAP), _HEIGHT)
+        for color, (_, one) in zip((GREY, *SERIES), solved, strict=False):
+            axes.plot(RPM * one.speeds, one.over_speed[sensor], color=color, lw=1.2)
+        axes.set_ylabel("level [dB re 1 µm/s²]")
+        axes.set_xlabel("speed [rpm]")
+        panel_title(axes, shortened(sensor, 48))
+    marks = [
+        Line2D([], [], color=color, lw=1.2, label=name_in_legend(label, 36))
+        for color, (label, _) in zip((GREY, *SERIES), solved, strict=False)
+    ]
+    legend_below(figure, marks)
+    return figure
 
 
 def _masks(optimised: Optimised) -> tuple[Mask, Mask]:
