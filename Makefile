@@ -36,7 +36,7 @@ help:
 	@echo "make reference      pages of all case keys and command options, in build/reference"
 	@echo "make docs           the documentation as a site, in build/site"
 	@echo "make validation     docs/validation.md anew, from the tests against published values"
-	@echo "make clean          what these have made, but for the environment"
+	@echo "make clean          the environment and what these have made"
 
 test: lint checked-and-compiled unit
 
