@@ -28,14 +28,14 @@ LIMIT = 2.0 * np.pi * 2900.0
 
 
 @cache
-def uneven() -> gw.Machine:
+def uneven(speed: str = "5500 rpm") -> gw.Machine:
     """The small gearbox with pitch deviations of one gear and runout of the other."""
-    return small_gearbox().changed(CHANGES).machine
+    return small_gearbox().changed([*CHANGES, f"operation.speed={speed}"]).machine
 
 
 @cache
-def uneven_machine() -> CoupledMachine:
-    machine = uneven()
+def uneven_machine(speed: str = "5500 rpm") -> CoupledMachine:
+    machine = uneven(speed)
     return load_machine(machine, machine.operating_point()).coupled
 
 
@@ -54,9 +54,10 @@ def test_amplitudes_between_mesh_harmonics_are_fouriers_integrals() -> None:
         phasors_between(moved, values, orders)
 
 
-def test_each_line_has_what_its_mechanisms_have_there() -> None:
-    """Pitch errors and runout of a line, found for that line alone, at both sensors."""
-    machine = uneven_machine()
+@pytest.mark.parametrize("speed", ["5500 rpm", "-5500 rpm"])
+def test_each_line_has_what_its_mechanisms_have_there(speed: str) -> None:
+    """Pitch errors and runout of a line, found for that line alone, at both sensors; also turning the other way."""
+    machine = uneven_machine(speed)
     model, mechanisms = MeshHarmonicModel(machine), LineMechanisms(machine)
     teeth = unequal_teeth(model, LIMIT)
     stiffness, damping = linear_matrices(machine.system, model.contact)
