@@ -16,22 +16,24 @@ the compliance C = Eᵀ K₀⁻¹ E = S Sᵀ between the connectors, and ν = S�
     z = z_f + S ν,      Π(ν) = ½ νᵀ ν + Σ (φ(z) - ½ zᵀ k₀ z + zᵀ k₀ z₀).
 
 S has the eigenvectors of C times the roots of its eigenvalues, without those that are rounding. A trust region finds
-the minimum of Π(ν); from there Newton's method takes the connectors' own tangents, which may be unsymmetric.
+the minimum of Π(ν), first with meshes at few phases; from there Newton's method takes the connectors' own tangents,
+which may be unsymmetric.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, replace_linear
+from gearwhine.coupling.statics.static_model import ConnectorLaw, FaceContactLaw, LinearLaw, replace_linear
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 
 _TOLERANCE = 1e-12
+_COARSE = 1e-3  # tolerance with meshes at few phases
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
@@ -88,9 +90,13 @@ class ConnectedStructure:
         """
         # The first radius of the search is the size of the motions under the loads.
         radius = max(float(np.sqrt(abs(self.load @ self._under_nominal_laws))), 1e-9)
-        minimum = minimise(self._potential, np.zeros(self._spread.shape[1]), radius, _TOLERANCE)
-        x, steps = self._polished(self._start + self._spread @ minimum.place)
-        return x, minimum.iterations + steps
+        place, iterations = np.zeros(self._spread.shape[1]), 0
+        coarse = [law.coarse if isinstance(law, FaceContactLaw) else law for law in self._conservative_laws]
+        for laws, tolerance in ((coarse, _COARSE), (self._conservative_laws, _TOLERANCE)):
+            minimum = minimise(partial(self._potential, laws), place, radius, tolerance)
+            place, iterations = minimum.place, iterations + minimum.iterations
+        x, steps = self._polished(self._start + self._spread @ place)
+        return x, iterations + steps
 
     @cached_property
     def _held(self) -> FloatArray:
@@ -179,10 +185,10 @@ class ConnectedStructure:
             for part, law in zip(self.parts, self.laws, strict=True)
         ]
 
-    def _potential(self, nu: FloatArray) -> Local:
+    def _potential(self, laws: Sequence[ConnectorLaw], nu: FloatArray) -> Local:
         """Π(ν), its gradient and its second derivatives."""
         spread = self._spread
-        energy, force, tangent = self._beyond_nominal(self._start + spread @ nu, self._conservative_laws)
+        energy, force, tangent = self._beyond_nominal(self._start + spread @ nu, laws)
         pushed = spread.T @ force
         noise = float(np.abs(self.load) @ np.abs(self._under_nominal_laws)) + 1e-12
         return Local(
