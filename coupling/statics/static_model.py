@@ -167,7 +167,7 @@ def _static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
 def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
     """Stiffness of a rolling bearing without clearance under a trial load, alike in x and y, (5, 5)."""
     return _stiffness_on_trial(
-        replace(rolling, rows=tuple(replace(row, clearance=0.0) for row in rolling.rows), name="")
+        unchecked(rolling, rows=tuple(unchecked(row, clearance=0.0) for row in rolling.rows), name="")
     )
 
 
