@@ -10,7 +10,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
@@ -508,7 +508,8 @@ class Gear(Table):
         from gearwhine.coupling.gears import Gear as BuiltGear
 
         module, errors = self.tooth_module, self.errors
-        gear = BuiltGear(
+        elastic = () if material is None else ("youngs_modulus", "poisson_ratio", "density")
+        return BuiltGear(
             name=self.name,
             teeth=self.teeth,
             module=module,
@@ -535,14 +536,7 @@ class Gear(Table):
             ring_support=None if self.ring_support is None else self.ring_support.build(),
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
-        )
-        if material is None:
-            return gear
-        return replace(
-            gear,
-            youngs_modulus=material.youngs_modulus,
-            poisson_ratio=material.poisson_ratio,
-            density=material.density,
+            **{name: getattr(material, name) for name in elastic},
         )
 
     @property

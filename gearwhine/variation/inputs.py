@@ -200,7 +200,12 @@ class _Keys:
             # Entries without the key have it from now on, where they take it.
             one = Input("", *self._law((there or places)[0], varied), ((key_of((there or places)[0]), 1.0),))
             text = next(one.overrides(0.5)).partition("=")[2]
-            places = [place for place in places if place in there or self._takes(f"{key_of(place)}={text}")]
+            refusals = {place: self._refusal(f"{key_of(place)}={text}") for place in places if place not in there}
+            places = [place for place in places if refusals.get(place) is None]
+            if not places:
+                raise _CannotVaryError(
+                    f"a key that some entries of the case take; none has it, and {refusals.popitem()[1]}"
+                )
         if not places:
             raise _CannotVaryError("a key that some entries of the case take")
         names = [name for place in places for name in _names(document, place)]
@@ -219,13 +224,13 @@ class _Keys:
         keys = tuple((key_of(place), _factor(document, place, varied)) for place in places)
         yield Input(key, *self._law(places[0], varied), keys)
 
-    def _takes(self, override: str) -> bool:
-        """Whether the case takes a value at a key."""
+    def _refusal(self, override: str) -> str | None:
+        """Return why the case does not take a value at a key; None where it does."""
         try:
             self._source.changed_case([override])
-        except CaseError:
-            return False
-        return True
+        except CaseError as error:
+            return str(replace(error.problems[0], source=""))
+        return None
 
     def _law(self, place: Location, varied: Varied) -> _Law:
         """Return the law of a key; what it cannot be is said of it."""

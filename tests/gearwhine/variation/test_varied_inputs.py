@@ -142,6 +142,7 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
         ('vary = { "gears.pinion.bore" = { uniform = [1, 2] } }', "leads to something in the case"),
         ('vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04], factor = { pinon = 2 } } }', "did you mean 'pinion'"),
         ('vary = { "gear.*.bore" = { fit = "H7" } }', "independent = true"),
+        ('vary = { "gear.*.root_relief.amount" = { uniform = ["1 um", "2 um"] } }', "'start_roll_angle' and 'length'"),
         ('vary = { "gear.pinion.bore" = { file = "none.csv" } }', "file"),
         (
             'vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04] }, "gear.*.bore" = { uniform = [0.03, 0.04] } }',
