@@ -185,7 +185,7 @@ def _exponents(solved: SolvedSystem, progress: Progress) -> ComplexArray:
     proper = np.array([kind not in ("residual", "rigid") for kind in modes.kinds])
     swinging = proper & (modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) <= limit)
     chosen = np.flatnonzero(swinging)[:_EXPONENTS]
-    exponents = np.full(len(modes.kinds), np.nan, dtype=np.complex128)
+    exponents = np.full(len(modes.kinds), complex(np.nan, np.nan))
     model = TurningResponse(solved.machine.system, solved.contact)
     exponents[chosen] = floquet_exponents(
         model, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], progress

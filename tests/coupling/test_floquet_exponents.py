@@ -134,6 +134,9 @@ def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordi
     assert diagram.exponents is not None
     assert diagram.observed is None  # as nothing has a sensor
     assert diagram.turning_frequencies_hz == pytest.approx(diagram.exponents.imag / (2.0 * np.pi), nan_ok=True)
+    unsolved = np.isnan(diagram.exponents)
+    assert np.any(unsolved)
+    assert np.all(np.isnan(diagram.turning_frequencies_hz[unsolved]))
     checked = 0
     for number, speed in enumerate((ratio * speeds).tolist()):
         families = (exact.eigenvalues[number][:, None] + 1j * speed * np.arange(-4, 5)).ravel()
