@@ -97,8 +97,6 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
         "lines: shaft orders (dotted), mesh orders (dashed); ● where a mesh order meets a mode, larger the more of its "
         "strain energy is in the teeth; ○ where a shaft order meets a bending mode"
     )
-    if campbell.exponents is not None:
-        note += "; + exponents with turning carriers, × where fixed sensors see their motion if elsewhere"
     if any(line.kind == "sideband" for line in campbell.lines):
         note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
     speeds = RPM * np.abs(campbell.speeds)
