@@ -30,6 +30,7 @@ from gearwhine.figures.style import (
     panel_title,
     sheet,
     shortened,
+    stacked,
 )
 from gearwhine.optimisation.verification import Motion, Verification
 from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
@@ -114,15 +115,11 @@ def _set_label(axes: Axes, text: str, *, across: bool) -> None:
 
 def _convergence(begins: str, optimised: Optimised) -> Figure:
     aims = list(range(len(optimised.goals.aims)))[:_MOST_PANELS]
-    figure = sheet(
-        HEAD + _TITLES + FOOT + len(aims) * _HEIGHT + (len(aims) - 1) * _GAP,
-        "Convergence",
-        f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start.",
-    )
+    note = f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start."
+    figure, panels = stacked(len(aims), _HEIGHT, _GAP, "Convergence", note, first=_TITLES)
     within, beyond = _masks(optimised)
     numbers = np.arange(1, len(optimised.designs) + 1)
-    for row, place in enumerate(reversed(aims)):
-        axes = panel(figure, FOOT + row * (_HEIGHT + _GAP), _HEIGHT)
+    for place, axes in zip(aims, panels, strict=True):
         values, sign = _values(optimised, place), optimised.goals.aims[place].sign
         axes.plot(numbers[beyond], values[beyond], ".", color=RED, ms=3.0)
         axes.plot(numbers[within], values[within], ".", color=BLUE, ms=3.5)
@@ -145,16 +142,11 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
 
 def _fronts(begins: str, optimised: Optimised) -> Figure:
     pairs = list(combinations(range(len(optimised.goals.aims)), 2))[:_MOST_PANELS]
-    height = 1.5 * _HEIGHT
-    figure = sheet(
-        HEAD + FOOT + len(pairs) * height + (len(pairs) - 1) * _GAP,
-        "Pareto front",
-        f"{begins}blue: front, ring: proposed, grey: others, red: beyond the limits, cross: start.",
-    )
+    note = f"{begins}blue: front, ring: proposed, grey: others, red: beyond the limits, cross: start."
+    figure, panels = stacked(len(pairs), 1.5 * _HEIGHT, _GAP, "Pareto front", note)
     within, beyond = _masks(optimised)
     front, chosen = optimised.front, [number for number in optimised.chosen if number in optimised.front]
-    for row, (first, second) in enumerate(reversed(pairs)):
-        axes = panel(figure, FOOT + row * (height + _GAP), height)
+    for (first, second), axes in zip(pairs, panels, strict=True):
         across, up = _values(optimised, first), _values(optimised, second)
         axes.plot(across[beyond], up[beyond], ".", color=RED, ms=2.5, alpha=0.6)
         axes.plot(across[within], up[within], ".", color=GREY, ms=3.0)

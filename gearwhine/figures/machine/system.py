@@ -42,9 +42,11 @@ from gearwhine.figures.style import (
     legend_height,
     mark_operation,
     name_in_legend,
+    name_lowest,
     panel,
     sheet,
     shortened,
+    stacked,
     stretches,
 )
 from gearwhine.output import file_stems
@@ -294,12 +296,10 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
     """
     sensors = dict(list(machine.sensor_rows.items())[:_MOST_PANELS])
     note = "peak amplitudes, linear response about the mean load; numbers: mesh harmonic, and turns of carriers off it"
-    figure = sheet(HEAD + len(sensors) * (_RESPONSE_HEIGHT + _LINE_GAP) + FOOT, "Lines of the sensors", note)
+    count, title = len(sensors), "Lines of the sensors"
+    figure, panels = stacked(count, _RESPONSE_HEIGHT, _LINE_GAP, title, note, first=_LINE_GAP)
     frequencies = np.array([line.frequency for line in lines]) / HERTZ
-    bottom = FOOT
-    for number, (name, row) in enumerate(reversed(sensors.items())):
-        axes = panel(figure, bottom, _RESPONSE_HEIGHT)
-        bottom += _RESPONSE_HEIGHT + _LINE_GAP
+    for (name, row), axes in zip(sensors.items(), panels, strict=True):
         heights = np.array([line.frequency**2 * abs(row @ line.motion) for line in lines])
         top = float(heights.max())
         least = top * 10.0**-_DECADES
@@ -333,12 +333,8 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
             )
         axes.set_xlim(low, high)
         axes.set_ylabel(f"{shortened(name, 14)} [m/s²]")
-        if number == 0:
-            axes.set_xlabel("frequency [Hz]")
-        else:
-            axes.tick_params(labelbottom=False)
-        if number == len(sensors) - 1:
-            legend(figure, axes.get_legend_handles_labels()[0])
+    name_lowest(panels, "frequency [Hz]")
+    legend(figure, panels[0].get_legend_handles_labels()[0])
     return figure
 
 
