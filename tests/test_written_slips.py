@@ -22,7 +22,7 @@ from test_units_of_declarations import NAMES, SHOWN, dimension_of  # noqa: E402
 
 ROOMS = ("coupling", "gearwhine")
 """Rooms whose texts and tables users see."""
-UNITS = SHOWN | {"dB(A)": ("dB", 1.0), "kg m²": ("kg m2", 1.0), "‰": ("%", 0.1), "deg": SHOWN["°"]}
+UNITS = SHOWN | {"dB(A)": ("dB", 1.0), "kg m²": ("kg m2", 1.0), "deg": SHOWN["°"]}
 _UNIT = re.compile(rf"\s?({'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![\w/·*²(°-])")
 _BETWEEN = (" to ", " and ", ", ", " ± ")  # of two numbers of one unit
 WORDS = {"speed": "rpm", "torque": "N m", "force": "N", "frequency": "Hz"}
