@@ -9,7 +9,7 @@ import pytest
 from rexs_files import CENTRE_DISTANCE, HELIX, PLANET, RING, SUN, RexsFile, helical_stage, planetary_stage
 
 import gearwhine as gw
-from gearwhine.case import parse_case
+from gearwhine.case import CaseError, parse_case
 from gearwhine.case.model import Case
 from gearwhine.exchange.rexs import ImportedCase, RexsError, case_of, read_content
 from gearwhine.exchange.rexs.catalogue import dimensions_of
@@ -586,6 +586,19 @@ def test_a_ring_has_the_sign_and_hand_by_which_it_fits() -> None:
     for written in (0.1, -0.1):
         ring_flank["addendum_modification_coefficient"] = (written, "none")
         assert entry(imported(file).document, "gear", "ring")["profile_shift"] == -0.1
+
+
+def test_an_assumed_tip_ends_where_the_involute_of_its_mate_begins() -> None:
+    """The tip of the ring would reach below the flanks of its planets; the case refuses one that is longer by 1 %."""
+    file = planetary_stage()
+    del file.named("ring")["tip_diameter"]
+    document = imported(file).document
+    parse_case(document)
+    ring = entry(document, "gear", "ring")
+    assert ring["addendum"] < 1.0
+    ring["addendum"] += 0.01
+    with pytest.raises(CaseError, match=r"the tip of 'ring' reaches .* below the involute of 'planet 1'"):
+        parse_case(document)
 
 
 def test_a_coupling_between_shafts_is_one_of_their_rotor() -> None:
