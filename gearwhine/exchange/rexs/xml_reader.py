@@ -88,7 +88,6 @@ class _Reader:
     components: list[Component] = field(default_factory=list)
     relations: list[Relation] = field(default_factory=list)
     spectra: list[list[LoadCase]] = field(default_factory=list)
-    found_model: bool = False
 
     # What is open.
     component: Component = field(default_factory=lambda: Component(0, "", ""))
@@ -141,7 +140,7 @@ class _Reader:
         return text
 
     def _start_model(self, attributes: dict[str, str]) -> None:
-        self.heading, self.found_model = attributes, True
+        self.heading = attributes
 
     def _start_relation(self, attributes: dict[str, str]) -> None:
         number = _id_of(attributes, "relation")

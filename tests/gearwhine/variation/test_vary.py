@@ -15,6 +15,7 @@ from gearwhine.cli import run_command
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
 from gearwhine.variation.samples import FOLDER
+from gearwhine.variation.statistics import QuantityStatistics
 from tests.machines.belted_shaft import BELTED_SHAFT
 
 SHAFT = (
@@ -93,6 +94,17 @@ def test_the_level_of_the_motion_is_that_of_simulate(tmp_path: Path) -> None:
     for sensor in sensors:
         level = found.dataset["value"].sel(quantity=f"sensor.{sensor['name']}.motion_level_db")
         assert float(level[0]) == pytest.approx(20.0 * np.log10(sensor["rms_m_per_s2"] / 1e-6), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("values", "mean", "deviation"),
+    [([1.0, np.nan, 3.0], 2.0, np.sqrt(2.0)), ([np.nan, 4.0], 4.0, np.nan), ([np.nan], np.nan, np.nan)],
+)
+def test_statistics_of_few_gearboxes_leave_out_those_that_failed(
+    values: list[float], mean: float, deviation: float
+) -> None:
+    found = QuantityStatistics("force_n", 0.0, np.array(values), np.zeros((len(values), 1)), ("key",))
+    assert [found.mean, found.deviation] == pytest.approx([mean, deviation], nan_ok=True)
 
 
 def _by_hand(forces: np.ndarray) -> np.ndarray:
