@@ -630,6 +630,33 @@ def test_a_bearing_between_two_shafts_stands_on_the_other_one() -> None:
     assert (pilot["rotor"], pilot["seat"], pilot["at"]) == ("input", "output", "5 mm")
 
 
+@pytest.mark.parametrize(
+    ("bearing", "attribute", "value", "kind", "said"),
+    [
+        ("6205", "axial_force_absorption", ("positive", "none"), "changed", "it locates its shaft in both senses, not"),
+        (
+            "6205",
+            "radial_bearing_clearance",
+            (12.0, "mum"),
+            "changed",
+            "its clearance before mounting is taken",
+        ),
+        ("NU 207", "axial_force_absorption", ("positive", "none"), "changed", "rollers without flanges, which take no"),
+        ("6205", "misalignment_in_v_direction", (20.0, "mum"), "left out", "seats of a case on the ground have no off"),
+        ("6205", "misalignment_in_w_direction", (20.0, "mum"), "left out", "seats of a case on the ground have no off"),
+    ],
+)
+def test_what_a_bearing_does_otherwise_is_told(
+    bearing: str, attribute: str, value: tuple[Any, str], kind: str, said: str
+) -> None:
+    file = helical_stage()
+    assert not any(said in text for text in notes(file, kind))
+    if attribute == "radial_bearing_clearance":
+        del file.named(bearing)["operating_radial_bearing_clearance"]
+    file.named(bearing)[attribute] = value
+    assert sum(said in text and bearing in text for text in notes(file, kind)) == 1
+
+
 def test_what_is_not_taken_is_listed_once_with_its_components() -> None:
     file = helical_stage()
     file.add("sn_curve", "curve")
