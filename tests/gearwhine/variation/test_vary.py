@@ -112,6 +112,7 @@ def _by_hand(forces: np.ndarray) -> np.ndarray:
     return forces @ np.array([[0.8, 0.2], [0.2, 0.8]])
 
 
+@pytest.mark.slow
 def test_each_gearbox_equals_the_single_calculation(tmp_path: Path) -> None:
     text = """
 [sweep]
@@ -187,6 +188,7 @@ def test_the_share_within_a_limit_is_that_of_the_known_distribution(tmp_path: Pa
     assert worst is None
 
 
+@pytest.mark.slow
 def test_sobol_indices_of_a_linear_machine_are_those_of_the_closed_form(tmp_path: Path) -> None:
     found = gw.load(_shaft(tmp_path)).vary(128, indices=True, folder=tmp_path / "out", workers=1)
     assert found.document["samples"] == 128 * 4
