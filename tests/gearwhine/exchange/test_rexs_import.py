@@ -657,6 +657,15 @@ def test_what_a_bearing_does_otherwise_is_told(
     assert sum(said in text and bearing in text for text in notes(file, kind)) == 1
 
 
+def test_the_summary_counts_the_notes_of_each_kind() -> None:
+    file = helical_stage()
+    file.named("6205")["axial_force_absorption"] = ("positive", "none")
+    found = imported(file)
+    numbers = [(len(notes(file, kind)), kind) for kind in ("assumed", "changed", "left out")]
+    assert min(numbers)[0] > 0
+    assert f": {', '.join(f'{number} {kind}' for number, kind in numbers)}; `gearwhine import`" in found.summary
+
+
 def test_what_is_not_taken_is_listed_once_with_its_components() -> None:
     file = helical_stage()
     file.add("sn_curve", "curve")
