@@ -601,6 +601,18 @@ def test_an_assumed_tip_ends_where_the_involute_of_its_mate_begins() -> None:
         parse_case(document)
 
 
+@pytest.mark.parametrize(("shift", "undercut"), [(-0.25, None), (-0.33, True)])
+def test_teeth_that_their_tool_undercuts_are_told_and_accepted(shift: float, undercut: bool | None) -> None:
+    """A rack whose straight flank ends a module below its line: from 1 - z sin² α_t / (2 cos β) = -0.287 on."""
+    file = helical_stage()
+    flanks = [one["attributes"] for one in file.components if one["type"] == "cylindrical_gear_flank"]
+    for gear, flank, own in zip(("pinion", "wheel"), flanks, (shift, 0.3 - shift), strict=True):
+        del file.named(gear)["tip_diameter"], file.named(gear)["root_diameter"]
+        flank["addendum_modification_coefficient"] = (own, "none")
+    assert entry(imported(file).document, "gear", "pinion").get("allow_undercut") is undercut
+    assert any("its tool undercuts the teeth" in text for text in notes(file, "changed")) is bool(undercut)
+
+
 def test_a_coupling_between_shafts_is_one_of_their_rotor() -> None:
     file = helical_stage()
     shaft = file.part("shaft", 1, "motor shaft", support_vector=([-90.0, 0.0, 0.0], "mm"))
