@@ -15,6 +15,7 @@ from gearwhine.cli import run_command
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
 from gearwhine.variation.samples import FOLDER
+from gearwhine.variation.statistics import QuantityStatistics
 from tests.machines.belted_shaft import BELTED_SHAFT
 
 SHAFT = (
@@ -95,11 +96,23 @@ def test_the_level_of_the_motion_is_that_of_simulate(tmp_path: Path) -> None:
         assert float(level[0]) == pytest.approx(20.0 * np.log10(sensor["rms_m_per_s2"] / 1e-6), abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("values", "mean", "deviation"),
+    [([1.0, np.nan, 3.0], 2.0, np.sqrt(2.0)), ([np.nan, 4.0], 4.0, np.nan), ([np.nan], np.nan, np.nan)],
+)
+def test_statistics_of_few_gearboxes_leave_out_those_that_failed(
+    values: list[float], mean: float, deviation: float
+) -> None:
+    found = QuantityStatistics("force_n", 0.0, np.array(values), np.zeros((len(values), 1)), ("key",))
+    assert [found.mean, found.deviation] == pytest.approx([mean, deviation], nan_ok=True)
+
+
 def _by_hand(forces: np.ndarray) -> np.ndarray:
     """Forces on the bearings of the shaft, left and right, (n, 2)."""
     return forces @ np.array([[0.8, 0.2], [0.2, 0.8]])
 
 
+@pytest.mark.slow
 def test_each_gearbox_equals_the_single_calculation(tmp_path: Path) -> None:
     text = """
 [sweep]
@@ -175,6 +188,7 @@ def test_the_share_within_a_limit_is_that_of_the_known_distribution(tmp_path: Pa
     assert worst is None
 
 
+@pytest.mark.slow
 def test_sobol_indices_of_a_linear_machine_are_those_of_the_closed_form(tmp_path: Path) -> None:
     found = gw.load(_shaft(tmp_path)).vary(128, indices=True, folder=tmp_path / "out", workers=1)
     assert found.document["samples"] == 128 * 4
