@@ -457,6 +457,13 @@ class Detection:
     a90: float | None
     a90_95: float | None
 
+    @property
+    def is_contradicted(self) -> bool:
+        """Whether the hits of a size from a90 on exclude the probability of 0.9 that the curve has there."""
+        return self.a90 is not None and any(
+            share.size >= self.a90 and share.interval[1] < _DETECTED for share in self.shares
+        )
+
 
 def detection(sizes: FloatArray, responses: FloatArray, limit: Threshold) -> Detection:
     """Find the probability of detection over the size of a fault from the responses to faults of some sizes.

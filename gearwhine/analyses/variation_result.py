@@ -28,6 +28,7 @@ from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems
+from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
@@ -36,7 +37,7 @@ from gearwhine.variation.inputs import Input, Wider, correlation_matrix, values_
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
-from gearwhine.variation.statistics import VariedResult, require_known_limits
+from gearwhine.variation.statistics import VariedResult, WorstGearbox, require_known_limits
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -121,20 +122,36 @@ def solve_variation(
         speeds=speeds,
         design=design,
         resumed=solved.resumed,
+        widening=widen,
     )
     origin = Origin(case.title, case=case, housing=housing)
 
     def worst_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
         """Write the worst gearboxes as cases."""
         for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
-            for rank, number in enumerate(one.worst, start=1):
-                worst = varied.case(result.points[number])
-                title = f"{origin.title}: gearbox {number}, {one.name} = {one.values[number]:.6g}".strip(": ")
-                text = dump_case(worst.model_copy(update={"title": title}))
-                (place / f"worst-{stem}-{rank}.toml").write_text(text, encoding="utf-8")
+            for worst in result.worst_gearboxes(one):
+                drawn = varied.case(result.points[worst.number])
+                text = dump_case(_reproducing(drawn, worst, at_speeds=bool(wanted.speeds)))
+                (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
         return {}
 
     return _result(origin, result, start, worst_cases)
+
+
+def _reproducing(drawn: Case, worst: WorstGearbox, *, at_speeds: bool) -> Case:
+    """Return the case of one of the worst gearboxes, at the speed at which its quantity has the value of its title."""
+    number = f"gearbox {worst.number}, {worst.name} = {worst.value:.6g}"
+    changes: dict[str, Any] = {}
+    if at_speeds and worst.speed is not None and drawn.operation is not None:
+        number += f" at {RPM * abs(worst.speed):.5g} rpm"
+        note = (
+            f"The speed of operation is {RPM * abs(worst.speed):.5g} rpm, at which {worst.name} is the highest over "
+            f"the speeds of the study; the study finds the operating point at {RPM * abs(drawn.operation.speed):.5g} "
+            "rpm."
+        )
+        changes["operation"] = drawn.operation.model_copy(update={"speed": worst.speed})
+        changes["notes"] = f"{drawn.notes}\n{note}".strip()
+    return drawn.model_copy(update=changes | {"title": f"{drawn.title}: {number}".strip(": ")})
 
 
 def vary(
@@ -232,7 +249,7 @@ def vary(
     for number, row in enumerate(values):
         progress(f"machine {number + 1} of {len(values)}")
         outcomes.append(outcome_of(partial(found, row)))
-    result = VariedResult(inputs, points, values, nominal, tuple(outcomes), ranges, np.array(speeds), design, 0)
+    result = VariedResult(inputs, points, values, nominal, tuple(outcomes), ranges, np.array(speeds), design, 0, widen)
     return _result(Origin(title), result, start)
 
 

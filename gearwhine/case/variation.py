@@ -27,6 +27,7 @@ KINDS = ("normal", "uniform", "triangular", "values", "file", "class", "fit")
 """Keys of which a distribution has exactly one."""
 _ATTRIBUTES = {"class": "tolerance_class"}
 _NAMED = {"deviation": "standard deviation", "mode": "most likely value", "low": "low end", "high": "high end"}
+_LISTED = 6  # values that are named in words
 _BELONGS_TO = {"within": "normal", "weights": "values", "column": "file", "size": "fit"}
 
 
@@ -83,6 +84,20 @@ class Varied(Table):
     def kind(self) -> str:
         """Kind of the distribution, as its key says it."""
         return next(kind for kind in KINDS if getattr(self, _ATTRIBUTES.get(kind, kind)) is not None)
+
+    @property
+    def words(self) -> str:
+        """The distribution as the case gives it, in words: ``class 7``, ``normal 12 um ± 2 um``."""
+        if self.tolerance_class is not None or self.fit is not None:
+            return f"{self.kind} {self.fit or self.tolerance_class}"
+        if self.normal is not None:
+            cut = "" if self.within is None else f", within {self.within[0]} to {self.within[1]}"
+            return f"normal {self.normal[0]} ± {self.normal[1]}{cut}"
+        if self.values is not None:
+            return ", ".join(map(str, self.values[:_LISTED])) + (", …" if len(self.values) > _LISTED else "")
+        if self.file is not None:
+            return f"measured, {self.file.name}" + (f", {self.column}" if self.column else "")
+        return f"{self.kind} {' to '.join(map(str, self.uniform or self.triangular or ()))}"
 
 
 class Correlation(Table):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -175,14 +176,23 @@ class DetectionResult:
 
     @cached_property
     def best(self) -> dict[str, Detectability | None]:
-        """Indicator that sees the smallest fault, by sensor: by its a90/95, else by its a90; None where none does."""
+        """Indicator that sees the smallest fault, by sensor; None where none sees a size of the study.
+
+        The one of the smallest a90, of equal ones that of the smallest a90/95; one whose hits contradict its curve
+        comes after all others.
+        """
         chosen: dict[str, Detectability | None] = {}
         for sensor in self.monitor.sensors:
             seen = [one for one in self.parts if one.sensor == sensor and one.a90 is not None]
-            chosen[sensor] = min(
-                seen, key=lambda one: (one.a90_95 is None, one.a90_95 or one.a90 or 0.0, one.a90 or 0.0), default=None
-            )
+            chosen[sensor] = min(seen, key=_rank, default=None)
         return chosen
+
+
+def _rank(one: Detectability) -> tuple[bool, float, float]:
+    """Return the place of an indicator among those that see the fault: the least is the best."""
+    contradicted = one.detection is not None and one.detection.is_contradicted
+    a90, a90_95 = (math.inf if size is None else size for size in (one.a90, one.a90_95))
+    return contradicted, a90, a90_95
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from gearwhine.coupling.analyses.gear_condition import INDICATORS
 from gearwhine.figures.style import (
@@ -22,6 +23,7 @@ from gearwhine.figures.style import (
     TICK,
     legend_below,
     legend_height,
+    log_axis,
     name_in_legend,
     panel,
     panel_title,
@@ -33,18 +35,22 @@ from gearwhine.figures.style import (
 from gearwhine.numerics.detection_probability import CONFIDENCE, SignalResponse
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from gearwhine.detection.detectability import Detectability, DetectionResult
 
-_HEIGHT, _GAP = 36.0, 9.0  # of a panel, and between two [mm]
+_HEIGHT, _GAP = 36.0, 12.0  # of a panel, and between two [mm]
 _ROW, _NAMES = 8.0, 46.0  # height of a row of the matrix, and width of the names beside it [mm]
 _MOST_RESPONSES = 4
 _MOST_CURVES = 4
+_SAME_CURVE = 1e-3  # difference of probabilities up to which two curves lie on each other
 _MOST_SENSORS = 8
 _DETECTED = 0.9
 _LONG_NAME = 24  # letters beyond which the name of an axis is smaller
+_WIDE = 50.0  # ratio of the largest value to the least beyond which an axis is logarithmic
+_DASH = 5.0  # length of a dash of lines that lie on each other, in line widths
 _SPREAD = 0.006  # shift of dots beside each other, over the width of the panel
 
 
@@ -174,7 +180,7 @@ def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:
                 end if np.isfinite(end) else one.threshold.value for end in (one.threshold.low, one.threshold.high)
             )
             axes.axhspan(low, high, color=RED, alpha=0.12, lw=0.0)
-        axes.yaxis.set_major_locator(MaxNLocator(5))
+        _scale(axes, [healthy, one.responses, [] if one.threshold is None else [one.threshold.value]])
         name = _axis_of(found, indicator)
         axes.set_ylabel(name, size=TICK if len(name) > _LONG_NAME else LABEL)
         seen = "not seen" if one.a90 is None else f"a90 = {_cell(one, factor, min(found.severities))}"
@@ -183,49 +189,65 @@ def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:
     return figure
 
 
+def _scale(axes: Axes, parts: Sequence[npt.ArrayLike]) -> None:
+    """Give a panel the axis of its values: logarithmic where these are positive and span decades."""
+    values = np.concatenate([np.asarray(part, dtype=np.float64).ravel() for part in parts])
+    values = values[np.isfinite(values)]
+    if values.size and values.min() > 0.0 and values.max() > _WIDE * values.min():
+        margin = (values.max() / values.min()) ** 0.06
+        log_axis(axes, float(values.min() / margin), float(values.max() * margin))
+    else:
+        axes.yaxis.set_major_locator(MaxNLocator(5))
+        # A power of ten above the axis would stand in the panel's title.
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.6g}"))
+
+
 def _known(one: Detectability, size: float) -> np.ndarray:
     values = one.responses[one.sizes == size]
     return np.asarray(values[np.isfinite(values)])
 
 
+def _drawn_curves(found: DetectionResult) -> list[str]:
+    """Return the indicators whose curves are drawn: the best of every sensor, then those that see the most."""
+    best = dict.fromkeys(one.indicator for one in found.best.values() if one is not None)
+    return list(best | dict.fromkeys(_ranked(found)))[: min(max(len(best), _MOST_CURVES), len(SERIES))]
+
+
 def _probabilities(title: str, found: DetectionResult) -> Figure:
     """Draw the probability of detection over the size at every sensor, of the indicators that see the most."""
     factor = found.shown_unit[1]
-    drawn = _ranked(found)[:_MOST_CURVES]
+    drawn = _drawn_curves(found)
     colours = dict(zip(drawn, SERIES, strict=False))
     foot = FOOT + legend_height(len(drawn))
     figure, panels, sensors = _sheet(
         found,
         "Probability of detection",
         f"{shortened(title, 40)}; dots: share found of each size; band: down to the lower 95 % bound, of the sensor's "
-        "best indicator; dotted: 0.9.",
+        "best indicator; dashes of several colours: curves that lie on each other.",
         foot,
     )
-    handles = []
-    for place, (axes, sensor) in enumerate(zip(panels, sensors, strict=True)):
+    handles = [
+        Line2D([], [], color=colour, lw=1.3, label=name_in_legend(INDICATORS[indicator].title, 24))
+        for indicator, colour in colours.items()
+    ]
+    grid = np.linspace(min(found.severities), max(found.severities), 120)
+    for axes, sensor in zip(panels, sensors, strict=True):
         best = found.best[sensor]
-        for indicator in drawn:
-            one = found.part(sensor, indicator)
-            if one.detection is None:
-                continue
-            grid = np.linspace(min(found.severities), max(found.severities), 120)
-            curve, colour = one.detection.curve, colours[indicator]
-            values = np.array([curve.probability(size) for size in grid.tolist()])
-            name = name_in_legend(INDICATORS[indicator].title, 24)
-            (line,) = axes.plot(factor * grid, values, color=colour, lw=1.3, label=name)
-            if place == 0:
-                handles.append(line)
-            if one is best:
-                bound = [curve.bound(size, CONFIDENCE) for size in grid.tolist()]
+        seen_by = {name: by for name in drawn if (by := found.part(sensor, name).detection) is not None}
+        curves = {name: np.array([one.curve.probability(a) for a in grid.tolist()]) for name, one in seen_by.items()}
+        for indicator, one in seen_by.items():
+            values, colour = curves[indicator], colours[indicator]
+            alike = [name for name, other in curves.items() if np.allclose(other, values, atol=_SAME_CURVE)]
+            rank, count = alike.index(indicator), len(alike)
+            dashes = "-" if count == 1 else (rank * _DASH, (_DASH, (count - 1) * _DASH))
+            axes.plot(factor * grid, values, color=colour, lw=1.3, ls=dashes, label=indicator, dash_capstyle="butt")
+            if best is not None and best.indicator == indicator:
+                bound = [one.curve.bound(size, CONFIDENCE) for size in grid.tolist()]
                 axes.fill_between(factor * grid, bound, values, color=colour, alpha=0.15, lw=0.0)
-            shares = one.detection.shares
-            axes.plot(
-                [factor * share.size for share in shares],
-                [share.found / share.total for share in shares],
-                ".",
-                color=colour,
-                ms=4.0,
-            )
+            hits = [share.found / share.total for share in one.shares]
+            # Dots on each other: the larger ones are below.
+            size = 4.0 + 2.0 * (count - 1 - rank)
+            axes.plot([factor * share.size for share in one.shares], hits, ".", color=colour, ms=size)
         axes.axhline(_DETECTED, color=GREY, lw=0.8, ls=":")
         axes.set_ylim(-0.04, 1.04)
         axes.set_ylabel("probability")

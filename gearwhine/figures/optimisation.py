@@ -118,7 +118,7 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
     note = f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start."
     figure, panels = stacked(len(aims), _HEIGHT, _GAP, "Convergence", note, first=_TITLES)
     within, beyond = _masks(optimised)
-    numbers = np.arange(1, len(optimised.designs) + 1)
+    numbers = np.arange(len(optimised.designs))
     for place, axes in zip(aims, panels, strict=True):
         values, sign = _values(optimised, place), optimised.goals.aims[place].sign
         axes.plot(numbers[beyond], values[beyond], ".", color=RED, ms=3.0)
@@ -136,7 +136,9 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
         axes.axhline(factor * float(optimised.start.aims[place]), color=GREY, lw=0.9, ls="--")
         axes.set_xlabel("design")
         axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-        panel_title(axes, _label(optimised, place))
+        of, _, unit = _label(optimised, place).partition(" [")
+        axes.set_ylabel(unit.removesuffix("]"), size=TICK)
+        panel_title(axes, of)
     return figure
 
 
@@ -170,14 +172,14 @@ def _over_keys(optimised: Optimised) -> Figure:
     inputs = optimised.inputs[:_MOST_PANELS]
     columns = min(len(inputs), 2)
     rows = -(-len(inputs) // columns)
+    best = next(iter(optimised.chosen))
     figure = sheet(
         HEAD + _TITLES + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
         "Designs by their keys",
-        f"{_label(optimised, 0)}; blue: within the limits, red: beyond, ring: best.",
+        f"{_label(optimised, 0)}; blue: within the limits, red: beyond, ring: design {best}.",
     )
     within, beyond = _masks(optimised)
     values, points = _values(optimised, 0), optimised.values()
-    best = next(iter(optimised.chosen))
     for number, one in enumerate(inputs):
         row, column = divmod(number, columns)
         bottom = FOOT + (rows - 1 - row) * (_HEIGHT + _GAP)

@@ -55,7 +55,7 @@ def draw_variation(title: str, varied: VariedResult) -> Iterator[tuple[str, Figu
     if not headlines:
         return
     yield "vary-distributions", _distributions(title, headlines)
-    drawn = [one for one in headlines if one.importance()]
+    drawn = [one for one in headlines if _leading(one)]
     if drawn:
         yield "vary-importance", _importance(title, drawn)
     if any(one.change is not None for one in varied.widened):
@@ -123,12 +123,20 @@ def _limits_near(one: QuantityStatistics, values: FloatArray, factor: float) -> 
     return [end for end in ends if low - reach <= end <= high + reach]
 
 
+def _leading(one: QuantityStatistics) -> dict[str, float]:
+    """Return how much each input matters, the most first; where none explains a part, the rank correlations."""
+    importance = one.importance()
+    if not importance:
+        return one.leading_ranks
+    return {name: importance[name] for name in sorted(importance, key=lambda name: -importance[name])}
+
+
 def _importance(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
     by_index = quantities[0].indices is not None
-    note = "total-order Sobol' index, its 95 % interval" if by_index else "part of the variance by the input alone"
-    counts = [min(len(one.importance()), _MOST_INPUTS) for one in quantities]
+    note = "total-order Sobol' index, its 95 % interval" if by_index else "inputs that the samples prove to matter"
+    counts = [min(len(_leading(one)), _MOST_INPUTS) for one in quantities]
     heights = [count * _BAR for count in counts]
-    gap = 13.0
+    gap = 17.0
     figure = sheet(
         HEAD + FOOT + sum(heights) + gap * (len(heights) - 1), "What matters", f"{_begins(title, 60)}{note}."
     )
@@ -141,14 +149,18 @@ def _importance(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
 
 
 def _bars(axes: Axes, one: QuantityStatistics) -> None:
-    importance = one.importance()
-    names = sorted(importance, key=lambda name: -importance[name])[:_MOST_INPUTS]
+    leading = _leading(one)
+    names = list(leading)[:_MOST_INPUTS]
     places = np.arange(len(names))[::-1]
     if one.indices is None:
-        values = np.array([importance[name] for name in names])
+        values = np.array([leading[name] for name in names])
         axes.barh(places, values, height=0.62, color=BLUE)
-        axes.set_xlim(0.0, 1.0)
+        axes.set_xlim(0.0 if one.explained else -1.0, 1.0)
+        axes.set_xlabel("part of the variance by the input alone" if one.explained else "rank correlation")
+        if not one.explained:
+            axes.axvline(0.0, color=GREY, lw=0.8)
     else:
+        axes.set_xlabel("total-order index")
         rows = [one.input_names.index(name) for name in names]
         values, interval = one.indices.total[rows], one.indices.total_interval[rows]
         axes.barh(places, values, height=0.62, color=BLUE)
@@ -166,7 +178,7 @@ def _widening(title: str, varied: VariedResult) -> Figure:
     height = max(len(rows), 2) * _BAR
     figure = sheet(
         HEAD + FOOT + height,
-        "What wider tolerances cost",
+        f"What tolerances wider by a factor of {varied.widening:g} cost",
         f"{_begins(title, 50)}the same gearboxes with one input wider; line: 95 % interval.",
     )
     axes = panel(figure, FOOT, height, left=LEFT + _NAMES, width=160.0 - LEFT - _NAMES - 6.0)
@@ -184,8 +196,7 @@ def _widening(title: str, varied: VariedResult) -> Figure:
 
 def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figure:
     """Draw a quantity over the inputs that matter most to it."""
-    importance = one.importance()
-    names = sorted(importance, key=lambda name: -importance[name])[:4]
+    names = list(_leading(one))[:4]
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)
     label, factor = shown_quantity(one.name)

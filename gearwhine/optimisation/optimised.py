@@ -15,6 +15,7 @@ from gearwhine.optimisation.design import AS_WRITTEN, DesignInput
 from gearwhine.optimisation.goals import Goals, LimitEnd, Worse
 from gearwhine.optimisation.search import FAILED, Ended, balanced, excess_of, pareto_front
 from gearwhine.optimisation.verification import Verification
+from gearwhine.variation.inputs import Input
 from gearwhine.variation.samples import Failure
 
 MOST_SHOWN = 20
@@ -148,16 +149,25 @@ class Optimised:
             return one.words[round(value)]
         return f"{value:.6g} {one.unit}".strip()
 
+    def shown_along(self, place: int, along: Input, design: Design) -> str:
+        """Return the value in a design of a key that changes in step with an input; empty where it is as written."""
+        at = float(design.point[place])
+        return "" if at == AS_WRITTEN else along.text(along.value(at))
+
     @property
     def at_bounds(self) -> dict[str, str]:
-        """Inputs of the best design at an end of their range, each with which."""
+        """Inputs of the best design at an end of their range or of a list that rises or falls, each with which."""
         if self.best is None:
             return {}
         ends = dict[str, str]()
         for one, at in zip(self.inputs, self.best.point.tolist(), strict=True):
             if isinstance(one.law, Discrete):
-                continue
-            if at <= _AT_END or at >= 1.0 - _AT_END:
+                listed = () if one.words or at == AS_WRITTEN else tuple(one.law.values)
+                if len(listed) > 1 and listed in (tuple(sorted(listed)), tuple(sorted(listed, reverse=True))):
+                    value = one.value(at)
+                    ends |= {one.name: "last of its list"} if value == listed[-1] else {}
+                    ends |= {one.name: "first of its list"} if value == listed[0] else {}
+            elif at <= _AT_END or at >= 1.0 - _AT_END:
                 ends[one.name] = "least" if at <= _AT_END else "largest"
         return ends
 

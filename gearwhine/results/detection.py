@@ -1,6 +1,6 @@
 """Detectability of a fault by sensor and indicator, as tables."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +39,7 @@ DETECTABILITY = (
     Quantity("method", lambda one: None if one.detection is None else one.detection.method),
     Quantity("a90"),
     Quantity("a90_95"),
+    Quantity("contradicted", lambda one: one.detection is not None and one.detection.is_contradicted),
     Rows(
         "found",
         lambda one: None if one.detection is None else one.detection.shares,
@@ -181,15 +182,20 @@ def _content(document: Document) -> Iterator[str | Table]:
         matrix,
         f"Size that is found with a probability of 0.9, a90 (a90/95){unit}: {document['fault']}",
     )
-    yield from table_of(_best_columns(document), list(_best_rows(document)), "Best indicator of each sensor")
+    best = "Best indicator of each sensor: the smallest a90, of equal ones the smallest a90/95"
+    rows = list(_best_rows(document))
+    yield from table_of(_best_columns(document), rows, best)
+    for row in rows:
+        if row.get("alike"):
+            yield f"As small a fault at {row['sensor']} as {INDICATORS[row['indicator']].title} see: {row['alike']}."
+    if contradicted := [row for row in document["detectability"] if row["contradicted"]]:
+        yield (
+            f"Hits contradict the fitted curve of {_where(contradicted)}: fewer are found from its a90 on than 0.9 of "
+            "them. Such an indicator is the best of none but where no other sees the fault."
+        )
     for reason in dict.fromkeys(row["undefined"] for row in document["detectability"] if "undefined" in row):
-        where = [
-            f"{INDICATORS[row['indicator']].title} at {row['sensor']}"
-            for row in document["detectability"]
-            if row.get("undefined") == reason
-        ]
-        more = f" and {len(where) - _MOST_NAMED} more" if len(where) > _MOST_NAMED else ""
-        yield f"Undefined: {', '.join(where[:_MOST_NAMED])}{more}: {reason}."
+        where = _where([row for row in document["detectability"] if row.get("undefined") == reason])
+        yield f"Undefined: {where}: {reason}."
     yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
     noise = document["sensor_noise_m_per_s2"]
     alike = "" if document["is_varied"] else "; no key varies: healthy records of the one gearbox differ by noise alone"
@@ -203,10 +209,24 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield f"{document['samples']} gearboxes{ending(document)}"
 
 
+def _where(rows: Sequence[Document]) -> str:
+    """Return the indicators of some rows with their sensors, the first by name."""
+    named = [f"{INDICATORS[row['indicator']].title} at {row['sensor']}" for row in rows]
+    more = f" and {len(named) - _MOST_NAMED} more" if len(named) > _MOST_NAMED else ""
+    return f"{', '.join(named[:_MOST_NAMED])}{more}"
+
+
 def _best_rows(document: Document) -> Iterator[Document]:
+    """Yield the best indicator of each sensor, with the names of others that see the same sizes."""
     for sensor, indicator in document["best"].items():
-        rows = [one for one in document["detectability"] if one["sensor"] == sensor and one["indicator"] == indicator]
-        yield rows[0] if rows else {"sensor": sensor, "indicator": None}
+        of_sensor = [one for one in document["detectability"] if one["sensor"] == sensor]
+        best = next((one for one in of_sensor if one["indicator"] == indicator), None)
+        if best is None:
+            yield {"sensor": sensor, "indicator": None}
+            continue
+        keys = ("a90", "a90_95", "contradicted")
+        alike = [one for one in of_sensor if one is not best and all(one[key] == best[key] for key in keys)]
+        yield best | {"alike": ", ".join(INDICATORS[one["indicator"]].title for one in alike)}
 
 
 def _best_columns(document: Document) -> tuple[Column, ...]:

@@ -35,6 +35,7 @@ from gearwhine.results.motion import (
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
 from gearwhine.results.summaries import Summary
+from gearwhine.results.variation import summary as summary_of_variation
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ _CHAPTERS = {
     ),
     "Sweep": ("sound_of_sweep", "sound_left_out", "sweep_resolution"),
     "Updated numbers": ("shapes",),
+    "Varied gearboxes": ("failed samples", "few samples", "loudest speed"),
     "Operating point": (
         "sensitivity",
         "static rating",
@@ -97,6 +99,7 @@ _PICTURES = (
         "Response to 1 µm of transmission error alone at any frequency; load shuttling excites beside it.",
     ),
     Picture("comparison", "Frequencies of the model over measured ones, and their errors."),
+    Picture("vary-distributions", "How the quantities scatter, with their limits and the gearbox without changes."),
 )
 """Candidates for the picture of the first page, in order of preference: the first that exists is shown."""
 
@@ -114,7 +117,9 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
         Sentences on results that do not fit the case any more.
     """
     summaries = [Summary(document) for document in documents]
+    varied = next((one for one in documents if one.get("command") == "vary"), None)
     sections = (
+        Section("Varied gearboxes in short", () if varied is None else tuple(summary_of_variation(varied))),
         machine_section(case, documents),
         Section("Are the results sound?", _findings(summaries, stale)),
         Section("Highest lines", _lines(summaries)),

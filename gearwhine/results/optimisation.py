@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.named_quantities import part_of, shown_quantity
 from gearwhine.output.quantity import document_of, unit_of
@@ -42,7 +43,15 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
         "keys": [
             {
                 "key": one.name,
-                "with": [path for part in one.along for path, _ in part.keys],
+                "with": [
+                    {
+                        "key": part.name,
+                        "start": optimised.shown_along(place, part, optimised.start),
+                        "designs": [optimised.shown_along(place, part, design) for _, _, design in chosen],
+                        "allowed": _allowed(part),
+                    }
+                    for part in one.along
+                ],
                 "start": optimised.written[place],
                 "designs": [optimised.shown_value(place, design) for _, _, design in chosen],
                 "allowed": _allowed(one),
@@ -100,7 +109,7 @@ def _allowed(one: Any) -> str:
     """Return the values that a key may have, in words."""
     if one.words:
         return ", ".join(one.words)
-    if one.count:
+    if isinstance(one.law, Discrete):
         return f"{', '.join(f'{value:g}' for value in one.law.values)} {one.unit}".strip()
     return f"{one.law.low:g} to {one.law.high:g} {one.unit}".strip()
 
@@ -231,15 +240,16 @@ def report(document: Document) -> Section:
 
 def _content(document: Document) -> Iterator[str | Table]:
     labels = [one["design"] for one in document["chosen"]]
-    keys = [{**row, "along": ", ".join(row["with"])} for row in document["keys"]]
+    with_numbers = [f"{one['design']}: design {one['number']}" for one in document["chosen"]]
+    keys = [row for key in document["keys"] for row in (key, *({**one, "with": key["key"]} for one in key["with"]))]
     yield from table_of(
         (
             Column("key", "key"),
             Column("start", "start"),
-            *_designs(labels, lambda row, value: str(value)),
+            *_designs(with_numbers, lambda row, value: str(value)),
             Column("allowed", "allowed"),
             Column("at its bound", "at_bound"),
-            Column("in step", "along"),
+            Column("in step with", lambda row: row["with"] if isinstance(row["with"], str) else ""),
         ),
         keys,
         "Designed keys",
@@ -370,7 +380,10 @@ def _as_text(value: float | None, form: str) -> str:
 def _sentences(document: Document) -> Iterator[str]:
     for row in document["keys"]:
         if row["at_bound"]:
-            yield f"{row['key']} is at its {row['at_bound']} value: a wider range may be better."
+            if "list" in row["at_bound"]:
+                yield f"{row['key']} is the {row['at_bound']}: a longer list may be better."
+            else:
+                yield f"{row['key']} is at its {row['at_bound']} value: a wider range may be better."
     for row in document.get("missed", ()):
         yield f"Missed: {row['text']}."
     yield from failed_sentences(document, "design", _MOST_FAILURES)
@@ -379,4 +392,5 @@ def _sentences(document: Document) -> Iterator[str]:
     resumed = f"; {document['resumed']} evaluations by an earlier run" if document["resumed"] else ""
     within = f", {document['within_limits']} within all limits" if document["limits"] else ""
     tried = f"{document['designs']} designs{scatter}{within}, by {document['method']}"
-    yield f"{tried}: {_ENDED[document['ended']]}{resumed}"
+    numbers = "; numbers of designs, in all tables, pictures and files, count from 0"
+    yield f"{tried}: {_ENDED[document['ended']]}{resumed}{numbers}"

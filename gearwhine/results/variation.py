@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
 from gearwhine.output.quantity import RPM, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, table_of
 from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, in_file, numbered
 
 if TYPE_CHECKING:
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
 
 _MOST_INPUTS = 3  # of a quantity in the table of what matters
+_MOST_RANKS, _MOST_RANKED = 3, 4  # worst gearboxes of a quantity, and quantities up to which they are told
 _MOST_FAILURES = 5  # told one by one
+_MANY_AT_END = 0.05  # part of the gearboxes that are the loudest at an end of the speeds above which it is warned of
 _WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
 
 
@@ -34,8 +36,8 @@ def _indices(which: str) -> Any:
     return of
 
 
-SHARE = (Quantity("share"), Quantity("low"), Quantity("high"))
-"""Quantities of a part of the gearboxes, with its interval."""
+SHARE = (Quantity("share"), Quantity("low"), Quantity("high"), Quantity("good"), Quantity("total"))
+"""Quantities of a part of the gearboxes, with its interval and the numbers that it is of."""
 
 QUANTITY = (
     Quantity("name"),
@@ -50,6 +52,8 @@ QUANTITY = (
     Part("within", "share", SHARE, optional=True),
     Quantity("explained", "explained"),
     Quantity("rank_correlation", "rank_correlations"),
+    Quantity("rank_chance", "rank_chances"),
+    Quantity("leading_ranks"),
     Quantity("sobol_first", _indices("first"), optional=True),
     Quantity("sobol_total", _indices("total"), optional=True),
     Quantity("worst"),
@@ -113,6 +117,7 @@ VARIED = (
             Quantity("key", "0.name"),
             Quantity("unit", "0.unit"),
             Quantity("distribution", lambda row: type(row[0].law).__name__.lower()),
+            Quantity("tolerance", "0.tolerance"),
             Quantity("mean", lambda row: float(row[1].mean())),
             Quantity("std", lambda row: float(row[1].std())),
         ),
@@ -120,7 +125,20 @@ VARIED = (
     FAILED,
     Rows("quantities", "quantities", QUANTITY),
     Quantity("headlines", lambda varied: [one.name for one in varied.headlines]),
+    Quantity("speeds_rpm", lambda varied: (np.abs(varied.speeds) * RPM).tolist()),
+    Rows(
+        "worst",
+        lambda varied: [worst for one in varied.headlines for worst in varied.worst_gearboxes(one)],
+        (
+            Quantity("quantity", "name"),
+            Quantity("rank"),
+            Quantity("gearbox", "number"),
+            Quantity("value"),
+            Quantity("speed_rpm", lambda one: None if one.speed is None else abs(one.speed) * RPM, optional=True),
+        ),
+    ),
     Part("yield", "yielded", SHARE, optional=True),
+    Quantity("widening", optional=True),
     Rows("widened", lambda varied: varied.widened or None, WIDENED, optional=True),
     *numbered("sample", lambda varied: len(varied.outcomes), "number of the gearbox"),
     in_file("input", "input", _names_of("inputs"), "varied key of the case"),
@@ -161,6 +179,20 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
             f"the total-order indices of {', '.join(wide[:3])} are known to no better than ±0.1: take more samples"
         )
         yield warning("few samples", message)
+    for one in varied.headlines:
+        part = varied.at_end_of_speeds(one.name)
+        if part is not None and part > _MANY_AT_END:
+            message = (
+                f"{part_of(one.name)} is the loudest at an end of the speeds, {_speeds(varied.speeds)}, in "
+                f"{100.0 * part:.0f} % of the gearboxes: beyond that end the level may be higher; take a wider range"
+            )
+            yield warning("loudest speed", message, share=part)
+
+
+def _speeds(speeds: Any) -> str:
+    """Return the ends of some speeds [rad/s] in words."""
+    rpm = np.abs(np.asarray(speeds)) * RPM
+    return f"{rpm.min():.5g} to {rpm.max():.5g} rpm"
 
 
 def _limit(row: Document) -> str:
@@ -170,9 +202,10 @@ def _limit(row: Document) -> str:
     return ", ".join(f"{sign} {factor * limit[key]:.4g}" for key, sign in ends if key in limit)
 
 
-def _share(row: Document) -> str:
-    share = row.get("within")
-    return "" if share is None else f"{100.0 * share['share']:.1f} %"
+def _percents(share: Document) -> str:
+    """Return a part of the gearboxes with its interval."""
+    low, value, high = (100.0 * share[key] for key in ("low", "share", "high"))
+    return f"{value:.1f} % ({low:.1f} to {high:.1f} %)"
 
 
 def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callable[[Document], str]:
@@ -180,17 +213,47 @@ def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callab
 
     def text(row: Document) -> str:
         value = of(row)
-        return "" if value is None or value != value else format(shown_quantity(row["name"])[1] * value, form)
+        if value is None or value != value:
+            return ""
+        shown = format(shown_quantity(row["name"])[1] * value, form)
+        # Lives of millions of hours are narrower without a power of ten.
+        return f"{float(shown):.0f}" if "e+0" in shown else shown
+
+    return text
+
+
+def _drawn(of: str, form: str) -> Callable[[Document], str]:
+    """Return the function that shows a number of an input in the unit that is shown; none of words and pitches."""
+
+    def text(row: Document) -> str:
+        # The numbers of words have no mean; of pitches the file holds the range, which is no tolerance of theirs.
+        is_number = row["distribution"] != "pitches" and (row["unit"] or row["distribution"] != "discrete")
+        return format(shown_unit(row["unit"])[1] * row[of], form) if is_number else ""
 
     return text
 
 
 _INPUT_COLUMNS = (
     Column("key", "key"),
-    Column("unit", "unit"),
-    Column("distribution", "distribution"),
-    Column("mean", "mean", ".5g"),
-    Column("std", "std", ".3g"),
+    Column("tolerance", lambda row: row["tolerance"] or row["distribution"]),
+    Column("unit", lambda row: shown_unit(row["unit"])[0] if _drawn("mean", "g")(row) else ""),
+    Column("mean", _drawn("mean", "z.4g")),
+    Column("std", _drawn("std", ".3g")),
+)
+_LIMIT_COLUMNS = (
+    Column("of", lambda row: part_of(row["name"])),
+    Column("quantity", lambda row: shown_quantity(row["name"])[0]),
+    Column("limit", _limit),
+    Column("nominal", _number(lambda row: row["nominal"])),
+    Column("beyond", lambda row: f"{row['within']['total'] - row['within']['good']} of {row['within']['total']}"),
+    Column("within", lambda row: _percents(row["within"])),
+)
+_WORST_COLUMNS = (
+    Column("of", lambda row: part_of(row["quantity"])),
+    Column("quantity", lambda row: shown_quantity(row["quantity"])[0]),
+    Column("gearbox", "gearbox", "d"),
+    Column("value", lambda row: format(shown_quantity(row["quantity"])[1] * row["value"], ".5g")),
+    Column("at [rpm]", "speed_rpm", ".5g"),
 )
 _COLUMNS = (
     Column("of", lambda row: part_of(row["name"])),
@@ -201,8 +264,6 @@ _COLUMNS = (
     Column("5 %", _number(lambda row: row["quantiles"]["0.05"])),
     Column("median", _number(lambda row: row["quantiles"]["0.5"])),
     Column("95 %", _number(lambda row: row["quantiles"]["0.95"])),
-    Column("limit", _limit),
-    Column("within", _share),
 )
 
 
@@ -212,8 +273,25 @@ def _told(document: Document) -> list[Document]:
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """Return the distributions, what matters, and the yield."""
-    return (Section("", tuple(_content(document))),)
+    """Return the yield and the worst gearboxes, the inputs, the distributions, and what matters."""
+    return (Section("", (*summary(document), *_content(document))),)
+
+
+def summary(document: Document) -> Iterator[str | Table]:
+    """Yield what a quality engineer asks first: the yield, gearboxes beyond each limit, the worst, speeds, inputs."""
+    if "yield" in document:
+        share = document["yield"]
+        yield f"Yield: {share['good']} of {share['total']} gearboxes are within all limits, {_percents(share)}."
+    limited = [row for row in _told(document) if "within" in row]
+    yield from table_of(_LIMIT_COLUMNS, limited, "Gearboxes beyond the limits; in brackets: 95 % interval")
+    ranks = _MOST_RANKS if len(document["headlines"]) <= _MOST_RANKED else 1
+    files = ", each with a case of its own, worst-….toml" if any(row["tolerance"] for row in document["inputs"]) else ""
+    worst = [row for row in document["worst"] if row["rank"] <= ranks]
+    yield from table_of(_WORST_COLUMNS, worst, f"Worst gearboxes{files}")
+    if speeds := document["speeds_rpm"]:
+        ends = _speeds(np.array(speeds) / RPM) if len(speeds) > 1 else f"{speeds[0]:.5g} rpm"
+        yield f"{counted(len(speeds), 'speed')} of the first driver: {ends}."
+    yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys; mean and standard deviation as drawn")
 
 
 def report(document: Document) -> Section:
@@ -227,20 +305,15 @@ def report(document: Document) -> Section:
             "vary-speeds", "Levels over speed: the gearbox without changes, and the band of nine in ten gearboxes."
         ),
     )
-    return Section("Varied gearboxes", tuple(_content(document)), pictures=pictures)
+    return Section("Varied gearboxes", (*summary(document), *_content(document)), pictures=pictures)
 
 
 def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
-    yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys")
     yield from table_of(_COLUMNS, rows, "Distributions")
     yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
-    yield from _what_wider_ones_cost(document.get("widened", []))
+    yield from _what_wider_ones_cost(document)
     yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
-    if "yield" in document:
-        share = document["yield"]
-        low, value, high = (100.0 * share[key] for key in ("low", "share", "high"))
-        yield f"Yield: {value:.1f} % of the gearboxes are within all limits (95 % interval {low:.1f} to {high:.1f} %)."
     standing = ""
     if document["representative"] < document["samples"]:
         standing = f", {document['representative']} of which stand for the production in the table of distributions"
@@ -254,7 +327,8 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
     for row in rows:
         total, ranks = row.get("sobol_total"), row["rank_correlation"]
         values = {key: value[0] for key, value in total.items()} if total else row["explained"]
-        first = sorted(values, key=lambda key: -values[key])[:_MOST_INPUTS]
+        by_rank = [key for key in row["leading_ranks"] if key not in values]
+        first = [*sorted(values, key=lambda key: -values[key]), *by_rank][:_MOST_INPUTS]
         if not first:
             unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
         for place, key in enumerate(first):
@@ -263,16 +337,16 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
                     "of": "" if place else part_of(row["name"]),
                     "quantity": "" if place else shown_quantity(row["name"])[0].partition(" [")[0],
                     "input": key,
-                    "value": f"{values[key]:.2f}",
+                    "value": f"{values[key]:.2f}" if key in values else "",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
                     "alone": f"{row['sobol_first'][key][0]:.2f}" if total else "",
-                    "rank": f"{ranks[key]:+.2f}" if key in ranks else "",
+                    "rank": f"{ranks[key]:+.2f} (p = {row['rank_chance'][key]:.0e})" if key in ranks else "",
                 }
             )
     caption = (
         "What matters: Sobol' indices, the part of the variance that goes with the input in all and alone"
         if by_index
-        else "What matters: part of the variance that goes with the input alone, where the samples prove it"
+        else "What matters: part of the variance by the input alone, and rank correlation, where the samples prove one"
     )
     columns = (
         Column("of", "of"),
@@ -281,16 +355,19 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
         Column("in all" if by_index else "part", "value"),
         Column("95 % interval", "interval"),
         Column("alone", "alone"),
-        Column("rank correlation", "rank"),
+        Column("rank correlation (p: by chance)", "rank"),
     )
     yield from table_of(columns, shown, caption)
     if unexplained:
-        yield f"No input alone explains {'; '.join(unexplained)}: more samples, or --indices, may tell."
+        yield (
+            f"No input alone explains {'; '.join(unexplained)}, and no rank correlation is beyond chance: more "
+            "samples, or --indices, may tell."
+        )
 
 
-def _what_wider_ones_cost(rows: Sequence[Document]) -> Iterator[str | Table]:
+def _what_wider_ones_cost(document: Document) -> Iterator[str | Table]:
     """Yield a table of wider inputs: the yield, its change, and how far the first quantity moves."""
-    rows = [row for row in rows if row["quantities"]]
+    rows = [row for row in document.get("widened", ()) if row["quantities"]]
     if not rows:
         return
     first = rows[0]["quantities"][0]["name"]
@@ -315,8 +392,27 @@ def _what_wider_ones_cost(rows: Sequence[Document]) -> Iterator[str | Table]:
         Column("bad end", _from_to("quantile_before", "quantile", ".4g")),
     )
     of_first = f"std and bad end of {part_of(first)}, {shown_quantity(first)[0]}"
-    caption = f"What wider tolerances cost, the dearest first; {of_first}"
+    caption = f"What tolerances wider by a factor of {document['widening']:g} cost, the dearest first; {of_first}"
     yield from table_of(columns, shown, caption)
+    yield from _unproven(document)
+
+
+def _unproven(document: Document) -> Iterator[str]:
+    """Yield a sentence where every change of the yield may be chance, with how many gearboxes may prove the largest."""
+    changes = [row for row in document["widened"] if "change" in row]
+    if not changes or any(row["change"]["low"] > 0.0 or row["change"]["high"] < 0.0 for row in changes):
+        return
+    text = "No change of the yield is proven: each interval contains 0"
+    largest = max(changes, key=lambda row: abs(row["change"]["difference"]))
+    if difference := abs(largest["change"]["difference"]):
+        # Half of an interval falls with the root of the number of gearboxes.
+        half = 0.5 * (largest["change"]["high"] - largest["change"]["low"])
+        count = document["representative"] * max(half / difference, 1.0) ** 2
+        text += (
+            f". About {float(f'{count:.1g}'):.0f} gearboxes of each in place of {document['representative']} would "
+            f"prove that of {largest['input']} if it stays as large"
+        )
+    yield f"{text}."
 
 
 def _from_to(before: str, after: str, form: str) -> Callable[[Document], str]:

@@ -78,6 +78,8 @@ class Input:
         Texts that a value stands for by its number; empty where it is one itself.
     keys : tuple of (str, float)
         Key paths, and the factor by which each takes the value.
+    tolerance : str
+        The distribution as the case gives it, such as ``class 7``; empty where Python does.
     """
 
     name: str
@@ -85,6 +87,7 @@ class Input:
     unit: str
     words: tuple[str, ...]
     keys: tuple[tuple[str, float], ...]
+    tolerance: str = ""
 
     def value(self, coordinate: float) -> float:
         """Value at a coordinate in (0, 1): in the unit, the number of a word, or the range of pitch deviations [m]."""
@@ -215,14 +218,14 @@ class _Keys:
         if varied.independent:
             for place in places:
                 name = key_of(_named_place(document, place))
-                yield Input(name, *self._law(place, varied), ((key_of(place), 1.0),))
+                yield Input(name, *self._law(place, varied), ((key_of(place), 1.0),), varied.words)
             return
         if varied.kind in ("fit", "class") and len(places) > 1:
             raise _CannotVaryError(
                 f"independent = true beside {varied.kind!r}: each of the {len(places)} entries has a size of its own"
             )
         keys = tuple((key_of(place), _factor(document, place, varied)) for place in places)
-        yield Input(key, *self._law(places[0], varied), keys)
+        yield Input(key, *self._law(places[0], varied), keys, varied.words)
 
     def _refusal(self, override: str) -> str | None:
         """Return why the case does not take a value at a key; None where it does."""

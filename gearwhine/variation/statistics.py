@@ -23,7 +23,9 @@ QUANTILES = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles."""
 WORST = 3
 """Number of the worst gearboxes of a quantity that are written as cases."""
-_CHANCE = 0.001  # probability of an explained part by chance above which it is not told
+CHANCE = 0.001
+"""Probability by chance of an explained part or a rank correlation above which it is not told."""
+_LEAST_SPEEDS = 3  # below which every speed is an end
 _LEAST_FOR_RANKS = 8  # samples below which no correlation is told
 
 
@@ -34,17 +36,21 @@ class Share:
     Attributes
     ----------
     share, low, high : float
+    good, total : int
+        Number of the good gearboxes, and of all.
     """
 
     share: float
     low: float
     high: float
+    good: int
+    total: int
 
     @classmethod
     def of(cls, good: int, total: int) -> Share:
         """Return the share of some good ones of all."""
         interval = stats.binomtest(good, total).proportion_ci(CONFIDENCE, method="exact")
-        return cls(good / total, float(interval.low), float(interval.high))
+        return cls(good / total, float(interval.low), float(interval.high), good, total)
 
 
 @dataclass(frozen=True)
@@ -192,6 +198,25 @@ class QuantityStatistics:
             correlations[name] = float(np.corrcoef(ranks, of_input)[0, 1]) if varies else 0.0
         return correlations
 
+    @cached_property
+    def rank_chances(self) -> dict[str, float]:
+        """Probability by chance of each rank correlation or a larger one, either way (Student's t with n - 2)."""
+        freedom = self.found.size - 2
+        chances = {}
+        for name, rank in self.rank_correlations.items():
+            squared = min(rank**2, 1.0 - 1e-15)
+            chances[name] = float(2.0 * stats.t.sf(math.sqrt(squared * freedom / (1.0 - squared)), freedom))
+        return chances
+
+    @property
+    def leading_ranks(self) -> dict[str, float]:
+        """Rank correlations that are hardly by chance, the largest first; none where indices are found."""
+        if self.indices is not None:
+            return {}
+        proven = [name for name, chance in self.rank_chances.items() if chance < CHANCE]
+        ranks = self.rank_correlations
+        return {name: ranks[name] for name in sorted(proven, key=lambda name: -abs(ranks[name]))}
+
     @property
     def share(self) -> Share | None:
         """Part of the gearboxes within the limit; None without one."""
@@ -235,7 +260,7 @@ class QuantityStatistics:
             between, inner = len(groups) - 1, count - len(groups)
             if inner < 1 or within == 0.0 or between == 0:
                 continue
-            if stats.f.sf((total - within) / between / (within / inner), between, inner) < _CHANCE:
+            if stats.f.sf((total - within) / between / (within / inner), between, inner) < CHANCE:
                 explained[name] = 1.0 - within / inner / (total / (count - 1))
         return explained
 
@@ -244,6 +269,30 @@ class QuantityStatistics:
         if self.indices is not None:
             return dict(zip(self.input_names, self.indices.total.tolist(), strict=True))
         return self.explained
+
+
+@dataclass(frozen=True)
+class WorstGearbox:
+    """One of the worst gearboxes of a quantity.
+
+    Attributes
+    ----------
+    name : str
+        Name of the quantity.
+    rank : int
+        1 is the worst.
+    number : int
+        Number of the sample.
+    value : float
+    speed : float or None
+        Signed speed at which the value is the highest over speed [rad/s]; None of a quantity without speeds.
+    """
+
+    name: str
+    rank: int
+    number: int
+    value: float
+    speed: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,6 +317,8 @@ class VariedResult:
         Points of the samples where Sobol' indices are wanted, or what wider inputs cost.
     resumed : int
         Number of samples that an earlier run had found.
+    widening : float or None
+        Factor by which the distribution of one input in turn is wider.
     """
 
     inputs: tuple[Input, ...]
@@ -279,6 +330,7 @@ class VariedResult:
     speeds: FloatArray
     design: IndexPoints | WidenedPoints | None
     resumed: int
+    widening: float | None = None
 
     @cached_property
     def failures(self) -> dict[int, Failure]:
@@ -321,6 +373,21 @@ class VariedResult:
             [one.numbers.get(name, math.nan) if isinstance(one, Evaluation) else math.nan for one in self.outcomes]
         )
 
+    def worst_gearboxes(self, one: QuantityStatistics) -> list[WorstGearbox]:
+        """Return the worst gearboxes of a quantity, the worst first."""
+        return [
+            WorstGearbox(one.name, rank, number, float(one.values[number]), self.speed_of_highest(one.name, number))
+            for rank, number in enumerate(one.worst, start=1)
+        ]
+
+    def speed_of_highest(self, name: str, number: int) -> float | None:
+        """Signed speed at which a quantity of a sample is the highest over speed [rad/s]; None of another quantity."""
+        found = self.outcomes[number]
+        curve = found.curves.get(name) if isinstance(found, Evaluation) else None
+        if curve is None or len(curve) != len(self.speeds):
+            return None
+        return float(self.speeds[int(np.argmax(curve))])
+
     def curve(self, name: str) -> FloatArray:
         """Curve of a quantity of all samples, shape (n, s)."""
         none = np.full(len(self.speeds), math.nan)
@@ -344,7 +411,7 @@ class VariedResult:
 
     @cached_property
     def widened(self) -> tuple[WidenedInput, ...]:
-        """What each wider input costs: the dearest first by the yield, without limits by the first quantity."""
+        """What each wider input costs: the dearest first by the yield, of equal ones by the first quantity."""
         if not isinstance(self.design, WidenedPoints):
             return ()
         split = self.design.split
@@ -371,6 +438,15 @@ class VariedResult:
             found.append(WidenedInput(self.inputs[number].name, share, change, tuple(quantities)))
         return tuple(sorted(found, key=_cost, reverse=True))
 
+    def at_end_of_speeds(self, name: str) -> float | None:
+        """Part of the gearboxes whose level is the highest at an end of the speeds; None without several speeds."""
+        curves = self.curve(name)[self.representative]
+        found = curves[np.all(np.isfinite(curves), axis=1)]
+        if len(self.speeds) < _LEAST_SPEEDS or not len(found):
+            return None
+        ends = [int(np.argmin(np.abs(self.speeds))), int(np.argmax(np.abs(self.speeds)))]
+        return float(np.isin(found.argmax(axis=1), ends).mean())
+
     @property
     def headlines(self) -> tuple[QuantityStatistics, ...]:
         """Quantities that are drawn: those with a limit, else levels at sensors, else transmission errors, else all."""
@@ -385,11 +461,11 @@ class VariedResult:
         return tuple(varying)
 
 
-def _cost(one: WidenedInput) -> float:
-    """Return what a wider input costs: the loss of yield, without limits the growth of the first deviation."""
-    if one.change is not None:
-        return -one.change.difference
-    return one.quantities[0].deviation / (one.quantities[0].deviation_before or 1.0) if one.quantities else 0.0
+def _cost(one: WidenedInput) -> tuple[float, float]:
+    """Return what a wider input costs: the loss of yield, and of equal ones the growth of the first deviation."""
+    loss = 0.0 if one.change is None else -one.change.difference
+    first = one.quantities[0] if one.quantities else None
+    return loss, 0.0 if first is None else first.deviation / (first.deviation_before or 1.0)
 
 
 def require_known_limits(limits: Mapping[str, Limit], names: Sequence[str]) -> None:

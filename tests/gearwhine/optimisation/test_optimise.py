@@ -1,10 +1,12 @@
 """Optimised designs: the optimum of closed forms, the best of a grid, scatter, and what is refused."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearwhine as gw
 from gearwhine.case import CaseError
@@ -12,6 +14,7 @@ from gearwhine.case.load import bundled_case
 from gearwhine.case.optimisation import Aim
 from gearwhine.cli import run_command
 from gearwhine.failures import MissingExtraError
+from gearwhine.figures.optimisation import draw_optimisation
 from gearwhine.numerics.distributions import Discrete, Normal, Uniform
 from gearwhine.variation.samples import FOLDER
 from tests.machines.belted_shaft import BELTED_SHAFT
@@ -395,6 +398,57 @@ def test_quantities_of_your_own_are_taken_and_wrong_ones_refused() -> None:
             gw.optimise(beam, given.pop("laws"), given.pop("aims"), **given)
     with pytest.raises(CaseError, match="did you mean 'area_m2'"):
         gw.optimise(beam, ranges, {"area_m": "least"})
+
+
+def test_keys_in_step_ends_of_lists_and_numbers_of_designs_are_told_as_the_case_names_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The force on the right bearing, 0.2 F1 + 0.8 F2, is the least at the last of falling pairs of forces."""
+    design = '"operation.force[0].x" = { range = ["800 N", "1200 N"] }\n"operation.force[1].x" = { range = ["100 N", '
+    design += '"900 N"] }'
+    listed = '"operation.force[1].x" = { values = ["900 N", "500 N", "100 N"], with = { "operation.speed" = '
+    listed += '["900 rpm", "1000 rpm", "1100 rpm"] } }\n"rotor.shaft.segments[0].diameter" = { values = ["28 mm", '
+    listed += '"30 mm", "29 mm"] }'
+    path, out = tmp_path / "shaft.toml", tmp_path / "out"
+    limited = SHAFT[: SHAFT.index("[optimisation.limit]")]
+    path.write_text(limited.replace(design, listed).replace("evaluations = 50", 'method = "grid"'))
+    assert run_command(["optimise", str(path), "-o", str(out), "-q", "--workers", "1"]) == 0
+    shown = capsys.readouterr().out
+    document = json.loads((out / "summary.json").read_text())
+    force, diameter = document["keys"]
+    assert force["at_bound"] == "last of its list"
+    assert "operation.force[1].x is the last of its list: a longer list may be better." in shown
+    assert diameter["at_bound"] == ""  # of a list that neither rises nor falls
+    (along,) = force["with"]
+    assert (along["key"], along["designs"]) == ("operation.speed", ["1100.0 rpm"])
+    (row,) = [line for line in shown.splitlines() if line.startswith(" operation.speed ")]
+    assert "1100.0 rpm" in row
+    assert row.rstrip().endswith("operation.force[1].x")
+    # The number in the table, in the title of the case and in the file is one; the picture counts from 0, too.
+    (chosen,) = document["chosen"]
+    assert f"best: design {chosen['number']}" in shown
+    assert tomllib.loads((out / "best.toml").read_text())["title"].endswith(f"design {chosen['number']}")
+    with xr.open_dataset(out / "optimise.nc") as found:
+        aims = found["aim_value"].values[:, 0]
+        assert aims[chosen["number"]] == aims.min()
+        assert int(found["design"][0]) == 0
+
+
+def test_the_picture_of_convergence_counts_designs_as_the_file_does() -> None:
+    found = gw.optimise(lambda values: {"area_m2": values["x"]}, {"x": Uniform(0.1, 1.0)}, {"area_m2": "least"})
+    figures = dict(draw_optimisation("Area", found.solved))
+    (axes,) = figures["optimise-convergence"].axes
+    drawn = {(float(x), float(y)) for line in axes.lines[:2] for x, y in line.get_xydata()}
+    assert drawn == {(float(number), float(one.aims[0])) for number, one in enumerate(found.solved.designs)}
+    level = gw.optimise(
+        lambda values: {"sensor.roof.level_db": values["x"]},
+        {"x": Uniform(0.1, 1.0)},
+        {"sensor.roof.level_db": "least"},
+        evaluations=4,
+    )
+    (axes,) = dict(draw_optimisation("Level", level.solved))["optimise-convergence"].axes
+    assert axes.get_title(loc="left") == "sensor roof, highest level over speed"
+    assert axes.get_ylabel() == "dB re 1 µm/s²"
 
 
 def test_the_command_writes_designs_that_give_their_values_again(

@@ -1,0 +1,203 @@
+"""What a study of varied gearboxes tells first, on samples made by hand: each number is one that the hand counts."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import gearwhine as gw
+from gearwhine.case.load import bundled_case
+from gearwhine.case.variation import Limit
+from gearwhine.cli import run_command
+from gearwhine.figures.variation import draw_variation
+from gearwhine.numerics.distributions import Discrete, Normal
+from gearwhine.numerics.sampling import sobol_points, widened_points
+from gearwhine.output.sections import Document, Table
+from gearwhine.results.first_page import first_page
+from gearwhine.results.variation import sections, varied_document
+from gearwhine.variation.inputs import Input
+from gearwhine.variation.quantities import Evaluation
+from gearwhine.variation.statistics import VariedResult
+
+LEVEL, SPEED = "sensor.top.level_db", "sensor.top.loudest_speed_rpm"
+RPM = 30.0 / np.pi
+SPEEDS = np.array([-2000.0, -2500.0, -3000.0]) / RPM
+
+
+def told(levels: np.ndarray, values: np.ndarray | None = None, limit: float | None = None) -> VariedResult:
+    """A study of gearboxes with these levels over three speeds, (n, 3), and inputs (n, d)."""
+    inputs = np.zeros((len(levels), 1)) if values is None else values
+    law = Normal(0.0, 1.0)
+    names = [f"gear.pinion.errors.e{number}" for number in range(inputs.shape[1])]
+    found = [
+        Evaluation({LEVEL: float(row.max()), SPEED: float(-RPM * SPEEDS[row.argmax()])}, {LEVEL: row})
+        for row in np.asarray(levels, dtype=float)
+    ]
+    return VariedResult(
+        inputs=tuple(Input(name, law, "um", (), (), "class 7") for name in names),
+        points=np.zeros_like(inputs),
+        values=inputs,
+        nominal=found[0],
+        outcomes=tuple(found),
+        limits={} if limit is None else {LEVEL: Limit(at_most=limit)},
+        speeds=SPEEDS,
+        design=None,
+        resumed=0,
+    )
+
+
+def shown(document: Document) -> tuple[list[str], dict[str, list[dict[str, str]]]]:
+    """Sentences of a study, and the rows of its tables by the first words of their captions."""
+    tables, sentences = {}, []
+    for item in sections(document)[0].content:
+        if isinstance(item, Table):
+            columns, rows = item.filled()
+            named = [dict(zip([column.heading for column in columns], row, strict=True)) for row in rows]
+            tables[" ".join(item.caption.split()[:2]).rstrip(";,")] = named
+        else:
+            sentences.append(str(item))
+    return sentences, tables
+
+
+TEN = np.array([[90.0, 91.0 + number, 92.0 - number] for number in range(10)])
+
+
+def test_the_study_begins_with_the_gearboxes_beyond_each_limit_and_the_worst() -> None:
+    document = {"command": "vary"} | varied_document(told(TEN, limit=97.5))
+    sentences, tables = shown(document)
+    # Levels 92, 92, 93, ..., 100: of ten three are above 97.5. Interval of 7 of 10 by Clopper and Pearson.
+    assert sentences[0] == "Yield: 7 of 10 gearboxes are within all limits, 70.0 % (34.8 to 93.3 %)."
+    (row,) = tables["Gearboxes beyond"]
+    assert (row["of"], row["limit"], row["beyond"]) == ("sensor top", "≤ 97.5", "3 of 10")
+    worst = tables["Worst gearboxes"]
+    assert [(one["gearbox"], one["value"], one["at [rpm]"]) for one in worst] == [
+        ("9", "100", "2500"),
+        ("8", "99", "2500"),
+        ("7", "98", "2500"),
+    ]
+    assert "3 speeds of the first driver: 2000 to 3000 rpm." in sentences
+    (key,) = tables["Varied keys"]
+    assert key["tolerance"] == "class 7"
+    first = first_page(None, [document], [])[0]
+    assert first.title == "Varied gearboxes in short"
+    assert str(first.content[0]) == sentences[0]
+
+
+def widened_study() -> VariedResult:
+    """Forty gearboxes in three ways: as they are, and each of two inputs wider; the level is uniform up to 100."""
+    points = widened_points(np.zeros((40, 2)), (0, 1))
+    levels = np.linspace(90.0, 100.0, 40)
+    # Both lose one gearbox of those below 97.6; the second scatters half as much again.
+    ways = np.array([levels, levels + 0.2, 95.0 + 1.5 * (levels - 95.0)])
+    ways[2, 27:31] = levels[27:31] + 0.2
+    study = told(np.column_stack([np.full(120, 80.0), ways.T.ravel(), np.full(120, 70.0)]), np.zeros((120, 2)), 97.6)
+    return replace(study, design=points, widening=1.4, points=points.points)
+
+
+def test_wider_inputs_are_told_with_their_factor_and_by_what_they_change_where_the_yield_does_not() -> None:
+    study = widened_study()
+    document = varied_document(study)
+    sentences, _ = shown(document)
+    captions = [item.caption for item in sections(document)[0].content if isinstance(item, Table)]
+    assert any(caption.startswith("What tolerances wider by a factor of 1.4 cost") for caption in captions)
+    first, second = document["widened"]
+    assert first["change"]["difference"] == second["change"]["difference"] == pytest.approx(-1.0 / 40.0)
+    # Of equal changes of the yield the one that scatters more is the dearer.
+    assert first["input"].endswith("e1")
+    # -1 of 40: interval -0.1 to 0.05 about; half over the change to the square, times 40.
+    assert first["change"]["low"] < 0.0 < first["change"]["high"]
+    (said,) = [one for one in sentences if one.startswith("No change of the yield is proven")]
+    half = 0.5 * (first["change"]["high"] - first["change"]["low"])
+    assert f"About {float(f'{40.0 * (half * 40.0) ** 2:.1g}'):.0f} gearboxes of each in place of 40" in said
+    (_, figure) = next(one for one in draw_variation("By hand", study) if one[0] == "vary-widening")
+    assert any("by a factor of 1.4" in text.get_text() for text in figure.texts)
+
+
+def test_a_rank_correlation_beyond_chance_is_told_and_drawn_where_no_part_is_explained() -> None:
+    """A weak trend in 128 gearboxes, whose classes do not differ enough: coefficient and chance as scipy finds them."""
+    x, noise = sobol_points(128, 2, 1), np.random.default_rng(1).normal(size=128)
+    trend = x[:, 1] + noise
+    study = told(np.column_stack([np.full(128, -9.0), trend, np.full(128, -9.0)]), x)
+    (top,) = [one for one in study.quantities if one.name == LEVEL]
+    reference = stats.spearmanr(x[:, 1], trend)
+    assert top.explained == {}
+    assert top.leading_ranks == {"gear.pinion.errors.e1": pytest.approx(reference.statistic)}
+    assert top.rank_chances["gear.pinion.errors.e1"] == pytest.approx(reference.pvalue, rel=1e-9)
+    sentences, tables = shown(varied_document(study))
+    (row,) = tables["What matters:"]
+    assert row["rank correlation (p: by chance)"] == f"{reference.statistic:+.2f} (p = {reference.pvalue:.0e})"
+    assert not [one for one in sentences if one.startswith("No input alone")]
+    figures = dict(draw_variation("By hand", study))
+    (axes,) = figures["vary-importance"].axes
+    assert axes.get_xlabel() == "rank correlation"
+    assert [bar.get_width() for bar in axes.patches] == [pytest.approx(reference.statistic)]
+
+
+def test_a_loudest_speed_at_an_end_of_the_speeds_is_warned_of_with_its_part() -> None:
+    at_end = np.tile([80.0, 90.0, 85.0], (20, 1)) + np.linspace(0.0, 1.0, 20)[:, None]
+    at_end[:3, 2] = 95.0
+    (warned,) = varied_document(told(at_end))["warnings"]
+    assert (warned["name"], warned["share"]) == ("loudest speed", 0.15)
+    assert (
+        "sensor top is the loudest at an end of the speeds, 2000 to 3000 rpm, in 15 % of the gearboxes"
+        in (warned["message"])
+    )
+    at_end[:3, 2] = 70.0
+    assert varied_document(told(at_end))["warnings"] == []
+
+
+def test_what_has_no_mean_is_left_out_and_lives_have_no_power_of_ten() -> None:
+    study = told(TEN)
+    words = Input("bearing.*.clearance", Discrete([0.0, 1.0]), "", ("C2", "C3"), (), "C2, C3")
+    document = varied_document(replace(study, inputs=(words,)))
+    (key,) = shown(document)[1]["Varied keys"]
+    assert (key["tolerance"], key.get("mean", ""), key.get("std", "")) == ("C2, C3", "", "")
+    # Of pitches the file holds the range of the cumulative deviations, whose mean says nothing of the tolerance.
+    pitches = document["inputs"][0] | {"unit": "m", "distribution": "pitches", "mean": 1.8e-5, "tolerance": "class 7"}
+    (key,) = shown(document | {"inputs": [pitches]})[1]["Varied keys"]
+    assert (key["tolerance"], key.get("mean", "")) == ("class 7", "")
+    document["quantities"].append(document["quantities"][0] | {"name": "bearing.left.life_h", "mean": 4.5764e6})
+    rows = shown(document)[1]["Distributions"]
+    assert rows[-1]["mean"] == "4576000"
+
+
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [
+        ({"class": 7}, "class 7"),
+        ({"fit": "k6"}, "fit k6"),
+        ({"normal": ["12 um", "2 um"], "within": ["6 um", "18 um"]}, "normal 12 um ± 2 um, within 6 um to 18 um"),
+        ({"uniform": ["1 mm", "2 mm"]}, "uniform 1 mm to 2 mm"),
+        ({"values": ["C2", "C3"]}, "C2, C3"),
+    ],
+)
+def test_a_tolerance_is_told_as_the_case_gives_it(written: dict[str, object], words: str) -> None:
+    from gearwhine.case.variation import Varied
+
+    assert Varied.model_validate(written).words == words
+
+
+def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_opened(tmp_path: Path) -> None:
+    """The level is that of the lines which `system` finds of the case as it stands."""
+    bundled = bundled_case("small-gearbox")
+    assert bundled is not None
+    path, out = tmp_path / "case.toml", tmp_path / "out"
+    text = '[variation]\nsamples = 2\nanalyses = ["lines"]\nspeed = ["2500 rpm", "4000 rpm"]\n'
+    text += 'vary = { "gear.*.errors.helix.slope" = { class = 7, independent = true } }\n'
+    path.write_text(bundled.read_text() + text)
+    command = ["vary", str(path), "-o", str(out), "--set", "housing.box.mesh_size=60 mm", "-q", "--workers", "1"]
+    assert run_command(command) == 0
+    rows = json.loads((out / "summary.json").read_text())["worst"]
+    worst = next(row for row in rows if row["quantity"] == LEVEL)
+    study = gw.load(out / f"worst-{LEVEL}-1.toml")
+    lines = study.system().document["mesh_lines"]
+    sizes = [line["sensor_acceleration_m_per_s2"]["together"]["top"] for line in lines]
+    level = 20.0 * np.log10(np.sqrt(0.5 * np.sum(np.square(sizes))) / 1e-6)
+    assert level == pytest.approx(worst["value"], abs=1e-3)
+    assert study.case.operation is not None
+    assert abs(study.case.operation.speed) * RPM == pytest.approx(worst["speed_rpm"])
+    assert f"{worst['value']:.6g} at {worst['speed_rpm']:.5g} rpm" in study.case.title
+    assert f"{worst['speed_rpm']:.5g} rpm" in study.case.notes
