@@ -25,6 +25,7 @@ from gearwhine.figures.style import (
     legend_below,
     legend_height,
     name_in_legend,
+    name_lowest,
     panel,
     panel_pair,
     panel_title,
@@ -64,23 +65,20 @@ def draw_optimisation(title: str, optimised: Optimised) -> Iterator[tuple[str, F
 
 
 def _over_speed(begins: str, labels: Iterable[str], checked: Verification, start: Motion) -> Figure:
-    """Draw the levels of start and proposed designs over the speed range, and at the speeds of the study."""
+    """Draw the levels of start and proposed designs over the speed range."""
     sensors = list(start.over_speed)[:_MOST_PANELS]
     designs = [("start", start), *zip(labels, checked.designs, strict=True)][: len(SERIES)]
     solved = [(label, one) for label, one in designs if isinstance(one, Motion)]
     low = legend_height(len(solved))
-    figure = sheet(
-        HEAD + _TITLES + FOOT + low + len(sensors) * _HEIGHT + (len(sensors) - 1) * _GAP,
-        "Levels over the speed range",
-        f"{begins}lines of the teeth by the linear machine under load.",
-    )
-    for row, sensor in enumerate(reversed(sensors)):
-        axes = panel(figure, FOOT + low + row * (_HEIGHT + _GAP), _HEIGHT)
+    note = f"{begins}lines of the teeth by the linear machine under load."
+    title = "Levels over the speed range"
+    figure, panels = stacked(len(sensors), _HEIGHT, _GAP, title, note, first=_TITLES, foot=FOOT + low)
+    for sensor, axes in zip(sensors, panels, strict=True):
         for color, (_, one) in zip((GREY, *SERIES), solved, strict=False):
             axes.plot(RPM * one.speeds, one.over_speed[sensor], color=color, lw=1.2)
         axes.set_ylabel("level [dB re 1 µm/s²]")
-        axes.set_xlabel("speed [rpm]")
-        panel_title(axes, shortened(sensor, 48))
+        panel_title(axes, sensor)
+    name_lowest(panels, "speed [rpm]")
     marks = [
         Line2D([], [], color=color, lw=1.2, label=name_in_legend(label, 36))
         for color, (label, _) in zip((GREY, *SERIES), solved, strict=False)
