@@ -103,7 +103,7 @@ def solve_optimisation(
     scatter = _scatter(optimisation.robust, variation, plain, inputs)
     wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
-    proposed, housing = in_solved_housing(proposed, case, folder, "optimise")
+    proposed, housing = in_solved_housing(proposed, folder, "optimise")
     folder.progress("the case as it is written")
     nominal = proposed.evaluation(proposed.case(None))
     goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)

@@ -18,6 +18,7 @@ from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, requ
 from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.model import lacking
+from gearwhine.case.operation import Operation
 from gearwhine.case.optimisation import Optimisation
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
@@ -101,7 +102,7 @@ def solve_variation(
     points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
     wanted = wanted_of(case, variation)
     varied = VariedCase(source.without("variation"), inputs, wanted, wider=wider)
-    varied, housing = in_solved_housing(varied, case, folder, "vary")
+    varied, housing = in_solved_housing(varied, folder, "vary")
     _require_distributions(varied, variation)
     folder.progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
@@ -131,27 +132,34 @@ def solve_variation(
         for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
             for worst in result.worst_gearboxes(one):
                 drawn = varied.case(result.points[worst.number])
-                text = dump_case(_reproducing(drawn, worst, at_speeds=bool(wanted.speeds)))
+                place_of = drawn.title, drawn.notes, drawn.operation
+                changes = _reproducing(*place_of, worst, at_speeds=bool(wanted.speeds))
+                text = dump_case(drawn.model_copy(update=changes))
                 (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
         return {}
 
     return _result(origin, result, start, worst_cases)
 
 
-def _reproducing(drawn: Case, worst: WorstGearbox, *, at_speeds: bool) -> Case:
-    """Return the case of one of the worst gearboxes, at the speed at which its quantity has the value of its title."""
+def _reproducing(
+    title: str, notes: str, operation: Operation | None, worst: WorstGearbox, *, at_speeds: bool
+) -> dict[str, Any]:
+    """Return title, notes and operation of the case of one of the worst gearboxes.
+
+    The operation is that at the speed at which its quantity has the value of its title.
+    """
     number = f"gearbox {worst.number}, {worst.name} = {worst.value:.6g}"
     changes: dict[str, Any] = {}
-    if at_speeds and worst.speed is not None and drawn.operation is not None:
+    if at_speeds and worst.speed is not None and operation is not None:
         number += f" at {RPM * abs(worst.speed):.5g} rpm"
         note = (
             f"The speed of operation is {RPM * abs(worst.speed):.5g} rpm, at which {worst.name} is the highest over "
-            f"the speeds of the study; the study finds the operating point at {RPM * abs(drawn.operation.speed):.5g} "
+            f"the speeds of the study; the study finds the operating point at {RPM * abs(operation.speed):.5g} "
             "rpm."
         )
-        changes["operation"] = drawn.operation.model_copy(update={"speed": worst.speed})
-        changes["notes"] = f"{drawn.notes}\n{note}".strip()
-    return drawn.model_copy(update=changes | {"title": f"{drawn.title}: {number}".strip(": ")})
+        changes["operation"] = operation.model_copy(update={"speed": worst.speed})
+        changes["notes"] = f"{notes}\n{note}".strip()
+    return changes | {"title": f"{title}: {number}".strip(": ")}
 
 
 def vary(
@@ -298,10 +306,9 @@ def sampled_points(inputs: Sequence[Input], variation: Variation, samples: int, 
 AnyVaried = TypeVar("AnyVaried", bound=VariedCase)
 
 
-def in_solved_housing(
-    varied: AnyVaried, case: Case, folder: StudyFolder, command: str
-) -> tuple[AnyVaried, HousingModes | None]:
+def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> tuple[AnyVaried, HousingModes | None]:
     """Return a varied case with the solved housing of the case without changes, and that; None without one."""
+    case = varied.source.changed_case()
     if case.housing is None or not case.rotor:
         return varied, None
     housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)
