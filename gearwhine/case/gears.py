@@ -508,7 +508,13 @@ class Gear(Table):
         from gearwhine.coupling.gears import Gear as BuiltGear
 
         module, errors = self.tooth_module, self.errors
-        elastic = () if material is None else ("youngs_modulus", "poisson_ratio", "density")
+        of_material: dict[str, float] = {}
+        if material is not None:
+            of_material = {
+                "youngs_modulus": material.youngs_modulus,
+                "poisson_ratio": material.poisson_ratio,
+                "density": material.density,
+            }
         return BuiltGear(
             name=self.name,
             teeth=self.teeth,
@@ -536,7 +542,7 @@ class Gear(Table):
             ring_support=None if self.ring_support is None else self.ring_support.build(),
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
-            **{name: getattr(material, name) for name in elastic},
+            **of_material,
         )
 
     @property

@@ -211,3 +211,5 @@ def test_an_approach_has_no_memory_of_those_before(path: list[tuple[float, Float
         scale = np.abs(alone.stiffness).max()
         np.testing.assert_allclose(found.stiffness, alone.stiffness, rtol=1e-8, atol=1e-9 * scale)
         np.testing.assert_allclose(found.loads, alone.loads, rtol=1e-8, atol=1e-9 * np.abs(alone.loads).max())
+    unloaded = face(14.0).unloaded_tangent
+    assert mesh.unloaded_tangent.mean_stiffness == pytest.approx(unloaded.mean_stiffness, rel=1e-12)
