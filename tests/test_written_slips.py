@@ -166,8 +166,18 @@ def declared_twice(source: Source) -> Slips:
                 yield node.lineno, f"{place} {what!r} {number} times"
 
 
+def exported_twice(source: Source) -> Slips:
+    """Names that a list of public names has twice, in the place of another one."""
+    for node in source.of(ast.Assign):
+        if ast.unparse(node.targets[0]) == "__all__":
+            for what, number in Counter(map(ast.unparse, getattr(node.value, "elts", ()))).items():
+                if number > 1:
+                    yield node.lineno, f"{what} {number} times"
+
+
 def test_no_two_declarations_of_one_list_are_of_the_same() -> None:
     assert slips(declared_twice) == []
+    assert slips(exported_twice) == []
 
 
 def said_twice(source: Source) -> Slips:

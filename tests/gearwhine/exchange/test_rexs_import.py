@@ -16,7 +16,11 @@ from gearwhine.exchange.rexs.catalogue import dimensions_of
 
 
 def imported(file: RexsFile, load_case: str = "") -> ImportedCase:
-    return case_of(read_content(file.xml()), "unit.rexs", load_case)
+    """The case of a file, each of whose notes about a value stands as a comment beside it."""
+    made = case_of(read_content(file.xml()), "unit.rexs", load_case)
+    text = made.toml
+    assert [str(note) for note in made.notes if note.at and f"# {note}" not in text] == []
+    return made
 
 
 def case(file: RexsFile) -> Case:

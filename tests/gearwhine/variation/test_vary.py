@@ -2,7 +2,9 @@
 
 import json
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
+from gearwhine.variation import run
 from gearwhine.variation.samples import FOLDER
 from gearwhine.variation.statistics import QuantityStatistics
 from tests.machines.belted_shaft import BELTED_SHAFT
@@ -253,6 +256,23 @@ def test_a_study_goes_on_where_it_ended_and_a_torn_record_costs_its_last_line(tm
     other = gw.load(path, ["variation.vary.'operation.force[0].x'.uniform=['700 N', '1200 N']"])
     assert other.vary(5, folder=out, workers=1).document["resumed"] == 0
     assert [one != record for one in (out / FOLDER).glob("*.jsonl")] == [True]
+
+
+def test_workers_that_are_asked_for_are_taken_however_short_the_study_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def alone(varied: Any, points: np.ndarray, batches: Any, folder: Path, workers: int, *_: object) -> Iterator[Any]:
+        asked.append(workers)
+        for batch in batches:
+            yield [(number, varied.solve(points[number])) for number in batch]
+
+    monkeypatch.setattr(run, "_solved_by_workers", alone)
+    study = gw.load(_shaft(tmp_path))
+    for workers in (2, None, 1):
+        assert not study.vary(6, folder=tmp_path / f"by {workers}", workers=workers).document["failed"]
+    assert asked == [2]
 
 
 def test_limits_of_unknown_quantities_and_analyses_without_their_tables_are_refused(tmp_path: Path) -> None:
