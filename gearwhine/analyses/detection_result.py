@@ -199,7 +199,9 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
         return draw_detection(case.title, result)
 
     origin = Origin(case.title, case=case, housing=housing)
-    return origin.study_result("detect", result, detection_document(result), DETECTION, figures, start)
+    return origin.study_result(
+        "detect", result, detection_document(result), DETECTION, figures, start, warnings=varied.start_warnings
+    )
 
 
 def _observations(

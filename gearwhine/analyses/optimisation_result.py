@@ -26,6 +26,7 @@ from gearwhine.failures import explain
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.optimisation.design import (
     AS_WRITTEN,
     DesignInput,
@@ -150,7 +151,7 @@ def solve_optimisation(
             (place / f"{stem}.toml").write_text(text, encoding="utf-8")
         return {}
 
-    return _result(origin, optimised, begin, design_cases)
+    return _result(origin, optimised, begin, design_cases, proposed.start_warnings)
 
 
 def optimise(
@@ -509,7 +510,11 @@ def _written_designs(optimised: Optimised) -> dict[str, int]:
 
 
 def _result(
-    origin: Origin, optimised: Optimised, begin: float, files: Callable[..., Mapping[str, Any]] = no_files
+    origin: Origin,
+    optimised: Optimised,
+    begin: float,
+    files: Callable[..., Mapping[str, Any]] = no_files,
+    warnings: Sequence[ResultWarning] = (),
 ) -> Result[Optimised]:
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures.optimisation import draw_optimisation
@@ -517,4 +522,4 @@ def _result(
         return draw_optimisation(origin.title, optimised)
 
     document = optimised_document(optimised)
-    return origin.study_result("optimise", optimised, document, OPTIMISED, figures, begin, files)
+    return origin.study_result("optimise", optimised, document, OPTIMISED, figures, begin, files, warnings)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearwhine.analyses.result import Result, no_figures, no_files
 from gearwhine.numerics.progress import Progress
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.output.dataset import Labels, labelled, labels_of
 from gearwhine.output.quantity import Fields, joined
 from gearwhine.results.housing import HOUSING, origin_document
@@ -102,6 +103,7 @@ class Origin:
         figures: Callable[[Progress], Iterable[tuple[str, Figure]]],
         begun: float,
         files: Callable[..., Mapping[str, Any]] = no_files,
+        warnings: Sequence[ResultWarning] = (),
     ) -> Result[Solved]:
         """Return the result of a study of many solutions, whose data file has the name of the command.
 
@@ -113,12 +115,18 @@ class Origin:
             Returns the dataset; or the quantities of the solution, which are declared.
         begun : float
             Time of the performance counter at which the study began [s].
+        warnings : sequence of ResultWarning
+            Warnings beside those of the document and of the housing.
         """
         return Result(
             command,
             self.case,
             solved,
-            {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
+            joined(
+                {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
+                {"warnings": warnings},
+                {"warnings": [] if self.housing is None else self.housing.warnings},
+            ),
             _arrays=arrays
             if callable(arrays)
             else lambda: labelled(replace(self.labels, speed=None), (arrays, solved)),

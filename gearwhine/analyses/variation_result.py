@@ -27,6 +27,7 @@ from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems
 from gearwhine.output.quantity import RPM
@@ -132,34 +133,32 @@ def solve_variation(
         for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
             for worst in result.worst_gearboxes(one):
                 drawn = varied.case(result.points[worst.number])
-                place_of = drawn.title, drawn.notes, drawn.operation
-                changes = _reproducing(*place_of, worst, at_speeds=bool(wanted.speeds))
-                text = dump_case(drawn.model_copy(update=changes))
+                told = _told(worst, drawn.title, drawn.notes, drawn.operation if wanted.speeds else None)
+                text = dump_case(drawn.model_copy(update=told))
                 (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
         return {}
 
-    return _result(origin, result, start, worst_cases)
+    return _result(origin, result, start, worst_cases, varied.start_warnings)
 
 
-def _reproducing(
-    title: str, notes: str, operation: Operation | None, worst: WorstGearbox, *, at_speeds: bool
-) -> dict[str, Any]:
-    """Return title, notes and operation of the case of one of the worst gearboxes.
+def _told(worst: WorstGearbox, title: str, notes: str, operation: Operation | None) -> dict[str, Any]:
+    """Return title, notes and operation of a worst gearbox's case, with the speed of the value in its title.
 
-    The operation is that at the speed at which its quantity has the value of its title.
+    Without an operation to change, the value is one at the speed of the case.
     """
     number = f"gearbox {worst.number}, {worst.name} = {worst.value:.6g}"
-    changes: dict[str, Any] = {}
-    if at_speeds and worst.speed is not None and operation is not None:
-        number += f" at {RPM * abs(worst.speed):.5g} rpm"
-        note = (
-            f"The speed of operation is {RPM * abs(worst.speed):.5g} rpm, at which {worst.name} is the highest over "
-            f"the speeds of the study; the study finds the operating point at {RPM * abs(operation.speed):.5g} "
-            "rpm."
-        )
-        changes["operation"] = operation.model_copy(update={"speed": worst.speed})
-        changes["notes"] = f"{notes}\n{note}".strip()
-    return changes | {"title": f"{title}: {number}".strip(": ")}
+    if worst.speed is None or operation is None:
+        return {"title": f"{title}: {number}".strip(": ")}
+    rpm = f"{RPM * abs(worst.speed):.5g} rpm"
+    note = (
+        f"The speed of operation is {rpm}, at which {worst.name} is the highest over the speeds of the study; that "
+        f"has the operating point at {RPM * abs(operation.speed):.5g} rpm."
+    )
+    return {
+        "title": f"{title}: {number} at {rpm}".strip(": "),
+        "notes": f"{notes}\n{note}".strip(),
+        "operation": operation.model_copy(update={"speed": worst.speed}),
+    }
 
 
 def vary(
@@ -394,11 +393,15 @@ def _require_distributions(varied: VariedCase, variation: Variation) -> None:
 
 
 def _result(
-    origin: Origin, result: VariedResult, start: float, files: Callable[..., Mapping[str, Any]] = no_files
+    origin: Origin,
+    result: VariedResult,
+    start: float,
+    files: Callable[..., Mapping[str, Any]] = no_files,
+    warnings: Sequence[ResultWarning] = (),
 ) -> Result[VariedResult]:
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures.variation import draw_variation
 
         return draw_variation(origin.title, result)
 
-    return origin.study_result("vary", result, varied_document(result), VARIED, figures, start, files)
+    return origin.study_result("vary", result, varied_document(result), VARIED, figures, start, files, warnings)

@@ -27,10 +27,11 @@ from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.reduced_housing import reduced_component
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import plan_of, reduce_housing, solve_pairs
+from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
 from gearwhine.variation.inputs import Input, Wider, inputs_at
 from gearwhine.variation.quantities import Evaluation, Wanted, evaluate, evaluate_pairs
 from gearwhine.workers import code_digest, require_same_code
@@ -38,6 +39,7 @@ from gearwhine.workers import code_digest, require_same_code
 _REMARKS = frozenset({"title", "notes", "provenance"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 _KEPT_HOUSINGS = 50  # kilobytes each
+_UNDER_LOAD = frozenset({"gears", "load", "lines", "motion"})  # analyses about an operating point
 FOLDER = "samples"
 """Folder of the record within the results folder."""
 
@@ -128,6 +130,14 @@ class VariedCase:
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))
         return evaluate(self.machine(case), wanted)
+
+    @cached_property
+    def start_warnings(self) -> list[ResultWarning]:
+        """Warnings of the operating point of the case without changes; none where no sample has one."""
+        case = self.case(None)
+        if not case.rotor or case.operation is None or not _UNDER_LOAD & set(self.wanted.analyses):
+            return []
+        return load_of_case(case.parts, self.machine(case))[1]
 
     def machine(self, case: Case) -> Machine:
         """Return the machine of a case of the study, in its housing."""

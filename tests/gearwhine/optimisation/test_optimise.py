@@ -16,7 +16,8 @@ from gearwhine.cli import run_command
 from gearwhine.failures import MissingExtraError
 from gearwhine.figures.optimisation import draw_optimisation
 from gearwhine.numerics.distributions import Discrete, Normal, Uniform
-from gearwhine.variation.samples import FOLDER
+from gearwhine.numerics.result_warnings import warning
+from gearwhine.variation.samples import FOLDER, VariedCase
 from tests.machines.belted_shaft import BELTED_SHAFT
 
 SHAFT = (
@@ -432,6 +433,12 @@ def test_keys_in_step_ends_of_lists_and_numbers_of_designs_are_told_as_the_case_
         aims = found["aim_value"].values[:, 0]
         assert aims[chosen["number"]] == aims.min()
         assert int(found["design"][0]) == 0
+
+
+def test_warnings_of_the_start_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(VariedCase, "start_warnings", [warning("overload", "the start is doubtful")])
+    found = _optimised(tmp_path, SHAFT.replace("evaluations = 50", "evaluations = 3"))
+    assert "the start is doubtful" in [one["message"] for one in found.document["warnings"]]
 
 
 def test_the_picture_of_convergence_counts_designs_as_the_file_does() -> None:

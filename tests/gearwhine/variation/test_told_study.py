@@ -180,7 +180,9 @@ def test_a_tolerance_is_told_as_the_case_gives_it(written: dict[str, object], wo
     assert Varied.model_validate(written).words == words
 
 
-def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_opened(tmp_path: Path) -> None:
+def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_opened(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The level is that of the lines which `system` finds of the case as it stands."""
     bundled = bundled_case("small-gearbox")
     assert bundled is not None
@@ -190,7 +192,15 @@ def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_ope
     path.write_text(bundled.read_text() + text)
     command = ["vary", str(path), "-o", str(out), "--set", "housing.box.mesh_size=60 mm", "-q", "--workers", "1"]
     assert run_command(command) == 0
-    rows = json.loads((out / "summary.json").read_text())["worst"]
+    document = json.loads((out / "summary.json").read_text())
+    # What the mesh and the operating point warn of is in the study as `load` has it, each once.
+    messages = [one["message"] for one in document["warnings"]]
+    of_load = gw.load(path, {"housing.box.mesh_size": "60 mm"}, folder=out).operating_point().document["warnings"]
+    assert any("this mesh makes" in one["message"] for one in of_load)
+    assert [messages.count(one["message"]) for one in of_load] == [1] * len(of_load)
+    told_once = capsys.readouterr().err
+    assert told_once.count("this mesh makes") == 1
+    rows = document["worst"]
     worst = next(row for row in rows if row["quantity"] == LEVEL)
     study = gw.load(out / f"worst-{LEVEL}-1.toml")
     lines = study.system().document["mesh_lines"]
