@@ -21,13 +21,22 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test test-slow checked-and-compiled lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
+.PHONY: help demo test test-slow checked-and-compiled lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
 
 demo: install
 	$(BIN)/gearwhine run nasa-gear-noise-rig -o $(OUT)
+
+help:
+	@echo "make install        packages and compiled kernels, into $(VENV)"
+	@echo "make demo           install, then NASA's gear noise rig into $(OUT)"
+	@echo "make test           install, then lint, types and tests; make test-slow: the long ones"
+	@echo "make reference      pages of all case keys and command options, in build/reference"
+	@echo "make docs           the documentation as a site, in build/site"
+	@echo "make validation     docs/validation.md anew, from the tests against published values"
+	@echo "make clean          the environment and what these have made"
 
 test: lint checked-and-compiled unit
 
@@ -66,7 +75,7 @@ browser: | $(VENV)/.installed
 
 # After what it needs of the system, therefore last.
 $(VENV)/.compiled: pyproject.toml constraints.txt | $(BIN)/python
-	@echo "Compiling the kernels (about a minute) ..."
+	@echo "Compiling the kernels (two minutes of processor time, once) ..."
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python scripts/compile_kernels.py
 	@touch $@
 

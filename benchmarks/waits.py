@@ -35,7 +35,7 @@ _SOUND = ("acoustics.floor=-20 mm", "acoustics.in_run=false")
 _RUN_UP = (
     "transient.revolutions=",
     "transient.discard=",
-    'transient.run={ duration = "1 s", speed_ratios = [0.5, 1] }',
+    'transient.run={ from = "725 rpm", to = "1450 rpm", time = "1 s" }',
 )
 
 WAITS: dict[str, tuple[str, ...]] = {

@@ -301,7 +301,7 @@ def assemble_machine(
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
-    frames = Frames(components, frame_speeds(rotors, bearings, meshes, speeds))
+    frames = Frames(components, frame_speeds(rotors, bearings, meshes, speeds, torque_supports))
     components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
     if speed_ratios is None:

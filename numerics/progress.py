@@ -39,6 +39,8 @@ def in_order(
     progress : callable
     """
     results: list[Solution] = []
+    if items:
+        progress(message, 0.0)
     with ThreadPoolExecutor(_THREADS) as pool:
         for result in pool.map(solve, items):
             results.append(result)

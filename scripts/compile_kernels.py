@@ -7,6 +7,7 @@ on machines as small as there are. What this leaves out is compiled when it is f
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,8 @@ def tell(command: str, *options: str) -> None:
         sys.exit(code)
 
 
+EVERY = 15.0
+"""Time between two signs of life [s]."""
 METHODS: tuple[Method, ...] = ("newmark", "exact")
 PARTS = (rotors_and_gears, motions)
 
@@ -93,6 +96,12 @@ PARTS = (rotors_and_gears, motions)
 def main() -> int:
     command = [sys.executable, __file__]
     running = [subprocess.Popen([*command, str(part)], stdout=subprocess.DEVNULL) for part in range(len(PARTS))]
+    start = told = time.monotonic()
+    while any(process.poll() is None for process in running):
+        time.sleep(0.2)
+        if time.monotonic() - told >= EVERY:
+            told = time.monotonic()
+            print(f"  still compiling after {told - start:.0f} s", flush=True)
     return max([process.wait() for process in running])
 
 

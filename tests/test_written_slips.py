@@ -22,11 +22,19 @@ from test_units_of_declarations import NAMES, SHOWN, dimension_of  # noqa: E402
 
 ROOMS = ("coupling", "gearwhine")
 """Rooms whose texts and tables users see."""
-UNITS = SHOWN | {"dB(A)": ("dB", 1.0), "kg m²": ("kg m2", 1.0), "‰": ("%", 0.1), "deg": SHOWN["°"]}
+UNITS = SHOWN | {"dB(A)": ("dB", 1.0), "kg m²": ("kg m2", 1.0), "deg": SHOWN["°"]}
 _UNIT = re.compile(rf"\s?({'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![\w/·*²(°-])")
 _BETWEEN = (" to ", " and ", ", ", " ± ")  # of two numbers of one unit
 WORDS = {"speed": "rpm", "torque": "N m", "force": "N", "frequency": "Hz"}
 """Names without a unit of values in the unit of the document."""
+CONVERTED = {
+    (ast.Mult, "RPM"): "converted_rpm",
+    (ast.Div, "HERTZ"): "converted_hz",
+    (ast.Div, "(2.0 * np.pi)"): "converted_hz",
+    (ast.Div, "_TWO_PI"): "converted_hz",
+    (ast.Div, "TWO_PI"): "converted_hz",
+}
+"""What rad/s become by an operator and a constant, as a key says it."""
 PARTS = {"share", "part", "covered", "axial_share", "damping_ratio", "load_share", "contact_loss_fraction", "margin"}
 """Names of parts of 1."""
 
@@ -79,6 +87,8 @@ def constants(tree: ast.Module) -> dict[str, float]:
 
 def factor_and_name(node: ast.expr, numbers: dict[str, float]) -> tuple[float, str] | None:
     """A number times a key, an attribute or a name; None of another expression."""
+    if isinstance(node, ast.BinOp) and (unit := CONVERTED.get((type(node.op), ast.unparse(node.right)))):
+        return 1.0, unit
     match node:
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             for one, other in ((left, right), (right, left)):
@@ -156,8 +166,18 @@ def declared_twice(source: Source) -> Slips:
                 yield node.lineno, f"{place} {what!r} {number} times"
 
 
+def exported_twice(source: Source) -> Slips:
+    """Names that a list of public names has twice, in the place of another one."""
+    for node in source.of(ast.Assign):
+        if ast.unparse(node.targets[0]) == "__all__":
+            for what, number in Counter(map(ast.unparse, getattr(node.value, "elts", ()))).items():
+                if number > 1:
+                    yield node.lineno, f"{what} {number} times"
+
+
 def test_no_two_declarations_of_one_list_are_of_the_same() -> None:
     assert slips(declared_twice) == []
+    assert slips(exported_twice) == []
 
 
 def said_twice(source: Source) -> Slips:
@@ -190,8 +210,8 @@ def test_no_value_stands_twice_where_each_is_said_once() -> None:
 
 
 @cache
-def parameters() -> dict[str, tuple[str, ...]]:
-    """Parameters of functions and fields of dataclasses by a name that only one of them has."""
+def parameters() -> dict[str, set[tuple[str, ...]]]:
+    """Parameters of the functions and fields of the dataclasses of a name."""
     found: defaultdict[str, set[tuple[str, ...]]] = defaultdict(set)
     for source in sources().values():
         for node in source.of(ast.FunctionDef, ast.ClassDef):
@@ -202,29 +222,38 @@ def parameters() -> dict[str, tuple[str, ...]]:
                 fields = [ast.unparse(one.target) for one in node.body if isinstance(one, ast.AnnAssign)]
                 inherits = {ast.unparse(base) for base in node.bases} - {"NamedTuple"}
                 found[node.name].add(() if inherits else tuple(fields))
-    return {name: next(iter(several)) for name, several in found.items() if len(several) == 1}
+    return found
 
 
 def word_of(node: ast.expr) -> str:
     """Name, attribute or key that an argument is, without its unit."""
     match node:
         case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Subscript(slice=ast.Constant(value=str(name))):
-            return re.sub(r"_(hz|rpm|n_m|rad|m|s|n)$", "", name.lstrip("_"))
+            return without_unit(name)
     return ""
+
+
+def without_unit(name: str) -> str:
+    """A name without the unit at its end."""
+    return re.sub(r"_(hz|rpm|n_m|rad|m|s|n)$", "", name.lstrip("_"))
+
+
+MIRRORED = {"start", "pitch_gaps", "pair_variants"}
+"""Of a section seen from its other end, and of flanks that become the back flanks."""
 
 
 def swapped(source: Source) -> Slips:
     """Neighbours among the arguments that have each other's names, and a class in the place of its object."""
     for node in source.of(ast.Call):
         name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
-        if name == "isinstance" and word_of(node.args[0])[:1].isupper():
+        if name == "isinstance" and re.match(r"[A-Z]|(str|int|float|list|dict|tuple|bool)$", word_of(node.args[0])):
             yield node.lineno, ast.unparse(node)
-        places = [*zip(parameters().get(name, ()), node.args, strict=False)]
-        places += [(keyword.arg, keyword.value) for keyword in node.keywords if keyword.arg]
-        for (one, first), (other, second) in pairwise(places):
-            # What `replace` makes of an object may be its mirror image.
-            if one != other and (word_of(first), word_of(second)) == (other, one) and name != "replace":
-                yield node.lineno, f"{name}: {other} as {one}, {one} as {other}"
+        keywords = [(without_unit(one.arg), word_of(one.value)) for one in node.keywords if one.arg]
+        for names in parameters().get(name, {()}):
+            places = [*zip(map(without_unit, names), map(word_of, node.args), strict=False), *keywords]
+            for (one, first), (other, second) in pairwise(places):
+                if one != other and (first, second) == (other, one) and one not in MIRRORED:
+                    yield node.lineno, f"{name}: {other} as {one}, {one} as {other}"
 
 
 def test_arguments_stand_in_the_places_of_their_names() -> None:

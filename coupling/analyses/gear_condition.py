@@ -8,7 +8,7 @@ band, at the turn of the gear's shaft or at a tone of a bearing, over the mean s
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -349,8 +349,3 @@ def _of_tone(record: ConditionRecord, sensor: str, frequency: float) -> float | 
         return envelope_at(record.signals[sensor], record.interval, record.limit_hz, frequency)
     except CouplingError:
         return None
-
-
-def condition_values(condition: MachineCondition, gear: str) -> Mapping[str, Mapping[str, float | None]]:
-    """Return the indicators of a gear by sensor and name."""
-    return {one.sensor: one.values for each in condition.gears if each.gear.gear == gear for one in each.sensors}

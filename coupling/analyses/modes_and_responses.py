@@ -161,7 +161,7 @@ def solve_system(
     system = machine.system
     contact = mean_contact(system) if mesh_phase is None else _instant(machine, mesh_phase)
     modes = coupled_modes(system, contact)
-    responses, error = _mesh_responses(machine, modes, contact)
+    responses, error = _mesh_responses(machine, modes, contact, progress)
     lines = _sensor_lines(machine) if mesh_phase is None else ()
     solved = SolvedSystem(machine, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines)
     if system.turns:
@@ -185,7 +185,7 @@ def _exponents(solved: SolvedSystem, progress: Progress) -> ComplexArray:
     proper = np.array([kind not in ("residual", "rigid") for kind in modes.kinds])
     swinging = proper & (modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) <= limit)
     chosen = np.flatnonzero(swinging)[:_EXPONENTS]
-    exponents = np.full(len(modes.kinds), np.nan, dtype=np.complex128)
+    exponents = np.full(len(modes.kinds), complex(np.nan, np.nan))
     model = TurningResponse(solved.machine.system, solved.contact)
     exponents[chosen] = floquet_exponents(
         model, modes.eigenvalues[chosen], modes.shapes[chosen], modes.left[chosen], progress
@@ -197,6 +197,7 @@ def _mesh_responses(
     machine: CoupledMachine,
     modes: CoupledModes,
     contact: ContactState,
+    progress: Progress,
 ) -> tuple[tuple[FrequencyResponse, ...], float | None]:
     """Return responses to the error of each mesh by superposition, and their largest error against direct solutions.
 
@@ -210,7 +211,7 @@ def _mesh_responses(
     frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit, coarse=turns)
     if turns:
         # They are solved directly, by harmonic balance.
-        return mesh_error_responses(machine, frequencies, meshes=touching, contact=contact), None
+        return mesh_error_responses(machine, frequencies, meshes=touching, contact=contact, progress=progress), None
     try:
         responses = mesh_error_responses(machine, frequencies, meshes=touching, contact=contact, modes=modes)
     except ModesError:

@@ -531,8 +531,8 @@ def on_rigid_seats(
     """
     names = {shaft.name for shaft in shafts}
     return {
-        "shafts": [replace(shaft, rim_seat=None) for shaft in shafts],
-        "bearings": [one if one.seat in names else replace(one, seat=None) for one in bearings],
+        "shafts": [shaft if shaft.rim_seat is None else replace(shaft, rim_seat=None) for shaft in shafts],
+        "bearings": [one if one.seat in {None, *names} else replace(one, seat=None) for one in bearings],
         "torque_supports": [replace(support, seat=None) for support in torque_supports],
     }
 

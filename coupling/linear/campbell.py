@@ -466,7 +466,7 @@ def _turning(
     progress: Progress,
 ) -> tuple[ComplexArray, FloatArray | None]:
     """Exponents of the lowest modes at some of the speeds, and at which frequencies sensors see them."""
-    exponents = np.full(table.shape, np.nan, dtype=np.complex128)
+    exponents = np.full(table.shape, complex(np.nan, np.nan))
     observed = np.full(table.shape, np.nan)
     sensors = np.array(list(machine.sensor_rows.values()))
     chosen = np.unique(np.linspace(0, len(points) - 1, _TURNING_SPEEDS).astype(int))

@@ -86,7 +86,7 @@ class CarrierSidebands:
     def frames(self) -> Frames:
         """Frames of the components."""
         machine = self.machine
-        speeds = frame_speeds(machine.rotors, machine.bearings, machine.meshes, machine.speeds)
+        speeds = frame_speeds(machine.rotors, machine.bearings, machine.meshes, machine.speeds, machine.torque_supports)
         return Frames(machine.system.components, speeds)
 
     @cached_property

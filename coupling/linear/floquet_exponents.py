@@ -66,7 +66,7 @@ def floquet_exponents(
         λ [1/s]; NaN where the search does not settle near the eigenvalue, or settles at the exponent of another mode
         that is nearer to it.
     """
-    found = np.full(len(eigenvalues), np.nan, dtype=np.complex128)
+    found = np.full(len(eigenvalues), complex(np.nan, np.nan))
     for number, (value, *vectors) in enumerate(zip(eigenvalues, right, left, strict=True)):
         found[number] = _nearest(_Receptance(model, *vectors), complex(value))
         progress("exponents with turning carriers", (number + 1) / len(eigenvalues))
@@ -77,7 +77,7 @@ def floquet_exponents(
                 # A mode that the symmetry of equal planets makes twice has its exponent twice.
                 if abs(eigenvalues[first] - eigenvalues[second]) <= _SAME * abs(eigenvalues[first]):
                     continue
-                found[first if distance[first] > distance[second] else second] = np.nan
+                found[first if distance[first] > distance[second] else second] = complex(np.nan, np.nan)
     return found
 
 
@@ -122,8 +122,8 @@ def _nearest(receptance: _Receptance, eigenvalue: complex) -> complex:
         if abs(at - before) <= _CONVERGED * abs(at):
             break
         if abs(1j * at - eigenvalue) > _FARTHEST * receptance.model.rates[-1]:
-            return complex(np.nan)
+            return complex(np.nan, np.nan)
         inverse_before, inverse = inverse, receptance.inverse(at)
     else:
-        return complex(np.nan)
+        return complex(np.nan, np.nan)
     return 1j * at

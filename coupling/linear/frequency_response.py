@@ -45,6 +45,7 @@ from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoord
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
 
 _EVEN_POINTS = 600  # evenly spaced points of a band, in addition to those of each resonance
@@ -263,6 +264,7 @@ def mesh_error_responses(
     meshes: Sequence[int],
     contact: ContactState | None = None,
     modes: CoupledModes | None = None,
+    progress: Progress = silent,
 ) -> tuple[FrequencyResponse, ...]:
     """Responses as of `mesh_error_response` to the errors of several meshes, each alone."""
     state = mean_contact(machine.system) if contact is None else contact
@@ -276,7 +278,10 @@ def mesh_error_responses(
     flanks = [machine.loaded_contacts[mesh] for mesh in meshes]
     if machine.system.turns:
         model = TurningResponse(machine.system, state)
-        solved = [model.respond(w, [model.mesh_error(number, w) for number in flanks]) for w in frequencies.tolist()]
+        solved = []
+        for number, w in enumerate(frequencies.tolist()):
+            solved.append(model.respond(w, [model.mesh_error(flank, w) for flank in flanks]))
+            progress("responses to the errors of the meshes", (number + 1) / len(frequencies))
         motions: list[_Motion] = [
             _turning_motion(model, [{order: moved[place] for order, moved in at.items()} for at in solved])
             for place in range(len(flanks))

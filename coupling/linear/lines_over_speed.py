@@ -6,7 +6,8 @@ the nominal speed the motion of the harmonic of frequency s ω_n is
 
     (K(s) + i s ω_n C(s) - s² ω_n² I) q_n = f_n,      C(s) = C + (s - 1) G,
 
-f_n as of :mod:`gearwhine.coupling.linear.mesh_harmonics`: one assembled machine gives all speeds.
+f_n as of :mod:`gearwhine.coupling.linear.mesh_harmonics`: one assembled machine gives all speeds. Between them lie the
+lines of pitch deviations, runout and damage, :mod:`gearwhine.coupling.linear.unequal_teeth`.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ from scipy import linalg
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.unequal_teeth import unequal_teeth, unequal_teeth_rms
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import FloatArray
 
@@ -38,17 +40,20 @@ class LinesOverSpeed:
     sensors : tuple of str
     amplitudes : ndarray, shape (o, s, l)
         Peak amplitudes of acceleration [m/s²]; NaN above the limit.
+    between : ndarray, shape (o, s)
+        Root mean square of all lines between these, of what differs between teeth [m/s²].
     """
 
     speeds: FloatArray
     orders: FloatArray
     sensors: tuple[str, ...]
     amplitudes: FloatArray
+    between: FloatArray
 
     @property
     def rms(self) -> FloatArray:
         """Root mean square of all lines together at each sensor and speed [m/s²], shape (o, s)."""
-        return _rms(self.amplitudes)
+        return np.asarray(np.hypot(_rms(self.amplitudes), self.between))
 
 
 def _rms(amplitudes: FloatArray) -> FloatArray:
@@ -57,7 +62,12 @@ def _rms(amplitudes: FloatArray) -> FloatArray:
 
 
 def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
-    """Root mean square at each sensor of all mesh harmonics and their sidebands up to a limit [rad/s], (o,) [m/s²]."""
+    """Root mean square at each sensor of all lines of the teeth up to a limit [rad/s], shape (o,) [m/s²].
+
+    Of a machine with turning carriers these are the mesh harmonics with their sidebands.
+    """
+    if not machine.system.turns:
+        return np.asarray(lines_over_speed(machine, [machine.speed], limit).rms[:, 0])
     lines = MeshHarmonicModel(machine).responses(limit)
     moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
@@ -89,15 +99,17 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
     if not ratios or min(ratios) <= 0.0:
         raise CouplingError(f"lines over speed: speeds of {list(speeds)} rad/s beside {nominal:g}; expected one sense")
     model = MeshHarmonicModel(machine)
-    loads = model.loads(limit / min(ratios))
+    loads, teeth = model.loads(limit / min(ratios)), unequal_teeth(model, limit / min(ratios))
     stiffness, damping = linear_matrices(system, model.contact)
     here = system.connector_matrices()
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, system.size)
     amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
+    between = np.zeros(amplitudes.shape[:2])
     for place, ratio in enumerate(ratios):
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
         resisted = damping + (ratio - 1.0) * system.gyroscopic + (there[1] - here[1])
+        between[:, place] = unequal_teeth_rms(model, teeth, rows, ratio, held, resisted, limit)
         for number, load in enumerate(loads):
             w = ratio * load.frequency
             if w > limit * (1.0 + 1e-9):
@@ -107,4 +119,4 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
             moved = linalg.solve(dynamic, load.load, overwrite_a=True, check_finite=False)
             amplitudes[:, place, number] = w**2 * np.abs(rows @ moved)
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
-    return LinesOverSpeed(np.array(speeds, dtype=np.float64), orders, tuple(machine.sensor_rows), amplitudes)
+    return LinesOverSpeed(np.array(speeds, dtype=np.float64), orders, tuple(machine.sensor_rows), amplitudes, between)

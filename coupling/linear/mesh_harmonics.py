@@ -395,8 +395,12 @@ class MeshHarmonicModel:
     @cached_property
     def _errors(self) -> dict[int, ComplexArray]:
         """Return e of every loaded contact by harmonic."""
-        contacts = self.machine.system.contacts
-        return {n: self._error(n, self._mesh(n, contacts[n].contact)) for n in self.loaded}
+        return {n: self._error(n, self.meshes[n]) for n in self.loaded}
+
+    @cached_property
+    def meshes(self) -> dict[int, LoadedMesh]:
+        """Mesh of every loaded contact under its mean force, over the mesh periods that differ."""
+        return {n: self._mesh(n, self.machine.system.contacts[n].contact) for n in self.loaded}
 
     @cached_property
     def _shuttling(self) -> dict[int, dict[int, ComplexArray]]:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.machine.base_motion import rotor_participation
 from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, pin_name
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable, TurningPart
@@ -32,12 +33,14 @@ def frame_speeds(
     bearings: Sequence[MountedBearing],
     meshes: Sequence[GearMesh],
     speeds: Mapping[str, float],
+    torque_supports: Sequence[TorqueSupport] = (),
 ) -> dict[str, float]:
     """Speed of the frame of each rotor's coordinates [rad/s].
 
     Planets and their carriers turn with the carrier. So does a sun or a ring whose other connectors are alike all
-    round: what joins it to the planets is constant there. All other parts stand still.
+    round: what joins it to the planets is constant there. All other parts stand still, and among them what bolts hold.
     """
+    bolted = {support.shaft for support in torque_supports if support.bolts}
     carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
     frames = {name: speeds[carrier] for name, carrier in carriers.items()}
     frames |= {pin_name(rotor.name): frames[rotor.name] for rotor in rotors if rotor.pin is not None}
@@ -46,7 +49,7 @@ def frame_speeds(
         pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]
         others = [set(pair) - {rotor.name} for pair in pairs if rotor.name in pair]
         around = {carriers.get(other) for one in others for other in one}
-        if rotor.name in frames or len(around) != 1 or None in around:
+        if rotor.name in frames or rotor.name in bolted or len(around) != 1 or None in around:
             continue
         carrier = carriers[next(iter(others[0]))]
         on_it = [mounted for mounted in bearings if rotor.name in (mounted.rotor, mounted.seat)]

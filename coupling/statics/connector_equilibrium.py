@@ -16,22 +16,25 @@ the compliance C = Eᵀ K₀⁻¹ E = S Sᵀ between the connectors, and ν = S�
     z = z_f + S ν,      Π(ν) = ½ νᵀ ν + Σ (φ(z) - ½ zᵀ k₀ z + zᵀ k₀ z₀).
 
 S has the eigenvectors of C times the roots of its eigenvalues, without those that are rounding. A trust region finds
-the minimum of Π(ν); from there Newton's method takes the connectors' own tangents, which may be unsymmetric.
+the minimum of Π(ν), first with meshes at few phases; from there Newton's method takes the connectors' own tangents,
+which may be unsymmetric.
 """
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg, sparse
 
-from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, replace_linear
+from gearwhine.coupling.statics.static_model import ConnectorLaw, FaceContactLaw, LinearLaw, replace_linear
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 
-_TOLERANCE = 1e-12
+_TOLERANCE = 1e-9  # from there Newton's method converges in one step or two
+_COARSE = 1e-3  # tolerance with meshes at few phases
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
@@ -50,6 +53,56 @@ class _Imbalance:
     difference: FloatArray
     slope: FloatArray
     norm: float
+
+
+class _HeldStructure:
+    """The structure with the nominal laws of its connectors, K₀ = K + E k₀ Eᵀ, factorised.
+
+    Parameters
+    ----------
+    stiffness, directions, nominal
+        See `ConnectedStructure`.
+    """
+
+    def __init__(self, stiffness: FloatArray, directions: FloatArray, nominal: FloatArray) -> None:
+        held = np.asarray(stiffness + directions @ nominal @ directions.T)
+        self._factor = linalg.lu_factor(held)
+        self._extended = sparse.csr_array(held).astype(np.longdouble)
+        self.compliance: FloatArray = np.asarray(directions.T @ self.answer_to(directions))
+        """Compliance C between the connectors, (d, d)."""
+
+    def answer_to(self, loads: FloatArray) -> FloatArray:
+        """Solve K₀ x = loads with iterative refinement, as short spans are far stiffer than soft bearings.
+
+        What is left of the loads is taken in extended precision: its rounding would be that of the elastic forces of
+        the shortest span, and moves the soft bearings.
+        """
+        x = linalg.lu_solve(self._factor, loads)
+        for _ in range(_REFINEMENTS):
+            left = loads - self._extended @ x.astype(np.longdouble)
+            x = x + linalg.lu_solve(self._factor, left.astype(np.float64))
+        return np.asarray(x)
+
+    @cached_property
+    def spread(self) -> FloatArray:
+        """Factor S of the compliance, C = S Sᵀ."""
+        values, vectors = np.linalg.eigh(0.5 * (self.compliance + self.compliance.T))
+        compliant = values > _NO_COMPLIANCE * values[-1]
+        return np.asarray(vectors[:, compliant] * np.sqrt(values[compliant]))
+
+    @cached_property
+    def size(self) -> FloatArray:
+        """Scale of each deflection: the root of its own compliance, (d,)."""
+        size = np.sqrt(np.abs(np.diag(self.compliance)))
+        return np.where(size > 0.0, size, 1.0)
+
+
+@lru_cache(maxsize=4)  # varied gearboxes mostly differ in their connectors' laws alone
+def _held_structure(stiffness: bytes, directions: bytes, nominal: bytes, shape: tuple[int, int]) -> _HeldStructure:
+    """Return a held structure by the content of its arrays; ``shape`` is that of the directions, (n, d)."""
+    n, d = shape
+    arrays = np.frombuffer(stiffness).reshape(n, n), np.frombuffer(directions).reshape(n, d)
+    return _HeldStructure(*arrays, np.frombuffer(nominal).reshape(d, d))
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,33 +141,18 @@ class ConnectedStructure:
         """
         # The first radius of the search is the size of the motions under the loads.
         radius = max(float(np.sqrt(abs(self.load @ self._under_nominal_laws))), 1e-9)
-        minimum = minimise(self._potential, np.zeros(self._spread.shape[1]), radius, _TOLERANCE)
-        x, steps = self._polished(self._start + self._spread @ minimum.place)
-        return x, minimum.iterations + steps
+        place, iterations = np.zeros(self._held.spread.shape[1]), 0
+        coarse = [law.coarse if isinstance(law, FaceContactLaw) else law for law in self._conservative_laws]
+        for laws, tolerance in ((coarse, _COARSE), (self._conservative_laws, _TOLERANCE)):
+            minimum = minimise(partial(self._potential, laws), place, radius, tolerance)
+            place, iterations = minimum.place, iterations + minimum.iterations
+        x, steps = self._polished(self._start + self._held.spread @ place)
+        return x, iterations + steps
 
     @cached_property
-    def _held(self) -> FloatArray:
-        return np.asarray(self.stiffness + self.directions @ self.nominal @ self.directions.T)
-
-    @cached_property
-    def _factor(self) -> tuple[FloatArray, npt.NDArray[np.int32]]:
-        return linalg.lu_factor(self._held)
-
-    def _answer_to(self, loads: FloatArray) -> FloatArray:
-        """Solve K₀ x = loads with iterative refinement, as short spans are far stiffer than soft bearings.
-
-        What is left of the loads is taken in extended precision: its rounding would be that of the elastic forces of
-        the shortest span, and moves the soft bearings.
-        """
-        x = linalg.lu_solve(self._factor, loads)
-        for _ in range(_REFINEMENTS):
-            left = loads - self._extended @ x.astype(np.longdouble)
-            x = x + linalg.lu_solve(self._factor, left.astype(np.float64))
-        return np.asarray(x)
-
-    @cached_property
-    def _extended(self) -> sparse.csr_array:
-        return sparse.csr_array(self._held).astype(np.longdouble)
+    def _held(self) -> _HeldStructure:
+        arrays = self.stiffness, self.directions, self.nominal
+        return _held_structure(*(array.tobytes() for array in arrays), self.directions.shape)
 
     @cached_property
     def _shift(self) -> FloatArray:
@@ -124,30 +162,12 @@ class ConnectedStructure:
     @cached_property
     def _under_nominal_laws(self) -> FloatArray:
         """Coordinates under the loads with the nominal laws, (n,)."""
-        return self._answer_to(self.load + self.directions @ self._shift)
+        return self._held.answer_to(self.load + self.directions @ self._shift)
 
     @cached_property
     def _start(self) -> FloatArray:
         """Deflections z_f under the nominal laws, (d,)."""
         return np.asarray(self.directions.T @ self._under_nominal_laws)
-
-    @cached_property
-    def _compliance(self) -> FloatArray:
-        """Compliance C between the connectors, (d, d)."""
-        return np.asarray(self.directions.T @ self._answer_to(self.directions))
-
-    @cached_property
-    def _spread(self) -> FloatArray:
-        """Factor S of the compliance, C = S Sᵀ."""
-        values, vectors = np.linalg.eigh(0.5 * (self._compliance + self._compliance.T))
-        compliant = values > _NO_COMPLIANCE * values[-1]
-        return np.asarray(vectors[:, compliant] * np.sqrt(values[compliant]))
-
-    @cached_property
-    def _size(self) -> FloatArray:
-        """Scale of each deflection: the root of its own compliance, (d,)."""
-        size = np.sqrt(np.abs(np.diag(self._compliance)))
-        return np.where(size > 0.0, size, 1.0)
 
     def _beyond_nominal(self, z: FloatArray, laws: Sequence[ConnectorLaw]) -> tuple[float, FloatArray, FloatArray]:
         """Energy, force and tangent of the laws at deflections, minus those of the nominal laws."""
@@ -179,10 +199,10 @@ class ConnectedStructure:
             for part, law in zip(self.parts, self.laws, strict=True)
         ]
 
-    def _potential(self, nu: FloatArray) -> Local:
+    def _potential(self, laws: Sequence[ConnectorLaw], nu: FloatArray) -> Local:
         """Π(ν), its gradient and its second derivatives."""
-        spread = self._spread
-        energy, force, tangent = self._beyond_nominal(self._start + spread @ nu, self._conservative_laws)
+        spread = self._held.spread
+        energy, force, tangent = self._beyond_nominal(self._start + spread @ nu, laws)
         pushed = spread.T @ force
         noise = float(np.abs(self.load) @ np.abs(self._under_nominal_laws)) + 1e-12
         return Local(
@@ -197,22 +217,22 @@ class ConnectedStructure:
         """Coordinates under the loads and the connectors' forces at deflections z, and the tangents beyond nominal."""
         _, force, tangent = self._beyond_nominal(z, self.laws)
         # One solution, as the difference of two large ones would lose digits.
-        return self._answer_to(self.load + self.directions @ (self._shift - force)), tangent
+        return self._held.answer_to(self.load + self.directions @ (self._shift - force)), tangent
 
     def _imbalance(self, z: FloatArray) -> _Imbalance:
         x, tangent = self._motions(z)
-        difference = (z - self.directions.T @ x) / self._size
-        slope = np.eye(z.size) + self._compliance @ tangent * self._size / self._size[:, None]
+        difference = (z - self.directions.T @ x) / self._held.size
+        slope = np.eye(z.size) + self._held.compliance @ tangent * self._held.size / self._held.size[:, None]
         return _Imbalance(x, difference, slope, float(np.linalg.norm(difference)))
 
     def _polished(self, z: FloatArray) -> tuple[FloatArray, int]:
         """Newton's method with halved steps, to rounding: coordinates and the number of steps."""
         imbalance, steps = self._imbalance(z), 0
         for _ in range(_NEWTON_STEPS):
-            before, size = imbalance.norm, float(np.linalg.norm(z / self._size))
+            before, size = imbalance.norm, float(np.linalg.norm(z / self._held.size))
             if before <= _ROUNDINGS * np.finfo(np.float64).eps * size:
                 break
-            step = self._size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
+            step = self._held.size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
             rounded = before <= _ROUNDED_DEFLECTION_ERROR * size
             for halving in range(1 if rounded else _HALVINGS):
                 nearer = z - 0.5**halving * step

@@ -520,8 +520,12 @@ class _StaticModel:
             raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
         directions = self.directions[len(self.bearings) : len(self.bearings) + len(self.pairs)]
         return tuple(
-            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, largest)
-            for pair, approach, rows, twist in zip(self.pairs, approaches, directions, self.twists, strict=True)
+            self._pair(
+                pair, approach, load, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, largest
+            )
+            for pair, approach, load, rows, twist in zip(
+                self.pairs, approaches, loads, directions, self.twists, strict=True
+            )
         )
 
     def _relative(self, residual: FloatArray, forces: Sequence[FloatArray], least: float) -> tuple[float, str]:
@@ -592,6 +596,7 @@ class _StaticModel:
         self,
         pair: StaticPair,
         approach: FloatArray,
+        load: FloatArray,
         causes: Mapping[str, FloatArray],
         twisted: FloatArray,
         pressed: float,
@@ -603,7 +608,7 @@ class _StaticModel:
         by_cause["shafts"] -= twist
         by_cause["bodies"] += twist
         touched = approach - pair.clearance * contact.uniform
-        force = pair.between_rims.at(touched).force
+        force = float(load @ contact.uniform)
         # The rims on their hubs are a part of the approach by the complete contact.
         behind = pair.behind_rims * force * contact.uniform
         approach, touched = approach + behind, touched + behind

@@ -111,7 +111,7 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     sensors = _sensors(() if table is None else tuple(sensor.name for sensor in table.sensor), settings)
     shafts = {one.name: one.rotor for one in case.gear}
     without = _healthy_change(case_document(case), settings)
-    bearing, spall = _spall(case, settings)
+    bearing, spall = _spall(case.bearing, settings)
     beside = [one.name for one in case.gear if bearing is not None and one.rotor == bearing.rotor]
     gear = _gear(list(shafts), next(iter(beside), case.gear_pair[0].driver), settings)
     plain = source.without("detection", "variation")
@@ -161,7 +161,7 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
     planned = plan_detection(source)
     case, settings, monitor = planned.case, planned.settings, planned.monitor
     varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
-    varied, housing = in_solved_housing(varied, case, folder, "detect")
+    varied, housing = in_solved_housing(varied, folder, "detect")
     written = {size: _text(value) for size, value in zip(settings.sizes, settings.severities, strict=True)}
     study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear, planned.spall)
     # Gearboxes that are all alike have one record, and as many noises.
@@ -275,14 +275,12 @@ def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
     return chosen
 
 
-def _spall(case: Case, settings: Detection) -> tuple[Bearing | None, RollingSpall | None]:
+def _spall(bearings: Sequence[Bearing], settings: Detection) -> tuple[Bearing | None, RollingSpall | None]:
     """Return the bearing whose spall is the fault, with that; twice None where it is another fault."""
     steps = parse_key_path(settings.fault) or ()
     if steps[:1] != ("bearing",) or steps[2:3] != ("fault",):
         return None, None
-    named = {one.name: one for one in case.bearing} | {
-        str(number): one for number, one in enumerate(case.bearing) if str(number) == steps[1]
-    }
+    named = {str(number): one for number, one in enumerate(bearings)} | {one.name: one for one in bearings}
     number = int(steps[3]) if steps[3].isdecimal() else 0
     return named[steps[1]], named[steps[1]].fault[number].build()
 

@@ -104,7 +104,7 @@ def solve_optimisation(
     scatter = _scatter(optimisation.robust, variation, plain, inputs)
     wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
-    proposed, housing = in_solved_housing(proposed, case, folder, "optimise")
+    proposed, housing = in_solved_housing(proposed, folder, "optimise")
     folder.progress("the case as it is written")
     nominal = proposed.evaluation(proposed.case(None))
     goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)
@@ -290,10 +290,11 @@ def optimise(
 
         def motion(values: Mapping[str, float]) -> Motion | Failure:
             one = made(values)
-            return _motion_or_failure(lambda: motion_of(_as_machine(one), plan, at, needs_load=False))
+            return _motion_or_failure(lambda: motion_of(_as_machine(one), plan, at, wanted.speeds, needs_load=False))
 
         proposals = [values_of(designs[number].point) for number in optimised.chosen]
-        checked = Verification(at, motion(first), tuple(motion(values) for values in proposals))
+        found_motions = tuple(motion(values) for values in proposals)
+        checked = Verification(at, motion(first), found_motions, _given_levels(optimised))
         optimised = replace(optimised, verification=checked if proposals else None)
     return _result(Origin(title), optimised, begin)
 
@@ -452,7 +453,10 @@ def _verification(proposed: ProposedCase, optimised: Optimised, progress: Progre
     def motion(point: FloatArray | None) -> Motion | Failure:
         def solved() -> Motion:
             made = proposed.case(point)
-            return motion_of(proposed.machine(made), plan_of(made), speeds, needs_load=made.parts.needs_operating_point)
+            needs_load = made.parts.needs_operating_point
+            return motion_of(
+                proposed.machine(made), plan_of(made), speeds, proposed.wanted.speeds, needs_load=needs_load
+            )
 
         return _motion_or_failure(solved)
 
@@ -462,7 +466,18 @@ def _verification(proposed: ProposedCase, optimised: Optimised, progress: Progre
     for design, label in zip(proposals, optimised.chosen.values(), strict=True):
         progress(f"the transient of the design {label!r} at {len(speeds)} speeds")
         found.append(motion(_as_designed(design, proposed)))
-    return Verification(speeds, start, tuple(found))
+    return Verification(speeds, start, tuple(found), _given_levels(optimised))
+
+
+def _given_levels(optimised: Optimised) -> dict[str, tuple[float, ...]]:
+    """Return the levels of sensors of the start and of the proposed designs, where all of them were found."""
+    designs = [optimised.start, *(optimised.designs[number] for number in optimised.chosen)]
+    names = [name for name in designs[0].sides if name.startswith("sensor.") and name.endswith(".level_db")]
+    return {
+        name.removeprefix("sensor.").removesuffix(".level_db"): tuple(one.sides[name][0] for one in designs)
+        for name in names
+        if all(name in one.sides and one.sides[name][0] == one.sides[name][1] for one in designs)
+    }
 
 
 def _as_designed(design: Design, proposed: ProposedCase) -> FloatArray:

@@ -103,7 +103,7 @@ def solve_variation(
     points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
     wanted = wanted_of(case, variation)
     varied = VariedCase(source.without("variation"), inputs, wanted, wider=wider)
-    varied, housing = in_solved_housing(varied, case, folder, "vary")
+    varied, housing = in_solved_housing(varied, folder, "vary")
     _require_distributions(varied, variation)
     folder.progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
@@ -305,10 +305,9 @@ def sampled_points(inputs: Sequence[Input], variation: Variation, samples: int, 
 AnyVaried = TypeVar("AnyVaried", bound=VariedCase)
 
 
-def in_solved_housing(
-    varied: AnyVaried, case: Case, folder: StudyFolder, command: str
-) -> tuple[AnyVaried, HousingModes | None]:
+def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> tuple[AnyVaried, HousingModes | None]:
     """Return a varied case with the solved housing of the case without changes, and that; None without one."""
+    case = varied.source.changed_case()
     if case.housing is None or not case.rotor:
         return varied, None
     housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)

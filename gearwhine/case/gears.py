@@ -10,7 +10,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
@@ -508,7 +508,14 @@ class Gear(Table):
         from gearwhine.coupling.gears import Gear as BuiltGear
 
         module, errors = self.tooth_module, self.errors
-        gear = BuiltGear(
+        of_material: dict[str, float] = {}
+        if material is not None:
+            of_material = {
+                "youngs_modulus": material.youngs_modulus,
+                "poisson_ratio": material.poisson_ratio,
+                "density": material.density,
+            }
+        return BuiltGear(
             name=self.name,
             teeth=self.teeth,
             module=module,
@@ -535,14 +542,7 @@ class Gear(Table):
             ring_support=None if self.ring_support is None else self.ring_support.build(),
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
-        )
-        if material is None:
-            return gear
-        return replace(
-            gear,
-            youngs_modulus=material.youngs_modulus,
-            poisson_ratio=material.poisson_ratio,
-            density=material.density,
+            **of_material,
         )
 
     @property

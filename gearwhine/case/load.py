@@ -482,6 +482,7 @@ def _check_depth(document: object, source: str) -> None:
             inner
             for outer in level
             for inner in (outer.values() if isinstance(outer, Mapping) else outer if isinstance(outer, list) else ())
+            if type(inner) not in (str, float, int, bool)
         ]
         if not level:
             return

@@ -19,7 +19,7 @@ from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.bearings import Bearing
 from gearwhine.case.box import Box
 from gearwhine.case.detection import Detection
-from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem, look_up
+from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Location, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table, wrong
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
 from gearwhine.case.gears import Gear, GearPair, readable_pairs, train_of_pairs
@@ -28,7 +28,7 @@ from gearwhine.case.input_files import InputFiles, files_of, paths_in
 from gearwhine.case.measured import Measured, Update
 from gearwhine.case.operation import Operation, Sweep, Transient
 from gearwhine.case.optimisation import Optimisation
-from gearwhine.case.planetary import Planetary, train_members
+from gearwhine.case.planetary import HeldMember, Planetary, train_members
 from gearwhine.case.reduced_housing import ReducedHousing
 from gearwhine.case.rotors import Rotor, RotorAnalysis
 from gearwhine.case.variation import Variation
@@ -86,6 +86,8 @@ class Case(Table):
     """Gear pairs, `[[gear_pair]]`."""
     planetary: tuple[Planetary, ...] = Field(default=(), max_length=100)
     """Planetary sets, `[[planetary]]`."""
+    torque_support: tuple[HeldMember, ...] = Field(default=(), max_length=100)
+    """Gears or rotors that are held from turning, `[[torque_support]]`."""
     operation: Operation | None = None
     """Speed and torque."""
     transient: Transient | None = None
@@ -159,6 +161,7 @@ class Case(Table):
             self.input_files,
             limit or 0.0,
             self.planetary,
+            self.torque_support,
         )
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Case:
@@ -209,6 +212,7 @@ class Draft:
     gears: Entries[Gear]
     gear_pairs: Entries[GearPair]
     planetary: Entries[Planetary]
+    torque_supports: Entries[HeldMember]
     operation: Operation | None
     transient: Transient | None
     sweep: Sweep | None
@@ -222,14 +226,19 @@ class Draft:
         return readable_pairs([gear for _, gear in self.gears], self.gear_pairs)
 
     @cached_property
+    def held(self) -> list[tuple[Location, HeldMember]]:
+        """Members that are held from turning, each with its place in the case."""
+        of_sets = [(("planetary", index, "fixed"), one.fixed) for index, one in self.planetary if one.fixed is not None]
+        return [*of_sets, *((("torque_support", index), one) for index, one in self.torque_supports)]
+
+    @cached_property
     def train(self) -> GearTrain | None:
         """The gear train of these pairs; None where there are none."""
         if not self.readable_pairs:
             return None
         gears = [gear for _, gear in self.gears]
-        members = train_members(
-            [rotor for _, rotor in self.rotors], gears, [one for _, one in self.planetary], self.operation
-        )
+        held = [one for _, one in self.held]
+        members = train_members([rotor for _, rotor in self.rotors], gears, held, self.operation)
         return train_of_pairs(self.readable_pairs, members=members)
 
     def rotor(self, name: str | None) -> Rotor | None:
@@ -273,6 +282,7 @@ _DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "gears": (Gear, ("gear",)),
     "gear_pairs": (GearPair, ("gear_pair",)),
     "planetary": (Planetary, ("planetary",)),
+    "torque_supports": (HeldMember, ("torque_support",)),
 }
 """Where the tables and lists of a draft stand in a case, and the class of each."""
 
@@ -316,7 +326,7 @@ def _read(kind: type[AnyTable], raw: object, context: Mapping[str, Any]) -> AnyT
         return None
 
 
-_LISTS = ("rotor", "bearing", "gear", "gear_pair", "planetary")
+_LISTS = ("rotor", "bearing", "gear", "gear_pair", "planetary", "torque_support")
 _PURPOSES = {
     "housing": "the box, CAD or mesh file whose modes are wanted",
     "rotor": "at least one shaft",

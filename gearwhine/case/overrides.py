@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
+from functools import lru_cache
 from typing import Any
 
 from gearwhine.case.box import wall_by_face
@@ -15,6 +16,7 @@ from gearwhine.numerics.names import did_you_mean
 _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
 
 
+@lru_cache(maxsize=1024)
 def parse_key_path(text: str) -> tuple[str, ...] | None:
     """Split a key path such as ``rotor.input.segments[1].length``; names with dots stand in quotes.
 

@@ -26,7 +26,7 @@ from gearwhine.case.gears import Gear, GearPair, distance_of_axes, readable_pair
 from gearwhine.case.housing import Material
 from gearwhine.case.input_files import ChangedFileError, InputFiles
 from gearwhine.case.operation import Operation
-from gearwhine.case.planetary import Planetary, train_members
+from gearwhine.case.planetary import HeldMember, Planetary, held_members, train_members
 from gearwhine.case.rotors import Rotor
 from gearwhine.coupling import Machine, MountedBearing, RollingLaw, Shaft, ShaftGear, TorqueSupport
 from gearwhine.coupling.description.axial_location import AxialLocation, axial_support
@@ -78,6 +78,7 @@ class Parts:
     files: InputFiles
     housing_limit_hz: float = 0.0
     planetary: Sequence[Planetary] = ()
+    torque_support: Sequence[HeldMember] = ()
 
     @cached_property
     def train(self) -> GearTrain:
@@ -86,7 +87,8 @@ class Parts:
         Its shafts have the names of rotors, or in a case without rotors those of gears.
         """
         shafts = [rotor.name for rotor in self.rotor] or [gear.name for gear in self.gear]
-        members = train_members(self.rotor, self.gear, self.planetary, self.operation)
+        held = held_members(self.planetary, self.torque_support)
+        members = train_members(self.rotor, self.gear, held, self.operation)
         return train_of_pairs(readable_pairs(self.gear, enumerate(self.gear_pair)), shafts, members)
 
     @cached_property
@@ -450,9 +452,8 @@ class Parts:
 
     @cached_property
     def torque_supports(self) -> tuple[TorqueSupport, ...]:
-        """Supports that hold members of planetary sets from turning."""
-        supports = (one.build_support(self.gear) for one in self.planetary)
-        return tuple(support for support in supports if support is not None)
+        """Supports that hold members of planetary sets and other rotors from turning."""
+        return tuple(one.build(self.gear) for one in held_members(self.planetary, self.torque_support))
 
     @cached_property
     def machine(self) -> Machine | None:

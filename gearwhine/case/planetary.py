@@ -103,8 +103,8 @@ class Bolts(Table):
         return tuple(SupportBolt(0.5 * self.circle, *row) for row in rows)
 
 
-class Fixed(Table):
-    """`fixed` of a `[[planetary]]`: the member that is held from turning, and by what."""
+class HeldMember(Table):
+    """`[[torque_support]]`, and `fixed` of a `[[planetary]]`: what is held from turning, and by what."""
 
     member: Name
     """Gear or rotor that is held, by its name."""
@@ -120,10 +120,24 @@ class Fixed(Table):
     """Damping over stiffness."""
 
     @model_validator(mode="after")
-    def _held_once(self) -> Fixed:
+    def _held_once(self) -> HeldMember:
         if self.bolts is not None and self.stiffness is not None:
             raise wrong("none beside 'bolts', which have their own", "stiffness")
         return self
+
+    def place(self, gears: Sequence[Gear]) -> tuple[str, float]:
+        """Return the rotor that is held, and the station on it [m]."""
+        gear = next((gear for gear in gears if gear.name == self.member), None)
+        rotor = self.member if gear is None or gear.rotor is None else gear.rotor
+        at = gear.at if self.at is None and gear is not None else self.at
+        return rotor, at or 0.0
+
+    def build(self, gears: Sequence[Gear]) -> TorqueSupport:
+        """Build what holds it."""
+        from gearwhine.coupling import TorqueSupport
+
+        bolts = () if self.bolts is None else self.bolts.build()
+        return TorqueSupport(*self.place(gears), self.stiffness, self.seat, self.damping_time, bolts)
 
 
 class Planetary(Table):
@@ -147,7 +161,7 @@ class Planetary(Table):
     `p 2`, ..."""
     angles: tuple[Angle, ...] | None = Field(default=None, min_length=1, max_length=MOST_PLANETS)
     """Angle of each planet about the carrier's axis, from the place of the one that is written. Default: equal ones."""
-    fixed: Fixed | None = None
+    fixed: HeldMember | None = None
     """Member that is held from turning: a gear or a rotor by its name; the name of a seat or a stiffness such as
     "1e7 N*m/rad", by which the ring is held; or a table. Default: none, as of a differential."""
     pin_errors: tuple[PinError, ...] | None = Field(default=None, max_length=MOST_PLANETS)
@@ -177,39 +191,24 @@ class Planetary(Table):
 
         return PlanetarySet(self.name, self.planets, self.carrier, self.sun, self.ring)
 
-    def held_rotor(self, gears: Sequence[Gear]) -> str | None:
-        """Return the rotor that is held; None where none is."""
-        if self.fixed is None:
-            return None
-        gear = next((gear for gear in gears if gear.name == self.fixed.member), None)
-        return self.fixed.member if gear is None or gear.rotor is None else gear.rotor
 
-    def build_support(self, gears: Sequence[Gear]) -> TorqueSupport | None:
-        """Build what holds the fixed member."""
-        from gearwhine.coupling import TorqueSupport
-
-        rotor, fixed = self.held_rotor(gears), self.fixed
-        if rotor is None or fixed is None:
-            return None
-        of_gear = next((gear.at for gear in gears if gear.name == fixed.member), None)
-        at = (of_gear or 0.0) if fixed.at is None else fixed.at
-        bolts = () if fixed.bolts is None else fixed.bolts.build()
-        return TorqueSupport(rotor, at, fixed.stiffness, fixed.seat, fixed.damping_time, bolts)
+def held_members(sets: Iterable[Planetary], supports: Iterable[HeldMember]) -> list[HeldMember]:
+    """Return the members that are held from turning: those of the sets, then those of `[[torque_support]]`."""
+    return [*(one.fixed for one in sets if one.fixed is not None), *supports]
 
 
 def train_members(
-    rotors: Sequence[Rotor], gears: Sequence[Gear], sets: Sequence[Planetary], operation: Operation | None
+    rotors: Sequence[Rotor], gears: Sequence[Gear], held: Sequence[HeldMember], operation: Operation | None
 ) -> TrainMembers:
     """Return the members of the train of a case beside its gear pairs."""
     carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
-    held = [one.held_rotor(gears) for one in sets]
     given = (
         {}
         if operation is None or operation.speed == 0.0
         else {drive.rotor: drive.speed / operation.speed for drive in operation.drive}
     )
     first = None if operation is None else operation.rotor
-    return TrainMembers(carriers, tuple(dict.fromkeys(name for name in held if name is not None)), given, first)
+    return TrainMembers(carriers, tuple(dict.fromkeys(one.place(gears)[0] for one in held)), given, first)
 
 
 _NUMBER_OF_COPY = re.compile(r" \d+(?=['\"])")
@@ -392,11 +391,13 @@ class _Expansion:
     def _drives_from_ring(self, one: Mapping[str, Any]) -> bool:
         """Whether power passes from the ring to the sun, as the carrier sees it."""
         given = look_up(self.document, ("operation", "rotor"))
-        ring, held = one.get("ring"), look_up(one, ("fixed", "member"))
-        held = one.get("fixed") if isinstance(one.get("fixed"), str) else held
+        ring, fixed = one.get("ring"), one.get("fixed")
+        held = [fixed if isinstance(fixed, str) else look_up(one, ("fixed", "member"))]
+        held += [support.get("member") for _, support in self.entries("torque_support")]
         ring_names = {ring, self._rotor_of(ring)} if isinstance(ring, str) else set()
         return bool(
-            isinstance(given, str) and (given in ring_names or (given == one.get("carrier") and held in ring_names))
+            isinstance(given, str)
+            and (given in ring_names or (given == one.get("carrier") and any(name in ring_names for name in held)))
         )
 
     def _angles(self, one: Mapping[str, Any]) -> list[float]:

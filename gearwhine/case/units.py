@@ -277,6 +277,7 @@ def parse_quantity(value: object, dimension: Dimension) -> float:
     return number
 
 
+@lru_cache(maxsize=4096)  # a varied case is read again with few other texts
 def _parse_text(text: str, dimension: Dimension, expected: str) -> float:
     """Read number and unit of a text; see `parse_quantity`."""
     match = _NUMBER.fullmatch(text) if len(text) <= LONGEST_QUANTITY else None

@@ -28,7 +28,7 @@ KINDS = ("normal", "uniform", "triangular", "values", "file", "class", "fit")
 _ATTRIBUTES = {"class": "tolerance_class"}
 _NAMED = {"deviation": "standard deviation", "mode": "most likely value", "low": "low end", "high": "high end"}
 _LISTED = 6  # values that are named in words
-_BELONGS_TO = {"within": "normal", "weights": "values", "column": "file"}
+_BELONGS_TO = {"within": "normal", "weights": "values", "column": "file", "size": "fit"}
 
 
 class Varied(Table):
@@ -59,6 +59,10 @@ class Varied(Table):
     fit: Annotated[str, Field(max_length=10)] | None = None
     """Tolerance zone of ISO 286-1 about the length that the case has, such as "H7" or "k6": normal about the middle of
     the zone, its ends three standard deviations away, cut there."""
+    size: Amount | None = None
+    """Nominal size of a `fit` whose key is a deviation itself, as an interference: that of a shaft (a zone of a small
+    letter) grows by the shaft's deviation, that of a housing (a capital one) falls by the bore's. Default: the key is
+    the length."""
     factor: dict[Name, Factor] = Field(default={}, max_length=100)
     """Factor of entries that move together, by the name of the entry or its whole key path. Default: 1."""
     independent: StrictBool = False

@@ -80,6 +80,9 @@ class StudyCommand:
         return getattr(CaseStudy, self.method or self.name)  # type: ignore[no-any-return]
 
 
+_OF_MANY: dict[str, Any] = {"always_writes": True, "without": ("folder", "fresh"), "timed": True}
+"""Of a study of many solutions, which keeps them in the folder, see :class:`gearwhine.study_folder.FolderOptions`."""
+
 STUDY_COMMANDS = (
     StudyCommand(
         "run",
@@ -100,35 +103,10 @@ STUDY_COMMANDS = (
     StudyCommand("system", "system.sections", fresh=_FRESH_MODES),
     StudyCommand("steady", "steady_state.sections", fresh=_FRESH_MODES),
     StudyCommand("sound", "sound.sections", without=("acoustics",), fresh=_FRESH_MODES),
-    StudyCommand(
-        "sweep", "sweep.sections", always_writes=True, without=("folder", "fresh"), fresh=_FRESH_POINTS, timed=True
-    ),
-    StudyCommand(
-        "vary",
-        "variation.sections",
-        always_writes=True,
-        without=("folder", "fresh"),
-        names={"samples": "n"},
-        fresh=_FRESH_SAMPLES,
-        timed=True,
-    ),
-    StudyCommand(
-        "detect",
-        "detection.sections",
-        always_writes=True,
-        without=("folder", "fresh"),
-        fresh=_FRESH_SAMPLES,
-        timed=True,
-    ),
-    StudyCommand(
-        "optimise",
-        "optimisation.sections",
-        always_writes=True,
-        without=("folder", "fresh"),
-        names={"evaluations": "n"},
-        fresh=_FRESH_DESIGNS,
-        timed=True,
-    ),
+    StudyCommand("sweep", "sweep.sections", fresh=_FRESH_POINTS, **_OF_MANY),
+    StudyCommand("vary", "variation.sections", names={"samples": "n"}, fresh=_FRESH_SAMPLES, **_OF_MANY),
+    StudyCommand("detect", "detection.sections", fresh=_FRESH_SAMPLES, **_OF_MANY),
+    StudyCommand("optimise", "optimisation.sections", names={"evaluations": "n"}, fresh=_FRESH_DESIGNS, **_OF_MANY),
     StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
     StudyCommand("survey", "survey.sections", always_writes=True, fresh=_FRESH_MODES),
     StudyCommand("update", "update.sections", always_writes=True),

@@ -30,6 +30,7 @@ from gearwhine.figures.style import (
     plain,
     sheet,
     shortened,
+    stacked,
 )
 from gearwhine.numerics.detection_probability import CONFIDENCE, SignalResponse
 
@@ -138,16 +139,9 @@ def _axis_of(found: DetectionResult, indicator: str) -> str:
     return f"{one.title} [m/s²]" if one.key.endswith("_m_per_s2") else one.title
 
 
-def _panels(figure: Figure, count: int, foot: float) -> list[Axes]:
-    """Return panels below each other, the first one on top."""
-    return [panel(figure, foot + (count - 1 - number) * (_HEIGHT + _GAP), _HEIGHT) for number in range(count)]
-
-
 def _sheet(found: DetectionResult, heading: str, note: str, foot: float) -> tuple[Figure, list[Axes], tuple[str, ...]]:
     sensors = found.monitor.sensors[:_MOST_SENSORS]
-    height = HEAD + 5.0 + foot + len(sensors) * _HEIGHT + (len(sensors) - 1) * _GAP
-    figure = sheet(height, heading, note)
-    return figure, _panels(figure, len(sensors), foot), sensors
+    return *stacked(len(sensors), _HEIGHT, _GAP, heading, note, first=5.0, foot=foot), sensors
 
 
 def _responses(title: str, found: DetectionResult, indicator: str) -> Figure:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from gearwhine.figures.style import (
@@ -18,13 +19,21 @@ from gearwhine.figures.style import (
     INK,
     LABEL,
     RED,
+    RPM,
+    SERIES,
     TICK,
+    legend_below,
+    legend_height,
+    name_in_legend,
+    name_lowest,
     panel,
     panel_pair,
     panel_title,
     sheet,
     shortened,
+    stacked,
 )
+from gearwhine.optimisation.verification import Motion, Verification
 from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
@@ -50,6 +59,32 @@ def draw_optimisation(title: str, optimised: Optimised) -> Iterator[tuple[str, F
     if optimised.goals.count > 1:
         yield "optimise-front", _fronts(begins, optimised)
     yield "optimise-keys", _over_keys(optimised)
+    checked = optimised.verification
+    if checked is not None and isinstance(checked.start, Motion) and checked.start.over_speed:
+        yield "optimise-levels", _over_speed(begins, optimised.chosen.values(), checked, checked.start)
+
+
+def _over_speed(begins: str, labels: Iterable[str], checked: Verification, start: Motion) -> Figure:
+    """Draw the levels of start and proposed designs over the speed range."""
+    sensors = list(start.over_speed)[:_MOST_PANELS]
+    designs = [("start", start), *zip(labels, checked.designs, strict=True)][: len(SERIES)]
+    solved = [(label, one) for label, one in designs if isinstance(one, Motion)]
+    low = legend_height(len(solved))
+    note = f"{begins}lines of the teeth by the linear machine under load."
+    title = "Levels over the speed range"
+    figure, panels = stacked(len(sensors), _HEIGHT, _GAP, title, note, first=_TITLES, foot=FOOT + low)
+    for sensor, axes in zip(sensors, panels, strict=True):
+        for color, (_, one) in zip((GREY, *SERIES), solved, strict=False):
+            axes.plot(RPM * one.speeds, one.over_speed[sensor], color=color, lw=1.2)
+        axes.set_ylabel("level [dB re 1 µm/s²]")
+        panel_title(axes, sensor)
+    name_lowest(panels, "speed [rpm]")
+    marks = [
+        Line2D([], [], color=color, lw=1.2, label=name_in_legend(label, 36))
+        for color, (label, _) in zip((GREY, *SERIES), solved, strict=False)
+    ]
+    legend_below(figure, marks)
+    return figure
 
 
 def _masks(optimised: Optimised) -> tuple[Mask, Mask]:
@@ -78,15 +113,11 @@ def _set_label(axes: Axes, text: str, *, across: bool) -> None:
 
 def _convergence(begins: str, optimised: Optimised) -> Figure:
     aims = list(range(len(optimised.goals.aims)))[:_MOST_PANELS]
-    figure = sheet(
-        HEAD + _TITLES + FOOT + len(aims) * _HEIGHT + (len(aims) - 1) * _GAP,
-        "Convergence",
-        f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start.",
-    )
+    note = f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start."
+    figure, panels = stacked(len(aims), _HEIGHT, _GAP, "Convergence", note, first=_TITLES)
     within, beyond = _masks(optimised)
     numbers = np.arange(len(optimised.designs))
-    for row, place in enumerate(reversed(aims)):
-        axes = panel(figure, FOOT + row * (_HEIGHT + _GAP), _HEIGHT)
+    for place, axes in zip(aims, panels, strict=True):
         values, sign = _values(optimised, place), optimised.goals.aims[place].sign
         axes.plot(numbers[beyond], values[beyond], ".", color=RED, ms=3.0)
         axes.plot(numbers[within], values[within], ".", color=BLUE, ms=3.5)
@@ -111,16 +142,11 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
 
 def _fronts(begins: str, optimised: Optimised) -> Figure:
     pairs = list(combinations(range(len(optimised.goals.aims)), 2))[:_MOST_PANELS]
-    height = 1.5 * _HEIGHT
-    figure = sheet(
-        HEAD + FOOT + len(pairs) * height + (len(pairs) - 1) * _GAP,
-        "Pareto front",
-        f"{begins}blue: front, ring: proposed, grey: others, red: beyond the limits, cross: start.",
-    )
+    note = f"{begins}blue: front, ring: proposed, grey: others, red: beyond the limits, cross: start."
+    figure, panels = stacked(len(pairs), 1.5 * _HEIGHT, _GAP, "Pareto front", note)
     within, beyond = _masks(optimised)
     front, chosen = optimised.front, [number for number in optimised.chosen if number in optimised.front]
-    for row, (first, second) in enumerate(reversed(pairs)):
-        axes = panel(figure, FOOT + row * (height + _GAP), height)
+    for (first, second), axes in zip(pairs, panels, strict=True):
         across, up = _values(optimised, first), _values(optimised, second)
         axes.plot(across[beyond], up[beyond], ".", color=RED, ms=2.5, alpha=0.6)
         axes.plot(across[within], up[within], ".", color=GREY, ms=3.0)

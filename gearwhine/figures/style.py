@@ -108,6 +108,24 @@ def panel_pair(figure: Figure, bottom: float, height: float) -> tuple[Axes, Axes
     return left, right
 
 
+def stacked(
+    count: int, height: float, gap: float, title: str, note: str = "", *, first: float = 0.0, foot: float = FOOT
+) -> tuple[Figure, list[Axes]]:
+    """Return a sheet with panels of one height below each other, the first on top.
+
+    ``gap`` between two and ``first`` above the first one are the room for their titles [mm].
+    """
+    figure = sheet(HEAD + first + count * height + (count - 1) * gap + foot, title, note)
+    return figure, [panel(figure, foot + (count - 1 - number) * (height + gap), height) for number in range(count)]
+
+
+def name_lowest(panels: Sequence[Axes], text: str) -> None:
+    """Give stacked panels over one axis its name, and its numbers, at the lowest alone."""
+    for axes in panels[:-1]:
+        axes.tick_params(labelbottom=False)
+    panels[-1].set_xlabel(text)
+
+
 def panel_title(axes: Axes, text: str) -> None:
     """Write the title of a panel at its upper left, with a user's names unchanged."""
     axes.set_title(

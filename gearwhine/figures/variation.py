@@ -18,11 +18,13 @@ from gearwhine.figures.style import (
     PALE,
     RED,
     TICK,
+    name_lowest,
     panel,
     panel_pair,
     panel_title,
     sheet,
     shortened,
+    stacked,
 )
 from gearwhine.figures.style import HEAD as STYLE_HEAD
 from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
@@ -229,16 +231,11 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
 
 def _over_speed(title: str, varied: VariedResult) -> Figure:
     curves = list(varied.nominal.curves)[:_MOST_CURVES]
-    height, gap = 34.0, 8.0
-    figure = sheet(
-        HEAD + FOOT + len(curves) * height + (len(curves) - 1) * gap,
-        "Levels over speed",
-        f"{_begins(title, 40)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest.",
-    )
+    note = f"{_begins(title, 40)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest."
+    figure, panels = stacked(len(curves), 34.0, 8.0, "Levels over speed", note)
     rpm = np.abs(varied.speeds) * 30.0 / np.pi
     order = np.argsort(rpm)
-    for number, name in enumerate(reversed(curves)):
-        axes = panel(figure, FOOT + number * (height + gap), height)
+    for name, axes in zip(curves, panels, strict=True):
         values = varied.curve(name)[varied.representative]
         values = values[np.all(np.isfinite(values), axis=1)][:, order]
         if len(values):
@@ -252,8 +249,5 @@ def _over_speed(title: str, varied: VariedResult) -> Figure:
                 axes.axhline(end, color=RED, lw=1.0)
         axes.set_ylabel("level [dB]")
         panel_title(axes, part_of(name))
-        if number:
-            axes.tick_params(labelbottom=False)
-        else:
-            axes.set_xlabel("speed [rpm]")
+    name_lowest(panels, "speed [rpm]")
     return figure

@@ -14,14 +14,14 @@ import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from gearwhine.coupling.analyses.recording import Arrays
 from gearwhine.interruption import cleared_at_the_end
-from gearwhine.output.files import exclusive_lock, held_lock, is_locked, room_named
+from gearwhine.output.files import clear_stage, exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"
 _KEY_DIGITS = 16  # digits of the key in the folder's name: no two integrations of one folder share them by chance
@@ -110,7 +110,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
             if not blocks.is_empty:
                 kept = f"what was marched so far is kept in {place}"
                 return f"{kept}: the same command goes on from there, --fresh does not"
-            _clear(place, folder if is_new else None)
+            clear_stage(place, folder if is_new else None)
             return None
 
         stack.enter_context(cleared_at_the_end(leave))
@@ -121,7 +121,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
             if note is not None and isinstance(error, KeyboardInterrupt | OSError):
                 error.add_note(note)
             raise
-        _clear(place, None)
+        clear_stage(place, None)
 
 
 def _place(folder: Path, name: str, *, fresh: bool) -> Path:
@@ -139,13 +139,6 @@ def _place(folder: Path, name: str, *, fresh: bool) -> Path:
         return Path(tempfile.mkdtemp(prefix=f"{name}-", dir=folder))
     target.mkdir(exist_ok=True)
     return target
-
-
-def _clear(place: Path, created: Path | None) -> None:
-    shutil.rmtree(place, ignore_errors=True)
-    if created is not None:
-        with suppress(OSError):  # another run is at work in it
-            created.rmdir()
 
 
 def _force_names(folder: Path) -> None:

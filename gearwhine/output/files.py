@@ -179,7 +179,7 @@ def staging(folder: Path, settle: Callable[[Path], None] | None = None, *, liste
                     shutil.rmtree(stale, ignore_errors=True)
             place = Path(tempfile.mkdtemp(prefix=_STAGING, dir=folder))
             stack.enter_context(held_lock(place))
-        stack.enter_context(cleared_at_the_end(partial(_clear_stage, place, folder if is_new else None), place))
+        stack.enter_context(cleared_at_the_end(partial(clear_stage, place, folder if is_new else None), place))
         try:
             yield place
             with exclusive_lock(folder), uninterrupted():
@@ -193,10 +193,10 @@ def staging(folder: Path, settle: Callable[[Path], None] | None = None, *, liste
                 place.rename(complete)
                 _move_out(complete, folder)
         finally:
-            _clear_stage(place, folder if is_new else None)
+            clear_stage(place, folder if is_new else None)
 
 
-def _clear_stage(place: Path, created: Path | None) -> None:
+def clear_stage(place: Path, created: Path | None) -> None:
     """Remove staged files, and the output folder where these made it."""
     shutil.rmtree(place, ignore_errors=True)
     if created is not None:

@@ -199,6 +199,23 @@ class Quantity:
         return self.long_name or meaning_at(solved, self.attribute)
 
 
+def in_file(
+    name: str, along: str | tuple[str, ...], of: Getter, long_name: str = "", unit: str = "", **more: Any
+) -> Quantity:
+    """Declare a quantity of the file alone.
+
+    Parameters
+    ----------
+    name : str
+    along : str or tuple of str
+        Its dimensions, in one text with blanks between.
+    of, long_name, unit, **more
+        As the attributes of :class:`Quantity`.
+    """
+    dimensions = tuple(along.split()) if isinstance(along, str) else along
+    return Quantity("", of, name, dimensions, unit, long_name, **more)
+
+
 @dataclass(frozen=True)
 class Part:
     """Quantities of one object within another: a dictionary of the document under its key.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gearwhine.output.csv_cells import plain_cells
-from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, columns_of, counted, table_of
 from gearwhine.results.housing import shape_places
 
@@ -74,21 +74,15 @@ class _Mode(NamedTuple):
 
 
 SHAPES = (
-    Quantity(
-        "",
-        lambda shapes: _numbers(shapes.measured_frequencies),
-        "measured",
-        ("measured",),
-        "1",
-        long_name="number of the measured mode",
+    in_file(
+        "measured", "measured", lambda shapes: _numbers(shapes.measured_frequencies), "number of the measured mode", "1"
     ),
-    Quantity(
-        "",
-        lambda shapes: _numbers(shapes.model_frequencies),
+    in_file(
         "housing_mode",
-        ("housing_mode",),
+        "housing_mode",
+        lambda shapes: _numbers(shapes.model_frequencies),
+        "number of the housing mode",
         "1",
-        long_name="number of the housing mode",
     ),
     Rows(
         "unpaired_measured",
@@ -146,7 +140,7 @@ SHAPES = (
     ),
     Quantity("phase_collinearity", "collinearity"),
     Quantity("mac", "mac", "mac", ("housing_mode", "measured"), "1", long_name="modal assurance criterion"),
-    Quantity("", "comac", "comac", ("degree_of_freedom",), "1", long_name="coordinate modal assurance criterion"),
+    in_file("comac", "degree_of_freedom", "comac", "coordinate modal assurance criterion", "1"),
 )
 """Quantities of measured shapes beside the model's: missing, double, close and similar modes; quality of the survey."""
 

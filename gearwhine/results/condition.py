@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.coupling.analyses.gear_condition import INDICATORS
-from gearwhine.output.quantity import Quantity, Rows, document_of
+from gearwhine.output.quantity import Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Section, Table, table_of
 
 if TYPE_CHECKING:
@@ -72,16 +72,15 @@ CONDITION = (
         "tones",
         (Quantity("tone"), Quantity("frequency_hz", "frequency_hz"), Quantity("envelope", "amplitudes")),
     ),
-    Quantity("", _in_file("gears"), "watched_gear", ("watched_gear",)),
-    Quantity("", _in_file("sensors"), "condition_sensor", ("condition_sensor",)),
-    Quantity("", _in_file("indicators"), "condition_indicator", ("condition_indicator",)),
-    Quantity(
-        "",
-        _in_file("values"),
+    in_file("watched_gear", "watched_gear", _in_file("gears")),
+    in_file("condition_sensor", "condition_sensor", _in_file("sensors")),
+    in_file("condition_indicator", "condition_indicator", _in_file("indicators")),
+    in_file(
         "condition",
         _WHERE,
-        "1",
+        _in_file("values"),
         "condition indicator of the gear at the sensor, in the unit at the end of its name",
+        "1",
     ),
     Quantity("", lambda row: list(row.envelopes) or None, "envelope_sensor", ("envelope_sensor",)),
     Quantity(

@@ -7,9 +7,9 @@ import numpy as np
 
 from gearwhine.coupling.analyses.gear_condition import INDICATORS
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
-from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, finite, in_file
+from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, finite
 
 if TYPE_CHECKING:
     from gearwhine.detection.detectability import DetectionResult
@@ -71,7 +71,7 @@ def _in_file(name: str, of: Callable[[Any], Any], long_name: str, unit: str = ""
         rows = np.array([np.nan if (row := of(one)) is None else row for one in found.parts], dtype=np.float64)
         return rows.reshape(len(found.monitor.sensors), len(found.monitor.indicators), *rows.shape[1:])
 
-    return Quantity("", values, name, ("sensor", "indicator", *along), unit, long_name)
+    return in_file(name, ("sensor", "indicator", *along), values, long_name, unit)
 
 
 DETECTION = (

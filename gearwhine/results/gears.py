@@ -14,7 +14,7 @@ from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, TipRelie
 from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from gearwhine.coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
 from gearwhine.output.files import file_stems
-from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, percent, table_of
 from gearwhine.results.operating_point import misalignment_words, share_words
 
@@ -153,34 +153,19 @@ def _points(path: PathOfContact) -> list[dict[str, Any]]:
 
 def _of_sides(name: str, unit: str, quantity: str) -> Quantity:
     """Declare a quantity of the named points on both gears."""
-    return Quantity(
-        "",
-        lambda path: np.array([_of_point(path, f"{side}_{name}") for side in ("driver", "driven")]),
+    return in_file(
         f"contact_point_{name}",
-        ("side", "contact_point"),
+        "side contact_point",
+        lambda path: np.array([_of_point(path, f"{side}_{name}") for side in ("driver", "driven")]),
+        f"{quantity} of the point",
         unit,
-        long_name=f"{quantity} of the point",
     )
 
 
 PATH = (
-    Quantity(
-        "",
-        lambda path: list(POINTS_OF_CONTACT),
-        "contact_point",
-        ("contact_point",),
-        long_name="of the driver",
-        common=True,
-    ),
-    Quantity("", lambda path: ["driver", "driven"], "side", ("side",), common=True),
-    Quantity(
-        "",
-        "position",
-        "contact_point_position",
-        ("contact_point",),
-        "1",
-        long_name="place on the path of contact in base pitches",
-    ),
+    in_file("contact_point", "contact_point", lambda path: list(POINTS_OF_CONTACT), "of the driver", common=True),
+    in_file("side", "side", lambda path: ["driver", "driven"], common=True),
+    in_file("contact_point_position", "contact_point", "position", "place on the path of contact in base pitches", "1"),
     _of_sides("roll_angle", "rad", "roll angle"),
     _of_sides("radius", "m", "distance from the gear's centre"),
     _of_sides("sliding", "1", "specific sliding"),
@@ -201,30 +186,29 @@ GEOMETRY = (
 
 _PHASE, _TOOTH = ("mesh_phase",), ("mesh_phase", "tooth_pair")
 CURVES = (
-    Quantity("", "phases", "mesh_phase", _PHASE, "1", common=True),
-    Quantity("", "stiffness", "mesh_stiffness", _PHASE, "N/m"),
-    Quantity("", "mesh.tangent_stiffness", "loaded_flank_stiffness", _PHASE, "N/m"),
-    Quantity("", "mesh.transmission_error", "transmission_error", _PHASE, "m"),
-    Quantity("", "unloaded", "unloaded_transmission_error", _PHASE, "m"),
-    Quantity("", "position", "tooth_pair_position", _TOOTH, "1"),
-    Quantity("", "share", "load_share", _TOOTH, "1"),
-    Quantity("", "pressure", "contact_pressure", _TOOTH, "Pa"),
-    Quantity("", "face_place", "face_place", ("slice",), "m"),
-    Quantity("", "mesh.line_loads", "line_load", (*_TOOTH, "slice"), "N/m"),
+    in_file("mesh_phase", _PHASE, "phases", unit="1", common=True),
+    in_file("mesh_stiffness", _PHASE, "stiffness", unit="N/m"),
+    in_file("loaded_flank_stiffness", _PHASE, "mesh.tangent_stiffness", unit="N/m"),
+    in_file("transmission_error", _PHASE, "mesh.transmission_error", unit="m"),
+    in_file("unloaded_transmission_error", _PHASE, "unloaded", unit="m"),
+    in_file("tooth_pair_position", _TOOTH, "position", unit="1"),
+    in_file("load_share", _TOOTH, "share", unit="1"),
+    in_file("contact_pressure", _TOOTH, "pressure", unit="Pa"),
+    in_file("face_place", "slice", "face_place", unit="m"),
+    in_file("line_load", (*_TOOTH, "slice"), "mesh.line_loads", unit="N/m"),
 )
 """Quantities of a pair at even phases of the mesh period."""
 
 _SEATS = {"rigid": " in rigid seats", "housing": " on the modes of the housing"}
 
 HUNTING = (
-    Quantity("", "phases", "hunting_phase", ("hunting_step",), "1", long_name="mesh periods"),
-    Quantity(
-        "",
-        "transmission_error",
+    in_file("hunting_phase", "hunting_step", "phases", "mesh periods", "1"),
+    in_file(
         "hunting_transmission_error",
-        ("hunting_step",),
+        "hunting_step",
+        "transmission_error",
+        "static transmission error under the mean torque",
         "m",
-        long_name="static transmission error under the mean torque",
     ),
     Quantity("mean", "mean_transmission_error"),
     Quantity("peak_to_peak", "peak_to_peak_transmission_error"),
@@ -240,14 +224,13 @@ HARRIS_MAP = (
         _LOADS,
         long_name="torque on the driver",
     ),
-    Quantity("", "harris.phases", "harris_phase", ("harris_step",), "1"),
-    Quantity(
-        "",
-        "harris.transmission_error",
+    in_file("harris_phase", "harris_step", "harris.phases", unit="1"),
+    in_file(
         "harris_transmission_error",
         (*_LOADS, "harris_step"),
+        "harris.transmission_error",
+        "static transmission error under the torque",
         "m",
-        long_name="static transmission error under the torque",
     ),
     Quantity("peak_to_peak_m", "harris.peak_to_peak"),
     Quantity("quietest_torque_n_m", lambda pair: pair.harris.quietest * abs(pair.solved.geometry.driver.base_radius)),
@@ -273,16 +256,15 @@ LOAD_SHARING = (
     Quantity("loaded_contact_ratio"),
     Quantity("largest_share", lambda pair: pair.shares[1].max()),
     Quantity("corner_force_n"),
-    Quantity("", "shares.0", "path_position", _PATH, "1", long_name="place on the path of contact in base pitches"),
-    Quantity(
-        "",
-        lambda pair: pair.solved.geometry.driver_roll_angle(pair.shares[0]),
+    in_file("path_position", _PATH, "shares.0", "place on the path of contact in base pitches", "1"),
+    in_file(
         "path_roll_angle",
         _PATH,
+        lambda pair: pair.solved.geometry.driver_roll_angle(pair.shares[0]),
+        "roll angle of the driver there",
         "rad",
-        long_name="roll angle of the driver there",
     ),
-    Quantity("", "shares.1", "path_load_share", _PATH, "1", long_name="part of the load on a tooth pair there"),
+    in_file("path_load_share", _PATH, "shares.1", "part of the load on a tooth pair there", "1"),
 )
 """Number of tooth pairs in contact, and the load share of one of them along its path."""
 PRESSURE = (
@@ -356,7 +338,7 @@ class _Flanks(NamedTuple):
 
 
 PAIR = (
-    Quantity("", lambda pair: pair.label.replace("→", "->"), "gear_pair"),
+    in_file("gear_pair", "", lambda pair: pair.label.replace("→", "->")),
     Quantity("driver", "solved.pair.driver", heading="driver"),
     Quantity("driven", "solved.pair.driven", heading="driven"),
     Quantity("model", "solved.model.name"),
@@ -385,17 +367,8 @@ PAIR = (
         "",
         lambda pair: _Flanks(*pair.flanks),
         (
-            Quantity(
-                "",
-                "roll_angle",
-                "flank_roll_angle",
-                ("side", "flank_place"),
-                "rad",
-                long_name="roll angle from form circle to tip",
-            ),
-            Quantity(
-                "", "deviation", "flank_deviation", ("side", "flank_place"), "m", long_name="material over the involute"
-            ),
+            in_file("flank_roll_angle", "side flank_place", "roll_angle", "roll angle from form circle to tip", "rad"),
+            in_file("flank_deviation", "side flank_place", "deviation", "material over the involute", "m"),
         ),
     ),
     Part("stiffness_n_per_m", ".", STIFFNESS),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results.housing_checks import effective_mass_document, health_document
 from gearwhine.results.line_columns import LINE_NAME, line_frequency
@@ -82,7 +82,7 @@ MODE = (
     ),
     Quantity("strength", "strength", "housing_strength", unit="kg-1", heading="strength [1/kg]", shown=".4g"),
     Quantity("effective_mass"),
-    Quantity("", "survey_shape", "survey_shape", ("survey_point", "component"), "kg-0.5"),
+    in_file("survey_shape", "survey_point component", "survey_shape", unit="kg-0.5"),
 )
 """Quantities of one mode."""
 
@@ -160,7 +160,7 @@ SOLID = (
 """Mass and centre of mass of the solid alone."""
 
 HOUSING: Fields = (
-    Quantity("", lambda solved: ["x", "y", "z"], "component", ("component",)),
+    in_file("component", "component", lambda solved: ["x", "y", "z"]),
     Rows("modes", _modes, MODE, "housing_mode"),
     Part("certificate", "modes.certificate", CERTIFICATE),
     Part("mesh", "mesh", MESH_SIZE),
@@ -177,30 +177,27 @@ HOUSING: Fields = (
     Quantity("health", lambda solved: health_document(solved.health)),
     Part("solid", lambda solved: solved.housing.solid(), SOLID),
     Quantity("seconds"),
-    Quantity(
-        "",
-        "survey.positions",
+    in_file(
         "survey_position",
-        ("survey_point", "component"),
+        "survey_point component",
+        "survey.positions",
+        "survey points on the housing's outer faces",
         "m",
-        long_name="survey points on the housing's outer faces",
     ),
-    Quantity("", "survey.normals", "survey_normal", ("survey_point", "component"), "1", long_name="outward normals"),
-    Quantity(
-        "",
-        lambda solved: {name: port.position for name, port in solved.sensors.items()} or None,
+    in_file("survey_normal", "survey_point component", "survey.normals", "outward normals", "1"),
+    in_file(
         "sensor_position",
-        ("sensor", "component"),
+        "sensor component",
+        lambda solved: {name: port.position for name, port in solved.sensors.items()} or None,
+        "point of the surface that the sensor is on",
         "m",
-        long_name="point of the surface that the sensor is on",
     ),
-    Quantity(
-        "",
-        lambda solved: {name: port.direction for name, port in solved.sensors.items()} or None,
+    in_file(
         "sensor_direction",
-        ("sensor", "component"),
+        "sensor component",
+        lambda solved: {name: port.direction for name, port in solved.sensors.items()} or None,
+        "direction of the sensor's acceleration",
         "1",
-        long_name="direction of the sensor's acceleration",
     ),
     Part("", ".", ORIGIN),
 )

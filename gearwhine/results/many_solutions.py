@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.quantity import Getter, Quantity, Rows
+from gearwhine.output.quantity import Quantity, Rows, in_file
 from gearwhine.output.sections import Document
 
 FAILED = Rows(
@@ -24,11 +24,6 @@ FAILED = Rows(
 def finite(value: float) -> float | None:
     """Return a number; None in place of NaN and infinity."""
     return value if np.isfinite(value) else None
-
-
-def in_file(name: str, along: str, of: Getter, long_name: str = "", unit: str = "") -> Quantity:
-    """Declare a quantity of the file alone; ``along`` names its dimensions."""
-    return Quantity("", of, name, tuple(along.split()), unit, long_name)
 
 
 def numbered(dimension: str, count: Callable[[Any], int], long_name: str) -> tuple[Quantity, Quantity]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.output.quantity import Fields, Quantity, Rows, document_of
+from gearwhine.output.quantity import Fields, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Document, Section, columns_of, table_of
 from gearwhine.results import housing
 from gearwhine.results.check import REDUCED_HOUSING, reduced_lines
@@ -61,13 +61,13 @@ MODE = (
     Quantity("frequency_hz", "frequency_hz", "housing_frequency", heading="frequency [Hz]", shown=".2f"),
     Quantity("damping_ratio", "damping_ratio", "housing_damping_ratio", unit="1", heading="damping ratio", shown=".4f"),
     Quantity("moves_most", heading="moves most"),
-    Quantity("", "translations", "node_translation", ("node", "component"), "kg-0.5"),
+    in_file("node_translation", "node component", "translations", unit="kg-0.5"),
 )
 """Quantities of one mode."""
 
 REDUCED_MODES: Fields = (
-    Quantity("", lambda reduced: ["x", "y", "z"], "component", ("component",)),
-    Quantity("", lambda reduced: np.array(reduced.matrices.nodes), "node", ("node",), "1", long_name="interface node"),
+    in_file("component", "component", lambda reduced: ["x", "y", "z"]),
+    in_file("node", "node", lambda reduced: np.array(reduced.matrices.nodes), "interface node", "1"),
     Rows("modes", _modes, MODE, "housing_mode"),
     *REDUCED_HOUSING,
 )

@@ -12,7 +12,7 @@ from gearwhine.coupling.description.gear_train import EQUAL_MESHES
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.housing.acoustics.sound_levels import power_level
 from gearwhine.output.attributes import meaning_of, value_at
-from gearwhine.output.quantity import ABSENT, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, Fields, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import (
     Column,
     Document,
@@ -89,7 +89,7 @@ BEARING = (
     Quantity("peak_pressure_pa", "peak_pressure", "bearing_peak_pressure", heading="pressure\n[GPa]", shown=".3g"),
     Quantity("preload_n", "preload", "bearing_preload", heading="preload [N]", shown=".0f"),
     Quantity("most_loaded_element", "most_loaded"),
-    Quantity("", "element_loads", "bearing_element_load", ("rolling_element",), "N"),
+    in_file("bearing_element_load", "rolling_element", "element_loads", unit="N"),
     Quantity("equivalent_load_n", "rated.equivalent_load"),
     *life_quantities("rated", "bearing", ("L10\n[h]", "L10r\n[h]")),
 )
@@ -139,7 +139,7 @@ _GEARS = (
     Quantity("driven", "pair.driven.name", heading="driven"),
 )
 PAIR = (
-    Quantity("", "label", "loaded_pair"),
+    in_file("loaded_pair", "", "label"),
     *_GEARS,
     Quantity("force_n", "force", "mesh_mean_force", heading="force\n[N]", shown=".0f"),
     Quantity("thrust_n", "thrust", "mesh_thrust"),
@@ -173,13 +173,13 @@ PAIR = (
     ),
     Quantity("contact_pressure_max_pa", "loaded.peak_pressure"),
     Quantity("carrying_part", "loaded.carrying_part"),
-    Quantity("", "z", "face_slice_place", _SLICE, "m"),
-    Quantity("", "gap", "face_gap", _SLICE, "m"),
-    Quantity("", "pair.contact.flank_gap", "flank_gap", _SLICE, "m"),
-    Quantity("", "loaded.line_load", "face_mean_line_load", _SLICE, "N/m"),
-    Quantity("", "loaded.fine.line_load", "face_line_load", (*_PHASE, *_SLICE), "N/m"),
-    Quantity("", "fine.phases", "load_phase", _PHASE, "1", common=True),
-    Quantity("", "loaded.transmission_error", "loaded_transmission_error", _PHASE, "m"),
+    in_file("face_slice_place", _SLICE, "z", unit="m"),
+    in_file("face_gap", _SLICE, "gap", unit="m"),
+    in_file("flank_gap", _SLICE, "pair.contact.flank_gap", unit="m"),
+    in_file("face_mean_line_load", _SLICE, "loaded.line_load", unit="N/m"),
+    in_file("face_line_load", (*_PHASE, *_SLICE), "loaded.fine.line_load", unit="N/m"),
+    in_file("load_phase", _PHASE, "fine.phases", unit="1", common=True),
+    in_file("loaded_transmission_error", _PHASE, "loaded.transmission_error", unit="m"),
 )
 """Quantities of a gear pair at the operating point; a row is a :class:`PairLoad`."""
 
@@ -227,23 +227,21 @@ SHAFT = (
     Quantity("largest_deflection_m", "largest.0", heading="largest [µm]", shown=".4g"),
     Quantity("largest_deflection_at_m", "largest.1", heading="at, from its left end [mm]", shown=".4g"),
     Quantity("twist_rad", heading="twist [µrad]", shown=".4g"),
-    Quantity("", "at", "shaft_position", _PLACE, "m"),
-    Quantity("", "z", "shaft_z", _PLACE, "m"),
-    Quantity(
-        "",
-        lambda shaft: dict(zip(_AXES, shaft.motion[:3], strict=True)),
+    in_file("shaft_position", _PLACE, "at", unit="m"),
+    in_file("shaft_z", _PLACE, "z", unit="m"),
+    in_file(
         "shaft_displacement",
         (*_DIRECTION, *_PLACE),
-        "m",
+        lambda shaft: dict(zip(_AXES, shaft.motion[:3], strict=True)),
         "displacement of the shaft",
+        "m",
     ),
-    Quantity(
-        "",
-        lambda shaft: dict(zip((*_TILTS, "about z"), shaft.motion[3:], strict=True)),
+    in_file(
         "shaft_rotation",
         ("shaft_rotation_axis", *_PLACE),
-        "rad",
+        lambda shaft: dict(zip((*_TILTS, "about z"), shaft.motion[3:], strict=True)),
         "rotation of the shaft",
+        "rad",
     ),
 )
 """Quantities of a deflected shaft."""
@@ -296,12 +294,8 @@ class _LoudestLine(NamedTuple):
 SOUND_LINE = (
     Quantity("excitation", "excitation", "loudest_line_excitation", heading="excitation"),
     Quantity("frequency_hz", "sound.line.frequency", "loudest_line_frequency", heading="[Hz]", shown=".1f"),
-    Quantity(
-        "",
-        "sound.line.value",
-        "loudest_line_power",
-        unit="W",
-        long_name="sound power of the line, linear about the operating point",
+    in_file(
+        "loudest_line_power", "", "sound.line.value", "sound power of the line, linear about the operating point", "W"
     ),
     Quantity("sound_power_db", lambda row: float(power_level(row.sound.line.value)), heading="L_W [dB]", shown=".1f"),
     Quantity(
@@ -332,12 +326,12 @@ SIDEBAND = (
     Quantity("kind", "sound.response.kind", "sound_sideband_kind", heading="kind"),
     Quantity("frequency_hz", "sound.response.frequency", "sound_sideband_frequency", heading="[Hz]", shown=".1f"),
     Quantity("phasing", "sound.response.phasing", "sound_sideband_phasing", unit="1", heading="phasing", shown=".2f"),
-    Quantity(
+    in_file(
+        "sound_sideband_power",
         "",
         "sound.power",
-        "sound_sideband_power",
-        unit="W",
-        long_name="sound power of a mesh harmonic or its sideband by turning carriers",
+        "sound power of a mesh harmonic or its sideband by turning carriers",
+        "W",
     ),
     Quantity("sound_power_db", lambda row: float(power_level(row.sound.power)), heading="L_W [dB]", shown=".1f"),
     Quantity(
@@ -448,7 +442,7 @@ def _change(outcome: Quantity, column: int) -> Quantity:
         return np.array([influence.changes[:, column] for influence in solved.sensitivity.influences])
 
     long_name = f"change by a step of the parameter, to first order: {_meaning(outcome)}"
-    return Quantity("", changes, f"{outcome.name}_change", ("influence", "loaded_pair"), outcome.file_unit, long_name)
+    return in_file(f"{outcome.name}_change", "influence loaded_pair", changes, long_name, outcome.file_unit)
 
 
 def _line_changes(name: str, of: str, long_name: str, unit: str, changes: str, dimension: str) -> Quantity:
@@ -468,7 +462,7 @@ def _line_changes(name: str, of: str, long_name: str, unit: str, changes: str, d
     how = "to first order" if of == "first_order" else "the response solved anew"
     step = "reverse step" if of == "reverse" else "step"
     long_name = f"change of the line's {long_name} by a {step} of the parameter, {how}"
-    return Quantity("", values, name, ("influence", dimension), unit, long_name=long_name)
+    return in_file(name, ("influence", dimension), values, long_name, unit)
 
 
 def _sensor_lines(solved: "SolvedLoad") -> Any:
@@ -525,7 +519,7 @@ def _over_torque(outcome: Quantity) -> Quantity:
         return np.array(rows, dtype=np.float64)  # NaN of pairs that carry nothing
 
     along, long_name = ("load_torque", "loaded_pair"), f"over torque: {_meaning(outcome)}"
-    return Quantity("", values, f"{outcome.name}_over_torque", along, outcome.file_unit, long_name)
+    return in_file(f"{outcome.name}_over_torque", along, values, long_name, outcome.file_unit)
 
 
 def _meaning(outcome: Quantity) -> str:
@@ -605,7 +599,7 @@ def _of_planets(name: str, of: Callable[[Any], Any], unit: str, long_name: str) 
         found = [of(planet) for one in solved.planetary for planet in one.planets]
         return (np.array(found) if unit else found) if found else None
 
-    return Quantity("", values, name, ("loaded_planet",), unit, long_name=long_name)
+    return in_file(name, "loaded_planet", values, long_name, unit)
 
 
 def _shares_over_turn(solved: "SolvedLoad") -> Any:
@@ -624,8 +618,8 @@ LOAD: Fields = (
     Quantity("residual", "point.residual"),
     Quantity("iterations", "point.iterations"),
     Quantity("free_motions", "point.free"),
-    Quantity("", lambda solved: list(_MOTIONS), _MOTION[0], _MOTION[:1]),
-    Quantity("", lambda solved: list(_MOTIONS), _MOTION[1], _MOTION[1:]),
+    in_file(_MOTION[0], _MOTION[:1], lambda solved: list(_MOTIONS)),
+    in_file(_MOTION[1], _MOTION[1:], lambda solved: list(_MOTIONS)),
     Rows("shafts", "shafts", SHAFT, "deflected_shaft"),
     Rows("bearings", "bearings", BEARING, "loaded_bearing"),
     Rows("gear_pairs", "pairs", (Part("", "load", PAIR), *TAKEN), "loaded_pair"),
@@ -635,21 +629,19 @@ LOAD: Fields = (
     _of_planets("loaded_planet", lambda planet: planet.shaft, "", ""),
     _of_planets("planet_load_share", lambda planet: planet.load_share, "1", "part of the set's torque"),
     _of_planets("planet_bearing_force", lambda planet: planet.bearing_force, "N", "force of the planet on its pin"),
-    Quantity(
-        "",
-        lambda solved: solved.carrier_turns[0].angles if solved.carrier_turns else None,
+    in_file(
         "carrier_angle",
-        ("carrier_angle",),
+        "carrier_angle",
+        lambda solved: solved.carrier_turns[0].angles if solved.carrier_turns else None,
+        "angle by which the carrier has turned",
         "rad",
-        long_name="angle by which the carrier has turned",
     ),
-    Quantity(
-        "",
-        _shares_over_turn,
+    in_file(
         "planet_load_share_over_turn",
-        ("loaded_planet", "carrier_angle"),
+        "loaded_planet carrier_angle",
+        _shares_over_turn,
+        "part of the set's torque over a turn of the carrier",
         "1",
-        long_name="part of the set's torque over a turn of the carrier",
     ),
     Rows("over_torque", lambda solved: [_Torque(*each) for each in solved.over_torque.items()] or ABSENT, TORQUE),
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
@@ -669,8 +661,9 @@ LOAD: Fields = (
         ),
         INFLUENCE,
     ),
-    Quantity(
-        "",
+    in_file(
+        "influence",
+        "influence",
         lambda solved: (
             None
             if solved.sensitivity is None or not solved.point.pairs
@@ -679,8 +672,6 @@ LOAD: Fields = (
                 for influence in solved.sensitivity.influences
             ]
         ),
-        "influence",
-        ("influence",),
     ),
     *(
         _change(outcome, column)
@@ -692,13 +683,12 @@ LOAD: Fields = (
     _line_changes("loudest_line_power_change", "change", *_OF_SOUND),
     _line_changes("loudest_line_power_first_order_change", "first_order", *_OF_SOUND),
     _line_changes("loudest_line_power_reverse_change", "reverse", *_OF_SOUND),
-    Quantity(
-        "",
-        lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
+    in_file(
         "load_torque",
-        ("load_torque",),
+        "load_torque",
+        lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
+        "torque of the first driver",
         "N m",
-        long_name="torque of the first driver",
     ),
     *(_over_torque(outcome) for outcome in _OUTCOMES),
 )

@@ -8,9 +8,9 @@ import numpy as np
 from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.named_quantities import part_of, shown_quantity
-from gearwhine.output.quantity import document_of, unit_of
+from gearwhine.output.quantity import document_of, in_file, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
-from gearwhine.results.many_solutions import FAILED, failed_sentences, failed_warnings, finite, in_file, numbered
+from gearwhine.results.many_solutions import FAILED, failed_sentences, failed_warnings, finite, numbered
 
 if TYPE_CHECKING:
     from gearwhine.optimisation.goals import LimitEnd
@@ -147,6 +147,9 @@ def _motion(motion: "Motion | Failure") -> dict[str, Any]:
         "motion_level_db": dict(motion.motion),
         "peak_force_ratio": {name: finite(value) for name, value in motion.peak_force_ratio.items()},
         "contact_loss": dict(motion.contact_loss),
+        "highest_level_db": {sensor: level for sensor, (level, _) in motion.highest.items()},
+        "loudest_speed_rpm": {sensor: _RPM * speed for sensor, (_, speed) in motion.highest.items()},
+        "range_speeds": len(motion.speeds),
     }
 
 
@@ -163,6 +166,14 @@ def _warnings(optimised: "Optimised") -> Iterator[ResultWarning]:
             "mesh harmonics; parting teeth, unbalance or runout may decide there"
         )
         yield warning("transient disagrees", message)
+    for sensor, levels in () if checked is None else checked.passed_by.items():
+        said = [f"{highest:.1f} dB in place of {level:.1f} dB" for level, highest in levels]
+        message = (
+            f"sensor {sensor} is louder between the speeds of the study than at them: the start {said[0]}, the "
+            f"proposed {'designs' if len(said) > 2 else 'design'} {', '.join(said[1:])}; give more speeds, as "
+            "neighbouring ones a per cent apart pass no resonance by"
+        )
+        yield warning("resonances between speeds", message)
 
 
 def _sides(optimised: "Optimised") -> Any:
@@ -222,6 +233,7 @@ def report(document: Document) -> Section:
         Picture("optimise-convergence", "Every design in the order of its trial, and the best so far."),
         Picture("optimise-front", "Designs by their aims: the Pareto front, the start, and the chosen ones."),
         Picture("optimise-keys", "The aim over each designed key."),
+        Picture("optimise-levels", "Start and proposed designs over the whole speed range, by the linear machine."),
     )
     return Section("Optimised design", tuple(_content(document)), pictures=pictures)
 
@@ -334,10 +346,10 @@ def _checked(document: Document) -> Iterator[str | Table]:
         {
             "of": f"{kind}{of}",
             "quantity": name,
-            **{label: _as_text(one[key].get(of), form) for label, one in solved.items()},
+            **{label: _as_text(one.get(key, {}).get(of), form) for label, one in solved.items()},
         }
         for key, kind, name, form in _MOTION_ROWS
-        for of in dict.fromkeys(of for one in solved.values() for of in one[key])
+        for of in dict.fromkeys(of for one in solved.values() for of in one.get(key, ()))
     ]
     columns = (Column("of", "of"), Column("quantity", "quantity"), *(Column(label, _cell(label)) for label in solved))
     speeds = ", ".join(f"{speed:.5g}" for speed in checked["speeds_rpm"])
@@ -347,10 +359,12 @@ def _checked(document: Document) -> Iterator[str | Table]:
 
 
 _MOTION_ROWS = (
-    ("linear_level_db", "sensor ", "mesh harmonics, linear [dB re 1 µm/s²]", ".1f"),
+    ("linear_level_db", "sensor ", "lines of the teeth, linear [dB re 1 µm/s²]", ".1f"),
     ("motion_level_db", "sensor ", "transient [dB re 1 µm/s²]", ".1f"),
     ("peak_force_ratio", "", "largest tooth force / mean", ".3f"),
     ("contact_loss", "", "part of the time apart", ".3f"),
+    ("highest_level_db", "sensor ", "highest over the speed range, linear [dB re 1 µm/s²]", ".1f"),
+    ("loudest_speed_rpm", "sensor ", "at the speed [rpm]", ".0f"),
 )
 """Key of a motion in the document, the kind of what it is of, its name and form."""
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.files import file_stems
-from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results.bearing_lives import life_quantities
 from gearwhine.results.housing import COUNT_CERTIFICATE
@@ -74,13 +74,12 @@ def _most_strained(row: _Whirl) -> Any:
 
 def _strain(kind: str) -> Quantity:
     """Declare the shares of one kind of part in the strain energy of whirl modes."""
-    return Quantity(
-        "",
-        lambda row: _strain_shares(row).get(kind),
+    return in_file(
         f"whirl_{kind}_strain_share",
         ("whirl_number", f"strained_{kind}"),
+        lambda row: _strain_shares(row).get(kind),
+        f"share of a {kind} in the strain energy of the whirl mode",
         "1",
-        long_name=f"share of a {kind} in the strain energy of the whirl mode",
     )
 
 
@@ -122,7 +121,7 @@ CRITICAL_SPEEDS = (
 """Damped critical speeds of a rotor for one order, or why there are none."""
 
 WHIRL = (
-    Quantity("", lambda row: f"{row.solved.rotor.name} at {row.whirl.speed * RPM:.6g} rpm", "whirl_state"),
+    in_file("whirl_state", "", lambda row: f"{row.solved.rotor.name} at {row.whirl.speed * RPM:.6g} rpm"),
     Quantity("speed_rpm", "whirl.speed", "whirl_speed"),
     Quantity("frequency_hz", "whirl.frequencies", "whirl_frequency", ("whirl_number",)),
     Quantity("damping_ratio", "whirl.damping_ratios"),
@@ -140,10 +139,10 @@ WHIRL = (
 _STEPS = ("campbell_step", "whirl_branch")
 CAMPBELL = (
     Quantity("speed_rpm", "campbell.speeds", "campbell_speed", _STEPS[:1]),
-    Quantity("", "campbell.frequencies", "campbell_frequency", _STEPS, "Hz"),
-    Quantity("", "campbell.log_decrements", "campbell_log_decrement", _STEPS, "1"),
-    Quantity("", "campbell.direction", "campbell_direction", _STEPS, "1"),
-    Quantity("", "campbell.axial_share", "campbell_axial_share", _STEPS, "1"),
+    in_file("campbell_frequency", _STEPS, "campbell.frequencies", unit="Hz"),
+    in_file("campbell_log_decrement", _STEPS, "campbell.log_decrements", unit="1"),
+    in_file("campbell_direction", _STEPS, "campbell.direction", unit="1"),
+    in_file("campbell_axial_share", _STEPS, "campbell.axial_share", unit="1"),
     Quantity("unstable_from_rpm", "campbell.unstable_from"),
     Quantity("proved_at_rpm", lambda solved: solved.campbell.speeds[solved.campbell.proved] * RPM),
     Part("", lambda solved: _Order(solved, 1.0, solved.crossings), CRITICAL_SPEEDS),
@@ -195,7 +194,7 @@ class _Rolling(NamedTuple):
 
 
 ROLLING = (
-    Quantity("", "label", "rolling_bearing"),
+    in_file("rolling_bearing", "", "label"),
     Quantity("name", heading="bearing"),
     Quantity(
         "load_n",
@@ -226,7 +225,7 @@ ROLLING = (
 )
 """Quantities of a rolling bearing under its load."""
 
-_PLANE = Quantity("", lambda _: ["x", "y"], "plane", ("plane",), common=True)
+_PLANE = in_file("plane", "plane", lambda _: ["x", "y"], common=True)
 _SAG = ("static_step",)
 
 
@@ -255,8 +254,8 @@ STATIC = (
     ),
     Quantity("largest_deflection_m", "weight.largest.0"),
     Quantity("largest_deflection_at_m", "weight.largest.1"),
-    Quantity("", "weight.places", "static_place", _SAG, "m"),
-    Quantity("", "weight.displacement", "static_deflection", ("plane", *_SAG), "m"),
+    in_file("static_place", _SAG, "weight.places", unit="m"),
+    in_file("static_deflection", ("plane", *_SAG), "weight.displacement", unit="m"),
     _PLANE,
 )
 """Bearing loads under gravity and constant forces, and the shaft's sag."""
@@ -272,14 +271,14 @@ class _Probe(NamedTuple):
 
 
 PROBE = (
-    Quantity("", "reading.label", "probe"),
-    Quantity("", "reading.speeds", "response_speed", _PROBE, "rpm"),
+    in_file("probe", "", "reading.label"),
+    in_file("response_speed", _PROBE, "reading.speeds", unit="rpm"),
     Quantity("name", "reading.probe.name"),
     Quantity("at_m", "reading.probe.at"),
     Quantity("angle_deg", "reading.probe.angle"),
-    Quantity("", "reading.size", "probe_amplitude", _PROBE, "m"),
-    Quantity("", "reading.phase_lag", "probe_phase_lag", _PROBE, "rad"),
-    Quantity("", "reading.major_axis", "orbit_major_axis", _PROBE, "m"),
+    in_file("probe_amplitude", _PROBE, "reading.size", unit="m"),
+    in_file("probe_phase_lag", _PROBE, "reading.phase_lag", unit="rad"),
+    in_file("orbit_major_axis", _PROBE, "reading.major_axis", unit="m"),
     Quantity("largest_amplitude_m", "reading.largest.0"),
     Quantity("largest_at_rpm", "reading.largest.1"),
     Quantity("operation_amplitude_m", "at_operation.size.0"),
@@ -321,13 +320,11 @@ RESPONSE = (
             for place, name in enumerate(solved.response.bearings)
         ],
         (
-            Quantity("", "name", "unbalance_bearing"),
+            in_file("unbalance_bearing", "", "name"),
             Quantity("name"),
             Quantity("largest_force_n", lambda row: row.force.max(axis=1)),
-            Quantity("", "force", "unbalance_bearing_force", ("plane", *_PROBE), "N"),
-            Quantity(
-                "", "solved.response.speeds", "unbalance_bearing_speed", _PROBE, "rpm", long_name="speed of the rotor"
-            ),
+            in_file("unbalance_bearing_force", ("plane", *_PROBE), "force", unit="N"),
+            in_file("unbalance_bearing_speed", _PROBE, "solved.response.speeds", "speed of the rotor", "rpm"),
             _PLANE,
         ),
         "unbalance_bearing",
@@ -337,14 +334,14 @@ RESPONSE = (
 
 _TORSION = ("torsion_step",)
 TORSION_PROBE = (
-    Quantity("", "label", "torsion_probe"),
-    Quantity("", "frequencies", "torsion_frequency", _TORSION, "Hz"),
+    in_file("torsion_probe", "", "label"),
+    in_file("torsion_frequency", _TORSION, "frequencies", unit="Hz"),
     Quantity("name", "probe.name"),
     Quantity("at_m", "probe.at"),
-    Quantity("", "angle_size", "torsion_angle", _TORSION, "rad"),
-    Quantity("", "angle_phase", "torsion_angle_phase", _TORSION, "rad"),
-    Quantity("", "torque_size", "torsion_torque", _TORSION, "N m"),
-    Quantity("", "torque_phase", "torsion_torque_phase", _TORSION, "rad"),
+    in_file("torsion_angle", _TORSION, "angle_size", unit="rad"),
+    in_file("torsion_angle_phase", _TORSION, "angle_phase", unit="rad"),
+    in_file("torsion_torque", _TORSION, "torque_size", unit="N m"),
+    in_file("torsion_torque_phase", _TORSION, "torque_phase", unit="rad"),
     Quantity("largest_angle_rad", "largest_angle.0"),
     Quantity("largest_angle_at_hz", "largest_angle.1"),
     Quantity("largest_torque_n_m", "largest_torque.0"),
@@ -367,13 +364,12 @@ TORSION = (
 
 def _rest_strain(kind: str, place: int) -> Quantity:
     """Declare the shares of one kind of part in the strain energy of planar modes."""
-    return Quantity(
-        "",
-        lambda solved: solved.lateral.strain_energy_shares(solved.rotor.joints)[place],
+    return in_file(
         f"rotor_{kind}_strain_share",
         ("lateral_mode", f"strained_{kind}"),
+        lambda solved: solved.lateral.strain_energy_shares(solved.rotor.joints)[place],
+        f"share of a {kind} in the strain energy of the lateral mode",
         "1",
-        long_name=f"share of a {kind} in the strain energy of the lateral mode",
     )
 
 
@@ -407,7 +403,7 @@ ROTOR = (
     Quantity("mass_kg", "rotor.mass", heading="mass [kg]", shown=".3f"),
     Quantity("length_m", "rotor.length"),
     Quantity("bearings", lambda solved: [bearing.name for bearing in solved.bearings]),
-    Quantity("", "rest.frequencies", "rotor_rest_frequency", ("rest_mode",), "Hz"),
+    in_file("rotor_rest_frequency", "rest_mode", "rest.frequencies", unit="Hz"),
     Quantity("lateral_hz", "bending_frequencies", heading="bending at rest [Hz]", shown=".1f"),
     Quantity("lateral_axial_share", "bending_axial_share"),
     Quantity(
@@ -419,16 +415,16 @@ ROTOR = (
         shown=".1f",
     ),
     Quantity("axial_hz", heading="along the axis [Hz]", shown=".1f"),
-    Quantity("", "places", "rotor_place", ("place",), "m"),
-    Quantity("", "lateral_shapes", "rotor_lateral_shape", ("lateral_mode", "place"), "kg-0.5"),
-    Quantity("", "torsional_shapes", "rotor_torsional_shape", ("torsional_mode", "place"), "kg-0.5 m-1"),
+    in_file("rotor_place", "place", "places", unit="m"),
+    in_file("rotor_lateral_shape", "lateral_mode place", "lateral_shapes", unit="kg-0.5"),
+    in_file("rotor_torsional_shape", "torsional_mode place", "torsional_shapes", unit="kg-0.5 m-1"),
     _rest_strain("segment", 0),
     _rest_strain("bearing", 1),
     Quantity("rest_bearings_at_rpm", "rest_speed"),
     Quantity("operation_rpm"),
     Rows("whirl", lambda solved: [_Whirl(solved, whirl) for whirl in solved.whirl], WHIRL, "whirl_state"),
-    Quantity("", "whirl_deflection", "rotor_whirl_deflection", ("whirl_mode", "place"), "kg-0.5"),
-    Quantity("", "whirl_moment", "rotor_whirl_moment", ("whirl_mode", "place"), "N kg-0.5"),
+    in_file("rotor_whirl_deflection", "whirl_mode place", "whirl_deflection", unit="kg-0.5"),
+    in_file("rotor_whirl_moment", "whirl_mode place", "whirl_moment", unit="N kg-0.5"),
     Quantity("critical_speeds_rpm", "critical.speeds", heading="critical speeds [rpm]", shown=".0f"),
     Quantity("critical_directions", lambda solved: solved.critical.direction.round(6)),
     Quantity("critical_axial_share", "critical.axial_share"),
@@ -465,7 +461,7 @@ def _numbers(dimension: str, of: Any, kind: str) -> Quantity:
         count = max((len(modes) for modes in map(of, solved) if modes is not None), default=0)
         return np.arange(1, count + 1) if count else None
 
-    return Quantity("", numbers, dimension, (dimension,), "1", long_name=f"number of the {kind}")
+    return in_file(dimension, (dimension,), numbers, f"number of the {kind}", "1")
 
 
 ROTORS = (

@@ -13,7 +13,7 @@ from gearwhine.coupling.signals.peaks import Peak
 from gearwhine.coupling.signals.spectrum import at_time_zero
 from gearwhine.coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.housing.storage.netcdf import Variables, reserve_space
-from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison, condition, operating_point, sound
 from gearwhine.results.housing import line_picture, modes_sentence
@@ -447,22 +447,20 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
             ("frequency",),
             *_HERTZ_LONG,
         ),
-        Quantity(
-            "",
-            lambda row: of_each(row, "amplitude"),
+        in_file(
             name,
             (dimension, "frequency"),
+            lambda row: of_each(row, "amplitude"),
+            f"peak amplitude of {quantity}",
             unit,
-            long_name=f"peak amplitude of {quantity}",
             attributes=attributes,
         ),
-        Quantity(
-            "",
-            phases,
+        in_file(
             f"{name}_phase",
             (dimension, "frequency"),
+            phases,
+            f"phase of {quantity}: the cosine's at t = 0",
             "rad",
-            long_name=f"phase of {quantity}: the cosine's at t = 0",
             attributes=_trusted,
         ),
     )
@@ -470,33 +468,30 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
 
 def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, quantity: str) -> Quantity:
     """Peak amplitudes of the loads on bearings; ``rows`` of x, y, z and the moments about x and y."""
-    return Quantity(
-        "",
+    return in_file(
+        f"bearing_{name}_spectrum",
+        ("bearing", *axis, "frequency"),
         lambda row: (
             {label: load[rows] for label, load in row.signature.bearing_amplitudes(row.transient).items()} or None
         ),
-        f"bearing_{name}_spectrum",
-        ("bearing", *axis, "frequency"),
+        f"peak amplitude of the {quantity}",
         unit,
-        long_name=f"peak amplitude of the {quantity}",
         attributes=lambda row: {"window": next(iter(row.signature.bearing_spectra.values())).window} | _trusted(row),
     )
 
 
-_COMPLEX = Quantity("", lambda table: ["real", "imaginary"], "part", ("part",))
+_COMPLEX = in_file("part", "part", lambda table: ["real", "imaginary"])
 _LINE = ("sensor", "line")
 LINES = (
-    Quantity("", "ranks", "line", ("line",), "1"),
+    in_file("line", "line", "ranks", unit="1"),
     _COMPLEX,
-    Quantity("", "modes", "mode_path", ("mode_path",)),
-    Quantity("", "bearings", "bearing_path", ("bearing_path",)),
-    Quantity(
-        "", lambda table: table.frequency, "line_frequency", _LINE, "Hz", long_name="frequency of the sensor's line"
-    ),
-    Quantity("", "names", "line_name", _LINE),
-    Quantity("", "value", "line_amplitude", (*_LINE, "part"), "m/s2"),
-    Quantity("", "by_mode", "line_by_mode", (*_LINE, "mode_path", "part"), "m/s2"),
-    Quantity("", "by_bearing", "line_by_bearing", (*_LINE, "bearing_path", "part"), "m/s2"),
+    in_file("mode_path", "mode_path", "modes"),
+    in_file("bearing_path", "bearing_path", "bearings"),
+    in_file("line_frequency", _LINE, lambda table: table.frequency, "frequency of the sensor's line", "Hz"),
+    in_file("line_name", _LINE, "names"),
+    in_file("line_amplitude", (*_LINE, "part"), "value", unit="m/s2"),
+    in_file("line_by_mode", (*_LINE, "mode_path", "part"), "by_mode", unit="m/s2"),
+    in_file("line_by_bearing", (*_LINE, "bearing_path", "part"), "by_bearing", unit="m/s2"),
 )
 """Quantities of the lines of all sensors with their parts."""
 
@@ -515,15 +510,14 @@ def _modal_spectrum(row: TracedTransient) -> _ModalSpectrum | None:
 
 
 MODAL = (
-    Quantity("", "names", "modal_coordinate", ("modal_coordinate",)),
+    in_file("modal_coordinate", "modal_coordinate", "names"),
     Quantity("", lambda row: row.spectrum.frequencies, "frequency", ("frequency",), *_HERTZ_LONG),
-    Quantity(
-        "",
-        "spectrum.amplitude",
+    in_file(
         "modal_displacement_spectrum",
-        ("modal_coordinate", "frequency"),
+        "modal_coordinate frequency",
+        "spectrum.amplitude",
+        f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
         "m kg0.5",
-        long_name=f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
         attributes=lambda row: {"window": row.spectrum.window, "trusted_below_hz": row.limit},
     ),
 )
@@ -547,13 +541,12 @@ def _housing_lines(signature: "SolvedSignature", limit_hz: float) -> _HousingLin
 HOUSING_LINES = (
     Quantity("", lambda row: row.frequencies, "housing_line", ("housing_line",), *_HERTZ_LONG),
     _COMPLEX,
-    Quantity(
-        "",
-        lambda row: np.stack([row.lines.real, row.lines.imag], axis=-1),
+    in_file(
         "housing_acceleration_spectrum",
-        ("housing_mode", "housing_line", "part"),
+        "housing_mode housing_line part",
+        lambda row: np.stack([row.lines.real, row.lines.imag], axis=-1),
+        "complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
         "m kg0.5 s-2",
-        long_name="complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
         attributes=lambda row: {"window": row.window, "record_start_s": row.record_start},
     ),
 )
@@ -654,15 +647,14 @@ def _run_attributes(signature: "RunSignature") -> dict[str, Any]:
 
 
 def _run_table(name: str, tables: str, dimensions: tuple[str, ...], quantity: str) -> Quantity:
-    return Quantity(
-        "",
+    return in_file(
+        name,
+        ("run_signal", *dimensions),
         lambda signature: np.array(
             [table.amplitude for table in getattr(signature, tables).values()], dtype=np.float32
         ),
-        name,
-        ("run_signal", *dimensions),
+        f"peak amplitude {quantity}",
         _EACH_UNIT,
-        long_name=f"peak amplitude {quantity}",
         attributes=_run_attributes,
     )
 
@@ -679,61 +671,52 @@ RUN_SIGNATURE = (
     Quantity("trusted_below_hz", lambda signature: signature.limit),
     Rows("orders", lambda signature: signature.highest(), ORDER),
     Rows("overall", lambda signature: signature.loudest(), OVERALL),
-    Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
-    Quantity("", "speeds_rpm", "run_speed", ("run_speed",), "rpm"),
+    in_file("run_signal", "run_signal", lambda signature: list(signature.spectra)),
+    in_file("run_speed", "run_speed", "speeds_rpm", unit="rpm"),
     Quantity(
         "", lambda signature: _first(signature.spectra).frequencies, "run_frequency", ("run_frequency",), *_HERTZ_LONG
     ),
-    Quantity(
-        "",
-        lambda signature: 60.0 * _first(signature.orders).speeds,
+    in_file(
         "order_speed",
-        ("order_speed",),
+        "order_speed",
+        lambda signature: 60.0 * _first(signature.orders).speeds,
+        "speed of the leading shaft in the middle of each window",
         "rpm",
-        long_name="speed of the leading shaft in the middle of each window",
     ),
-    Quantity(
-        "",
-        lambda signature: _first(signature.orders).orders,
+    in_file(
         "order",
-        ("order",),
+        "order",
+        lambda signature: _first(signature.orders).orders,
+        "cycles each turn of the leading shaft",
         "1",
-        long_name="cycles each turn of the leading shaft",
     ),
-    Quantity(
-        "",
-        lambda signature: list(signature.units.values()),
-        "run_unit",
-        ("run_signal",),
-        long_name="unit of the signal's amplitudes",
+    in_file(
+        "run_unit", "run_signal", lambda signature: list(signature.units.values()), "unit of the signal's amplitudes"
     ),
     _run_table("run_spectrum", "spectra", ("run_speed", "run_frequency"), "of stretches along the run"),
-    Quantity(
-        "",
-        lambda signature: np.array(list(signature.overall.values()), dtype=np.float32),
+    in_file(
         "run_overall",
-        ("run_signal", "run_speed"),
+        "run_signal run_speed",
+        lambda signature: np.array(list(signature.overall.values()), dtype=np.float32),
+        "root mean square over the lines of each stretch, without the mean",
         _EACH_UNIT,
-        long_name="root mean square over the lines of each stretch, without the mean",
         attributes=_run_attributes,
     ),
     _run_table("run_orders", "orders", ("order_speed", "order"), "by order along the run"),
-    Quantity("", lambda signature: list(signature.named), "named_order", ("named_order",)),
-    Quantity(
-        "",
-        lambda signature: list(signature.named.values()),
+    in_file("named_order", "named_order", lambda signature: list(signature.named)),
+    in_file(
         "run_order_number",
-        ("named_order",),
+        "named_order",
+        lambda signature: list(signature.named.values()),
+        "cycles each turn of the leading shaft",
         "1",
-        long_name="cycles each turn of the leading shaft",
     ),
-    Quantity(
-        "",
-        lambda signature: signature.followed().astype(np.float32),
+    in_file(
         "run_order_amplitude",
-        ("run_signal", "named_order", "order_speed"),
+        "run_signal named_order order_speed",
+        lambda signature: signature.followed().astype(np.float32),
+        "peak amplitude of a shaft's or a mesh's order along the run",
         _EACH_UNIT,
-        long_name="peak amplitude of a shaft's or a mesh's order along the run",
         attributes=_run_attributes,
     ),
 )

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.acoustics.sound_levels import BOX_MICROPHONES, power_level, pressure_level
-from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import (
     Column,
     Document,
@@ -142,7 +142,7 @@ def _of_lines(name: str, of: Any, unit: str, long_name: str) -> Quantity:
     def values(solved: "SolvedSound") -> Any:
         return np.array([of(line) for line in solved.lines])
 
-    return Quantity("", values, name, ("sound_line",), unit, long_name=long_name)
+    return in_file(name, "sound_line", values, long_name, unit)
 
 
 ENTRY = (
@@ -421,27 +421,25 @@ SOUND = (
     Rows("microphones", _microphones, MICROPHONE, "microphone"),
     Quantity("box_power_db", "box_level_db"),
     Quantity("microphone_error", "histories.error"),
-    Quantity("", "histories.times", "microphone_time", ("microphone_time",), "s", long_name="time", common=True),
-    Quantity(
-        "",
-        "histories.pressure",
+    in_file("microphone_time", "microphone_time", "histories.times", "time", "s", common=True),
+    in_file(
         "microphone_pressure",
-        ("microphone", "microphone_time"),
+        "microphone microphone_time",
+        "histories.pressure",
+        "sound pressure at the microphone",
         "Pa",
-        long_name="sound pressure at the microphone",
     ),
     _of_lines("sound_frequency", lambda line: line.frequency_hz, "Hz", "frequency of the line"),
-    Quantity(
-        "",
+    in_file(
+        "sound_known_source_error",
+        "sound_line",
         lambda solved: (
             np.array([np.nan if line.known_source is None else line.known_source.largest for line in solved.lines])
             if any(line.known_source is not None for line in solved.lines)
             else None
         ),
-        "sound_known_source_error",
-        ("sound_line",),
+        "largest error of a known source's pressure on the surface at the frequency of the line",
         "1",
-        long_name="largest error of a known source's pressure on the surface at the frequency of the line",
     ),
     _of_lines("sound_name", lambda line: line.name, "", "name of the line"),
     _of_lines("sound_order", lambda line: line.order, "1", "order over the speed of the first driver"),
@@ -452,27 +450,25 @@ SOUND = (
         "W",
         "equivalent radiated power of the line",
     ),
-    Quantity("", lambda solved: list(solved.microphones) or None, "microphone", ("microphone",), common=True),
-    Quantity(
-        "",
-        lambda solved: np.array(list(solved.microphones.values())) if solved.microphones else None,
+    in_file("microphone", "microphone", lambda solved: list(solved.microphones) or None, common=True),
+    in_file(
         "microphone_position",
-        ("microphone", "coordinate"),
+        "microphone coordinate",
+        lambda solved: np.array(list(solved.microphones.values())) if solved.microphones else None,
+        "position of the microphone",
         "m",
-        long_name="position of the microphone",
         common=True,
     ),
-    Quantity(
-        "",
+    in_file(
+        "sound_pressure",
+        "sound_line microphone part",
         lambda solved: (
             np.array([[np.stack([v.real, v.imag], -1) for v in line.microphones] for line in solved.lines])
             if solved.microphones and solved.lines
             else None
         ),
-        "sound_pressure",
-        ("sound_line", "microphone", "part"),
+        "complex amplitude of the sound pressure",
         "Pa",
-        long_name="complex amplitude of the sound pressure",
     ),
 )
 """Quantities of the sound of a case."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 
 from gearwhine.coupling.signals.line_names import line_names
-from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
+from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of, in_file
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.motion import (
@@ -168,9 +168,7 @@ def _multipliers(row: _Motion) -> Any:
 
 def _signals(of: Any, name: str, dimension: str, unit: str, long_name: str) -> Quantity:
     """One period of the signals of a motion."""
-    return Quantity(
-        "", lambda row: of(row.motion.histories) or None, name, (dimension, "period_time"), unit, long_name=long_name
-    )
+    return in_file(name, (dimension, "period_time"), lambda row: of(row.motion.histories) or None, long_name, unit)
 
 
 def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], unit: str, long_name: str) -> Part:
@@ -179,33 +177,29 @@ def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], uni
         "",
         ".",
         (
-            Quantity("", lambda row: list(labels), along, (along,), common=True),
-            Quantity(
-                "",
-                lambda row: {name: load[:, rows].T for name, load in row.motion.histories.bearing_load.items()} or None,
+            in_file(along, (along,), lambda row: list(labels), common=True),
+            in_file(
                 f"steady_bearing_{kind}",
                 ("bearing", along, "period_time"),
+                lambda row: {name: load[:, rows].T for name, load in row.motion.histories.bearing_load.items()} or None,
+                long_name,
                 unit,
-                long_name=long_name,
             ),
         ),
     )
 
 
 MOTION = (
-    Quantity("", "number", "steady_motion", unit="1", long_name="motion at operation"),
-    Quantity(
-        "", "motion.histories.times", "period_time", ("period_time",), "s", long_name="time in the period", common=True
-    ),
-    Quantity("", "motion.response.stable", "steady_stable"),
-    Quantity("", lambda row: ["real", "imaginary"], "part", ("part",), common=True),
-    Quantity(
-        "",
-        _multipliers,
+    in_file("steady_motion", "", "number", "motion at operation", "1"),
+    in_file("period_time", "period_time", "motion.histories.times", "time in the period", "s", common=True),
+    in_file("steady_stable", "", "motion.response.stable"),
+    in_file("part", "part", lambda row: ["real", "imaginary"], common=True),
+    in_file(
         "floquet_multiplier",
-        ("multiplier", "part"),
+        "multiplier part",
+        _multipliers,
+        "Floquet multiplier: growth of a disturbance in a period",
         "1",
-        long_name="Floquet multiplier: growth of a disturbance in a period",
     ),
     _signals(
         lambda histories: histories.mesh_force,
@@ -246,20 +240,19 @@ def _resampled(of: Any, name: str, dimension: str, unit: str, quantity: str) -> 
         return {label: motion.resampled(signal, samples) for label, signal in of(motion.histories).items()} or None
 
     whole = f"{quantity} in the motion of each group of excitations"
-    return Quantity("", values, f"excitation_{name}", (dimension, "period_part"), unit, long_name=whole)
+    return in_file(f"excitation_{name}", (dimension, "period_part"), values, whole, unit)
 
 
 EXCITATION = (
     Quantity("name", "motion.excitation", "excitation"),
-    Quantity("", "motion.response.period", "excitation_period", unit="s", long_name="period of the motion"),
-    Quantity("", "motion.response.stable", "excitation_stable"),
-    Quantity(
-        "",
-        lambda row: np.arange(row.samples) / row.samples,
+    in_file("excitation_period", "", "motion.response.period", "period of the motion", "s"),
+    in_file("excitation_stable", "", "motion.response.stable"),
+    in_file(
         "period_part",
-        ("period_part",),
+        "period_part",
+        lambda row: np.arange(row.samples) / row.samples,
+        "time as a part of the motion's period",
         "1",
-        long_name="time as a part of the motion's period",
         common=True,
     ),
     _resampled(
@@ -298,13 +291,12 @@ _POINT = ("branch_point",)
 
 
 def _of_contacts(name: str, of: Any, unit: str, long_name: str) -> Quantity:
-    return Quantity(
-        "",
-        lambda solved: of(solved.curve) if solved.machine.system.contacts else None,
+    return in_file(
         f"branch_{name}",
         (*_POINT, "contact"),
+        lambda solved: of(solved.curve) if solved.machine.system.contacts else None,
+        long_name,
         unit,
-        long_name=long_name,
     )
 
 
@@ -369,15 +361,11 @@ CURVE = (
     ),
     Quantity("gaps_rpm", lambda solved: [[end * RPM for end in gap] for gap in solved.curve.gaps]),
     Quantity("account", lambda solved: solved.curve.description(1.0 / RPM, "rpm")),
-    Quantity(
-        "", lambda solved: [contact.name for contact in solved.machine.system.contacts] or None, "contact", ("contact",)
-    ),
+    in_file("contact", "contact", lambda solved: [contact.name for contact in solved.machine.system.contacts] or None),
     _of_contacts("compression", lambda curve: curve.rms_compression, "m", "a.c. rms of the compression of the mesh"),
     _of_contacts("peak_force", lambda curve: curve.peak_force, "N", "largest gear-mesh force"),
     _of_contacts("contact_loss", lambda curve: curve.contact_loss, "1", "part of the period that the flanks are apart"),
-    Quantity(
-        "", _sensor_rms, "branch_sensor_rms", (*_POINT, "sensor"), "m/s2", long_name="rms of the sensor's acceleration"
-    ),
+    in_file("branch_sensor_rms", (*_POINT, "sensor"), _sensor_rms, "rms of the sensor's acceleration", "m/s2"),
     Rows(
         "gear_pairs",
         lambda solved: [
@@ -398,14 +386,13 @@ CURVE = (
     Quantity("assumed_mesh_damping", lambda solved: list(solved.assumed_damping)),
     Rows("loudest", "loudest", LOUDEST),
     Rows("bifurcations", "curve.bifurcations", EVENT),
-    Quantity("", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)),
-    Quantity(
-        "",
-        lambda solved: np.array([event.speed for event in solved.curve.bifurcations]) * RPM,
+    in_file("branch_event", "branch_event", lambda solved: [event.kind for event in solved.curve.bifurcations]),
+    in_file(
         "branch_event_speed",
-        ("branch_event",),
+        "branch_event",
+        lambda solved: np.array([event.speed for event in solved.curve.bifurcations]) * RPM,
+        "where the branch turns or its stability changes",
         "rpm",
-        long_name="where the branch turns or its stability changes",
     ),
 )
 """Quantities of the branch over speed."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Getter, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Getter, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
@@ -106,7 +106,7 @@ def _of_components(name: str, long_name: str, of: Any) -> Quantity:
         names = [component.name for component in system.machine.system.components]
         return dict(zip(names, of(system.modes)[mode].tolist(), strict=True))
 
-    return Quantity("", values, f"system_{name}", ("machine_component",), "1", long_name=long_name)
+    return in_file(f"system_{name}", "machine_component", values, long_name, "1")
 
 
 def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
@@ -117,7 +117,7 @@ def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
         names = [f"{part.kind}: {part.name}" for part in system.modes.shares.parts]
         return dict(zip(names, of(system.modes.shares)[mode].tolist(), strict=True))
 
-    return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name=long_name)
+    return in_file(f"system_{name}", "machine_part", values, long_name, "1")
 
 
 def _turning(of: Callable[[complex], float]) -> Getter:
@@ -132,7 +132,7 @@ def _turning(of: Callable[[complex], float]) -> Getter:
 
 
 MODE = (
-    Quantity("", "number", "system_mode", unit="1"),
+    in_file("system_mode", "", "number", unit="1"),
     Quantity("frequency_hz", "frequency_hz", "system_frequency", heading="frequency [Hz]", shown="z.2f"),
     Quantity("damping_ratio", "damping_ratio", "system_damping_ratio", unit="1", heading="damping ratio", shown="z.4f"),
     Quantity("damped_frequency_hz"),
@@ -246,7 +246,7 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
             def values(row: _Response, part: Any = part) -> dict[str, Any] | None:
                 return {label: part(curve) for label, curve in of(row.response).items()} or None
 
-            yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, long_name=long_name)
+            yield in_file(f"{name}_{signal}_{kind}{suffix}", dimensions, values, long_name, units)
 
     def loads(columns: Any) -> Any:
         return lambda response: {label: load[:, columns] for label, load in response.bearing_load.items()}
@@ -295,21 +295,13 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
         *curves(
             lambda response: response.mesh_force, "mesh", "force", (), "N", "gear-mesh force along the line of action"
         ),
-        Quantity("", lambda row: ["x", "y"] if row.response.bearing_load else None, "plane", ("plane",), common=True),
+        in_file("plane", "plane", lambda row: ["x", "y"] if row.response.bearing_load else None, common=True),
     )
 
 
 TRANSMISSIBILITY = (
-    Quantity("", "response.excitation", "mesh_error"),
-    Quantity(
-        "",
-        lambda row: row.along,
-        "response_frequency",
-        ("response_frequency",),
-        "Hz",
-        long_name="frequency",
-        common=True,
-    ),
+    in_file("mesh_error", "", "response.excitation"),
+    in_file("response_frequency", "response_frequency", lambda row: row.along, "frequency", "Hz", common=True),
     *_response("transmissibility", "response_frequency", "frequency_hz", "m-1"),
 )
 """Quantities of the response to the error of one mesh."""
@@ -377,14 +369,13 @@ LINE = (
 """Quantities of a mesh harmonic at operation."""
 
 UNBALANCE = (
-    Quantity("", "response.excitation", "unbalance_of"),
-    Quantity(
-        "",
-        lambda row: np.abs(row.response.frequencies) / HERTZ,
+    in_file("unbalance_of", "", "response.excitation"),
+    in_file(
         "unbalance_response_frequency",
-        ("unbalance_speed",),
+        "unbalance_speed",
+        lambda row: np.abs(row.response.frequencies) / HERTZ,
+        "frequency of the motion at each speed",
         "Hz",
-        long_name="frequency of the motion at each speed",
     ),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
 )
@@ -420,13 +411,13 @@ CROSSING = (
 
 def _diagram(name: str, of: Getter, unit: str, long_name: str = "") -> Quantity:
     """Declare a quantity of every branch over speed, for the file."""
-    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name=long_name)
+    return in_file(f"system_campbell_{name}", "system_speed system_branch", of, long_name, unit)
 
 
 def _turning_diagram(name: str, of: str, unit: str, long_name: str) -> Quantity:
     """Declare a quantity of the exponents of every branch over speed, for the file; absent where no directions turn."""
     dimensions = ("system_speed", "system_branch")
-    return Quantity("", of, f"system_campbell_turning_{name}", dimensions, unit, long_name=long_name, optional=True)
+    return in_file(f"system_campbell_turning_{name}", dimensions, of, long_name, unit, optional=True)
 
 
 class _Campbell(NamedTuple):
@@ -509,19 +500,17 @@ SYSTEM = (
     Quantity("speed_rpm"),
     Quantity("mesh_phase"),
     Quantity("mesh_stiffness", _mesh_stiffness),
-    Quantity(
-        "",
-        lambda solved: [component.name for component in solved.machine.system.components],
+    in_file(
         "machine_component",
-        ("machine_component",),
-        long_name="component of the machine",
+        "machine_component",
+        lambda solved: [component.name for component in solved.machine.system.components],
+        "component of the machine",
     ),
-    Quantity(
-        "",
-        lambda solved: [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts],
+    in_file(
         "machine_part",
-        ("machine_part",),
-        long_name="component, connector or contact",
+        "machine_part",
+        lambda solved: [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts],
+        "component, connector or contact",
     ),
     Rows("modes", lambda solved: [_Mode(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"),
     Quantity("coordinates", "machine.system.size"),
@@ -547,13 +536,12 @@ SYSTEM = (
         lambda solved: ABSENT if solved.campbell is None else _Campbell(solved.campbell, solved.speed),
         CAMPBELL,
     ),
-    Quantity(
-        "",
-        lambda solved: solved.unbalance_speeds * RPM if solved.unbalance else None,
+    in_file(
         "unbalance_speed",
-        ("unbalance_speed",),
+        "unbalance_speed",
+        lambda solved: solved.unbalance_speeds * RPM if solved.unbalance else None,
+        "speed of the first driver",
         "rpm",
-        long_name="speed of the first driver",
     ),
     Rows("unbalance_response", _unbalance, UNBALANCE, "unbalance_of"),
 )

@@ -203,7 +203,12 @@ class _Keys:
             # Entries without the key have it from now on, where they take it.
             one = Input("", *self._law((there or places)[0], varied), ((key_of((there or places)[0]), 1.0),))
             text = next(one.overrides(0.5)).partition("=")[2]
-            places = [place for place in places if place in there or self._takes(f"{key_of(place)}={text}")]
+            refusals = {place: self._refusal(f"{key_of(place)}={text}") for place in places if place not in there}
+            places = [place for place in places if refusals.get(place) is None]
+            if not places:
+                raise _CannotVaryError(
+                    f"a key that some entries of the case take; none has it, and {refusals.popitem()[1]}"
+                )
         if not places:
             raise _CannotVaryError("a key that some entries of the case take")
         names = [name for place in places for name in _names(document, place)]
@@ -222,13 +227,13 @@ class _Keys:
         keys = tuple((key_of(place), _factor(document, place, varied)) for place in places)
         yield Input(key, *self._law(places[0], varied), keys, varied.words)
 
-    def _takes(self, override: str) -> bool:
-        """Whether the case takes a value at a key."""
+    def _refusal(self, override: str) -> str | None:
+        """Return why the case does not take a value at a key; None where it does."""
         try:
             self._source.changed_case([override])
-        except CaseError:
-            return False
-        return True
+        except CaseError as error:
+            return str(replace(error.problems[0], source=""))
+        return None
 
     def _law(self, place: Location, varied: Varied) -> _Law:
         """Return the law of a key; what it cannot be is said of it."""
@@ -238,7 +243,7 @@ class _Keys:
             if varied.file is not None:
                 return (*_of_file(varied.file, varied.column, self._files), ())
             if varied.fit is not None:
-                return (*_of_fit(look_up(self._document, place), varied.fit, key_of(place)), ())
+                return (*_of_fit(look_up(self._document, place), varied, key_of(place)), ())
             if varied.tolerance_class is not None:
                 law = self._of_class(varied.tolerance_class, place)
                 return law, "m" if isinstance(law, Pitches) else "um", ()
@@ -323,12 +328,24 @@ def _rows_of(path: Path) -> list[list[str]]:
         return [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
 
 
-def _of_fit(written: object, zone: str, key: str) -> tuple[Normal, str]:
-    """Return the distribution of a length in a tolerance zone [mm]."""
-    nominal = si_amount(written)
-    if nominal is None or nominal <= 0.0:
-        raise ValueError(f"a key with a length in the case, about which the zone lies; {key} has none")
-    low, high = (_MILLIMETRES * (nominal + deviation) for deviation in limit_deviations(zone, nominal))
+def _of_fit(written: object, varied: Varied, key: str) -> tuple[Normal, str]:
+    """Return the distribution of a length in a tolerance zone, or of an interference by one of its two parts [mm]."""
+    zone, nominal = varied.fit or "", si_amount(written)
+    if varied.size is None:
+        if nominal is None or nominal <= 0.0:
+            expected = "a key with a length in the case, about which the zone lies, or the nominal 'size' of an"
+            raise ValueError(f"{expected} interference; {key} has none")
+        deviations = limit_deviations(zone, nominal)
+    else:
+        size = si_amount(varied.size)
+        if size is None or size <= 0.0:
+            raise ValueError(f"a length above 0 with its unit as the nominal 'size' of {key}")
+        if not key.endswith("interference"):
+            raise ValueError(f"no 'size' of {key}, which is no interference of two parts")
+        nominal, deviations = nominal or 0.0, limit_deviations(zone, size)
+        if zone[:1].isupper():
+            deviations = -deviations[1], -deviations[0]
+    low, high = (_MILLIMETRES * (nominal + deviation) for deviation in deviations)
     return Normal(0.5 * (low + high), 0.5 * (high - low) / _THIRD, low, high), "mm"
 
 

@@ -177,10 +177,10 @@ class RollingElements:
         rows = [row.energy(q) for row in self.contacts]
         value, load = sum(row.value for row in rows), sum(row.force for row in rows)
         preload = self.bearing.axial_preload
-        gradient, hessian = np.zeros(5), np.zeros((5, 5))
-        for row in rows:
-            gradient += row.gradient
-            hessian += row.hessian
+        gradient, hessian = rows[0].gradient, rows[0].hessian
+        for row in rows[1:]:
+            gradient, hessian = gradient + row.gradient, hessian + row.hessian
+        gradient = gradient.copy()
         gradient[2] -= preload
         work = preload * float(q[2])
         local = Local(

@@ -10,6 +10,7 @@ Forces of the elements and the 5x5 bearing stiffness follow in :mod:`gearwhine.r
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Literal
 
@@ -101,7 +102,7 @@ class RollingBearing:
         """Whether the inside of any row is an estimate."""
         return any(row.estimated for row in self.rows)
 
-    @property
+    @cached_property
     def force_scale(self) -> float:
         """E* D² of the smallest element, a force far above its capacity [N]."""
         return min(row.elasticity.contact_modulus * row.element_diameter**2 for row in self.rows)
@@ -115,7 +116,7 @@ class RollingBearing:
         outer = max(row.pitch_diameter + row.element_diameter for row in self.rows)
         return left, right, 0.5 * inner, 0.5 * outer
 
-    @property
+    @cached_property
     def largest_element(self) -> float:
         """Largest diameter of an element [m]."""
         return max(row.element_diameter for row in self.rows)

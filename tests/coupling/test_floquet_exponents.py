@@ -8,6 +8,7 @@ from scipy.linalg import expm
 
 from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.assembly import assemble_machine
+from gearwhine.coupling.linear import campbell
 from gearwhine.coupling.linear.campbell import system_campbell
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.floquet_exponents import floquet_exponents, observed_frequencies
@@ -114,7 +115,9 @@ def test_frozen_coordinates_of_the_carrier_are_exact_where_all_is_alike_all_roun
 
 
 @pytest.mark.slow
-def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordinates() -> None:
+def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordinates(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Equal planets on isotropic supports: in the frame of the carrier nothing turns, and eigenvalues are exact."""
     frame, still = (isotropic_machine(1500.0, standing=standing) for standing in (False, True))
     assert frame.leading_rotor == still.leading_rotor
@@ -134,6 +137,11 @@ def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordi
     assert diagram.exponents is not None
     assert diagram.observed is None  # as nothing has a sensor
     assert diagram.turning_frequencies_hz == pytest.approx(diagram.exponents.imag / (2.0 * np.pi), nan_ok=True)
+    # Of more modes the lowest are solved, and the others have no frequency.
+    monkeypatch.setattr(campbell, "_TURNING_MODES", 3)
+    few = system_campbell(still, speeds, frequency_limit=1.2e4)
+    assert few.turning_frequencies_hz is not None
+    assert np.count_nonzero(np.isfinite(few.turning_frequencies_hz), axis=1).tolist() == [3, 3]
     checked = 0
     for number, speed in enumerate((ratio * speeds).tolist()):
         families = (exact.eigenvalues[number][:, None] + 1j * speed * np.arange(-4, 5)).ravel()

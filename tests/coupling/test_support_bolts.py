@@ -6,9 +6,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from gearwhine.coupling import CouplingError, Machine, SupportBolt, TorqueSupport
+from gearwhine.coupling import CouplingError, Machine, MountedBearing, SupportBolt, TorqueSupport
+from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.coupling.statics.operating_point import OperatingPoint, SupportLoad
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.rotors import Bearing
 from tests.machines.plane_planetary_set import STEEL, equal_angles, plane_set
 
 FloatArray = npt.NDArray[np.float64]
@@ -105,6 +108,39 @@ def test_the_motion_rests_where_the_equilibrium_is() -> None:
     force = connector.stiffness @ connector.directions.T @ static_equilibrium(system)
     assert force[[0, 1]] == pytest.approx(expected[[0, 1]], abs=0.01 * abs(expected[5]) / RADIUS)
     assert force[5] == pytest.approx(expected[5], rel=1e-6)
+
+
+def test_planets_pass_bolts_that_stand_still() -> None:
+    """Bolts alike in pairs have no coupling of turn and shift: a bearing of their matrix and a spring do the same."""
+    bolts = tuple(
+        SupportBolt(RADIUS, angle, k, 0.5 * k, 1.5 * k)
+        for angle, k in zip(equal_angles(6).tolist(), [4e8, 1e8, 1e8] * 2, strict=True)
+    )
+    machine = bolted(bolts)
+    matrix = machine.torque_supports[0].stiffness_matrix
+    assert np.abs(matrix[:5, 5]).max() < 1e-9 * matrix[5, 5]
+    assert matrix[0, 0] / matrix[1, 1] != pytest.approx(1.0, abs=0.2)
+    holding = Bearing("ring fit", MIDDLE, matrix[:5, :5], np.zeros((5, 5)))
+    by_bearing = replace(
+        machine,
+        bearings=[*machine.bearings, MountedBearing(holding, "ring", None)],
+        torque_supports=[TorqueSupport("ring", MIDDLE, float(matrix[5, 5]))],
+    )
+    w, found = 2.0 * np.pi * 700.0, []
+    for one in (machine, by_bearing):
+        system = one.assembled.system
+        assert system.turns
+        model = TurningResponse(system, mean_contact(system))
+        number = next(n for n, contact in enumerate(system.contacts) if contact.name == "planet gear 1 -> ring gear")
+        motion = model.respond(w, [model.mesh_error(number, w)])
+        rotor = next(part for part in one.assembled.rotors if part.name == "ring")
+        rows = one.assembled.rows("ring", rotor.motions(MIDDLE)[:2])
+        found.append({order: rows @ q[0] for order, q in motion.items()})
+    size = max(np.abs(shift).max() for shift in found[1].values())
+    for order, shift in found[1].items():
+        assert found[0][order] == pytest.approx(shift, abs=1e-6 * size)
+    # One planet's error shakes the ring to either side of its frequency, and unequal directions beyond.
+    assert max(np.abs(found[0][order]).max() for order in ((1,), (-1,))) > 0.1 * size
 
 
 def test_a_stiffness_beside_bolts_and_a_bolt_without_one_are_refused() -> None:

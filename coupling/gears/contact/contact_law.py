@@ -231,20 +231,18 @@ class ToothContact:
             )
         for name, curve in (("stiffness", curves.stiffness), ("deviation", curves.deviation)):
             ends = curve.knots[[0, -1]]
-            if not np.allclose(ends, [start, end], rtol=1e-12, atol=1e-12):
+            if not max(abs(ends[0] - start), abs(ends[1] - end)) <= 1e-12 * (1.0 + abs(end)):
                 raise GearError(
                     f"tooth contact: {name} must cover {start:.6g} to {end:.6g} base pitches, "
                     f"got {ends[0]:.6g} to {ends[1]:.6g}"
                 )
-        knots = curves.stiffness.knots
-        between = np.concatenate([knots[:-1] + part * np.diff(knots) for part in (0.0, 0.25, 0.5, 0.75)])
-        stiffness = curves.stiffness(np.append(between, knots[-1]))
-        if np.any(stiffness <= 0.0):
+        least, largest = _extremes(curves.stiffness)
+        if least <= 0.0:
             raise GearError("tooth contact: the stiffness of a pair must be positive everywhere")
-        if np.any(stiffness * self.shared_compliance >= 1.0):
+        if largest * self.shared_compliance >= 1.0:
             raise GearError(
                 f"tooth contact: pairs of teeth cannot share {self.shared_compliance:.4g} m/N where one of them alone "
-                f"yields {1.0 / stiffness.max():.4g} m/N; expected less"
+                f"yields {1.0 / largest:.4g} m/N; expected less"
             )
 
     @property
@@ -535,6 +533,15 @@ class ToothContact:
         return np.asarray(
             states.stiffness * np.maximum(0.0, after_shared[:, None] - states.deviation), dtype=np.float64
         )
+
+
+@lru_cache(maxsize=64)  # keyed by identity of the curve, which many contacts share
+def _extremes(stiffness: PiecewiseCubic) -> tuple[float, float]:
+    """Least and largest value of a stiffness at its knots and between them [N/m]."""
+    knots = stiffness.knots
+    between = np.concatenate([knots[:-1] + part * np.diff(knots) for part in (0.0, 0.25, 0.5, 0.75)])
+    values = stiffness(np.append(between, knots[-1]))
+    return float(values.min()), float(values.max())
 
 
 @lru_cache(maxsize=64)  # keyed by identity of the curve: pairs that differ in their flanks alone share it

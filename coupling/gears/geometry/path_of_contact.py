@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -143,6 +144,11 @@ def corner_contact_range(geometry: GearPairGeometry, largest_gap: float = LARGES
 
     It ends where the gap is `largest_gap` modules, at most `LONGEST_REACH`.
     """
+    return _corner_contact_range(geometry.sound, largest_gap)
+
+
+@lru_cache(maxsize=64)  # pairs of one drawing differ in their flanks alone
+def _corner_contact_range(geometry: GearPairGeometry, largest_gap: float) -> tuple[float, float]:
     widest = largest_gap * geometry.driver.module
 
     rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)

@@ -114,6 +114,9 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
         return np.array([variants.setdefault(pair, len(variants)) for pair in zip(*rows, strict=True)], dtype=np.int64)
 
     numbers = hunting_numbers(geometry)
+    if all(fault.tooth is None for gear in gears for fault in gear.faults):
+        of_all = np.zeros(numbers.size, dtype=np.int64)
+        return PairVariants((sound,), of_all, of_all)
     of_pair = variants_of(geometry.mating_teeth(numbers), back=False)
     of_back_pair = variants_of(geometry.mating_back_teeth(numbers), back=True)
     return PairVariants(tuple(variants), of_pair, of_back_pair)

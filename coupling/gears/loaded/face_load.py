@@ -191,6 +191,8 @@ class FaceContact:
         Stations of the approach from the middle of the face [m], two or more, ascending.
     axial : float
         h, axial part of the tooth force over its transverse part, as the driven gear feels it.
+    phases : int
+        Number of phases of a mesh period in the means.
 
     Raises
     ------
@@ -198,7 +200,14 @@ class FaceContact:
         Where the contact has no face slices, or its stations lie outside the face.
     """
 
-    def __init__(self, contact: ToothContact, geometry: GearPairGeometry, stations: FloatArray, axial: float) -> None:
+    def __init__(
+        self,
+        contact: ToothContact,
+        geometry: GearPairGeometry,
+        stations: FloatArray,
+        axial: float,
+        phases: int = _PHASES,
+    ) -> None:
         if contact.faces is None:
             raise GearError("loaded tooth contact: the contact has no face slices; expected those of `face_slices`")
         if stations.size < 2 or np.any(np.abs(stations) > 0.5 * geometry.face_width * (1.0 + 1e-9)):
@@ -209,6 +218,7 @@ class FaceContact:
         self._faces = contact.faces
         self._axial = axial
         self._geometry = geometry
+        self._phases = phases
         self.z = contact.faces.z
         """Slices of the face, from its middle [m], shape (s,)."""
         self.stations = stations
@@ -408,7 +418,12 @@ class FaceContact:
 
     @cached_property
     def _mean_phases(self) -> _Prepared:
-        return _Prepared(self, (np.arange(_PHASES) + 0.5) / _PHASES)
+        return _Prepared(self, (np.arange(self._phases) + 0.5) / self._phases)
+
+    @cached_property
+    def coarse(self) -> FaceContact:
+        """The same contact with means over a quarter of the phases, to search with."""
+        return FaceContact(self._contact, self._geometry, self.stations, self._axial, self._phases // 4)
 
 
 def _face_tangent(tangents: FloatArray, shared: float, moments: FloatArray) -> FaceTangent:

@@ -289,6 +289,45 @@ def polygon_phasors(phases: FloatArray, values: FloatArray, orders: npt.ArrayLik
     return np.asarray(2.0 / periods * integral.sum(axis=-1))
 
 
+def phasors_between(phases: FloatArray, values: FloatArray, orders: IntArray) -> ComplexArray:
+    """Complex amplitudes of a curve over H mesh periods whose phases return in each, of any of many orders.
+
+    As `polygon_phasors` at the orders k / H, by H-point Fourier transforms at each of the n phases p_j of a period: the
+    polygon is a sum of triangles, of the widths a to the phase before and b to the one after, whose transform at
+    θ = 2π k / H is (1 - e^{iθa}) / (θ² a) + (1 - e^{-iθb}) / (θ² b).
+
+    Parameters
+    ----------
+    phases : ndarray, shape (H n,)
+        Mesh periods, ascending: those of the first period and whole numbers beyond.
+    values : ndarray, shape (H n,)
+    orders : ndarray of int, shape (k,)
+        Whole numbers k above 0.
+
+    Returns
+    -------
+    ndarray of complex, shape (k,)
+
+    Raises
+    ------
+    GearError
+        Where the phases do not return in each mesh period.
+    """
+    count = int(np.searchsorted(phases, phases[0] + 1.0 - _SAME_PHASE))
+    first = phases[:count]
+    periods, left = divmod(phases.size, count)
+    if left or not np.allclose(phases.reshape(periods, count) - np.arange(periods)[:, None], first, atol=_SAME_PHASE):
+        raise GearError("harmonics between those of the mesh: phases that return in each mesh period are needed")
+    lines = np.fft.fft(np.asarray(values, dtype=np.float64).reshape(periods, count), axis=0)[orders % periods]
+    before, after = np.diff(first, prepend=first[-1] - 1.0), np.diff(first, append=first[0] + 1.0)
+    angle = 2.0 * np.pi * np.asarray(orders, dtype=np.float64)[:, None] / periods
+    triangles = (1.0 - np.exp(1j * angle * before)) / (angle**2 * before)
+    triangles += (1.0 - np.exp(-1j * angle * after)) / (angle**2 * after)
+    return np.asarray(2.0 / periods * np.sum(np.exp(-1j * angle * first) * triangles * lines, axis=1))
+
+
+_SAME_PHASE = 1e-9  # of a mesh period
+
 _AT_ONCE = 1000
 """Number of phases solved together: more, with face slices, exceed the processor's cache."""
 

@@ -126,15 +126,20 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
 
 
 def _check_planets(draft: Draft) -> Iterator[Finding]:
-    """Yield planets without a bearing, and carriers whose own axis turns with another."""
+    """Yield planets without a bearing or held, carriers whose own axis turns with another, and supports off a rotor."""
     from gearwhine.coupling.description.arrangement import pin_findings
 
     held = [entry.get("rotor") for _, entry in draft.raw_entries("bearing")]
-    for index, one in draft.planetary:
-        fixed = draft.rotor(one.held_rotor([gear for _, gear in draft.gears]))
-        if fixed is not None and fixed.carrier is not None:
+    for location, one in draft.held:
+        name, at = one.place([gear for _, gear in draft.gears])
+        fixed = draft.rotor(name)
+        if fixed is None:
+            continue
+        if fixed.carrier is not None:
             expected = f'sun, ring or carrier; "{fixed.name}" is a planet, whose axis turns with "{fixed.carrier}"'
-            yield Finding(("planetary", index, "fixed"), expected)
+            yield Finding(location if location[0] == "planetary" else (*location, "member"), expected)
+        if one.at is not None:
+            yield from check_station(fixed, at, (*location, "at"))
     for index, rotor in draft.rotors:
         pin = None if rotor.pin is None else rotor.pin.diameter or 0.0
         for finding in pin_findings(("rotor", ""), rotor.carrier, rotor.pin_error, pin, rotor.bores):
@@ -429,7 +434,7 @@ def check_running(draft: Draft) -> Iterator[Finding]:
         yield Finding(("operation", "speed"), "a speed other than zero for the [transient]")
     yield from _check_run(draft, operation)
     yield from _check_method(draft, operation)
-    if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
+    if draft.broken & {"rotor", "gear", "gear_pair", "torque_support"} or not turning:
         return  # an incomplete train does not define the shafts that it turns
     yield from _check_stations(draft, operation)
     yield from _check_train(draft, operation)

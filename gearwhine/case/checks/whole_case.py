@@ -18,6 +18,7 @@ from gearwhine.case.checks.plausible import case_warnings, library_findings
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, key_of, look_up, show_value
 from gearwhine.case.model import Case, Draft, case_document
 from gearwhine.case.overrides import parse_key_path, place_in_list
+from gearwhine.case.planetary import held_members
 from gearwhine.numerics.names import did_you_mean, twin_of
 
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
@@ -63,6 +64,9 @@ def check_names(draft: Draft) -> Iterator[Finding]:
             yield from _check_reference(fixed, (*at, "seat"), "seat", seats)
         else:
             yield from _check_reference(one, ("planetary", index, "fixed"), "gear or rotor", (*gears, *rotors))
+    for index, one in draft.raw_entries("torque_support"):
+        yield from _check_reference(one, ("torque_support", index, "member"), "gear or rotor", (*gears, *rotors))
+        yield from _check_reference(one, ("torque_support", index, "seat"), "seat", seats)
     for index, bearing in draft.raw_entries("bearing"):
         yield from _check_reference(bearing, ("bearing", index, "rotor"), "rotor", rotors)
         yield from _check_reference(bearing, ("bearing", index, "seat"), "seat", (*seats, "ground", *rotors))
@@ -258,7 +262,8 @@ def warnings_of(case: Case) -> tuple[str, ...]:
     for bearing in case.bearing:
         if bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             warnings.append(f'bearing "{bearing.name}": its pedestal has no mass: `rotors` alone takes it')
-    on_bolts = {one.held_rotor(case.gear) for one in case.planetary if one.fixed is not None and one.fixed.bolts}
+    held = held_members(case.planetary, case.torque_support)
+    on_bolts = {one.place(case.gear)[0] for one in held if one.bolts is not None}
     for rotor in case.rotor:
         coefficients = [rotor.shear_coefficient, *(getattr(part, "shear_coefficient", None) for part in rotor.segments)]
         above = [value for value in coefficients if isinstance(value, float) and value > 1.0]

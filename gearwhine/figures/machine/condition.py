@@ -9,15 +9,14 @@ from gearwhine.coupling.analyses.gear_condition import MachineCondition
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
-    HEAD,
     SERIES,
     legend_below,
     legend_height,
     name_in_legend,
-    panel,
+    name_lowest,
     panel_title,
-    sheet,
     shortened,
+    stacked,
 )
 
 _HEIGHT, _GAP = 34.0, 9.0  # of a panel, and between two [mm]
@@ -37,16 +36,14 @@ def draw_envelopes(title: str, condition: MachineCondition) -> Figure:
     tones = sorted((one.tone for one in condition.tones), key=height, reverse=True)[:_MOST_TONES]
     frequency = {one.tone: one.frequency_hz for one in condition.tones}
     low = legend_height(len(tones), 3)
-    size = HEAD + 5.0 + FOOT + low + len(sensors) * _HEIGHT + (len(sensors) - 1) * _GAP
     note = (
         f"{shortened(title, 40)}; squared envelope of {0.5 * condition.limit_hz:.0f} to {condition.limit_hz:.0f} Hz "
         "over its mean; dotted: multiples of the bearings' tones, which a damaged part raises"
     )
-    figure = sheet(size, "Envelope spectra", note)
+    figure, panels = stacked(len(sensors), _HEIGHT, _GAP, "Envelope spectra", note, first=5.0, foot=FOOT + low)
     end = min(float(condition.envelope_hz[-1]), _SHOWN * _HARMONICS * max(frequency[tone] for tone in tones))
     within = (condition.envelope_hz > 0.0) & (condition.envelope_hz <= end)
-    for number, sensor in enumerate(sensors):
-        axes = panel(figure, FOOT + low + (len(sensors) - 1 - number) * (_HEIGHT + _GAP), _HEIGHT)
+    for sensor, axes in zip(sensors, panels, strict=True):
         for color, tone in zip(SERIES[1:], tones, strict=False):
             for multiple in range(1, _HARMONICS + 1):
                 axes.axvline(multiple * frequency[tone], color=color, lw=1.0, ls=":", zorder=1)
@@ -56,9 +53,8 @@ def draw_envelopes(title: str, condition: MachineCondition) -> Figure:
         axes.set_ylim(0.0, 1.1 * max(float(values.max()), 1e-12))
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.set_ylabel("line / mean")
-        panel_title(axes, shortened(sensor, 48))
-        if number == len(sensors) - 1:
-            axes.set_xlabel("modulation frequency [Hz]")
+        panel_title(axes, sensor)
+    name_lowest(panels, "modulation frequency [Hz]")
     marks = [
         Line2D([], [], color=color, lw=1.0, ls=":", label=f"{name_in_legend(tone, 36)}, {frequency[tone]:.1f} Hz")
         for color, tone in zip(SERIES[1:], tones, strict=False)

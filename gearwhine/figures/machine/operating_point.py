@@ -36,10 +36,12 @@ from gearwhine.figures.style import (
     draw_row,
     legend,
     name_in_legend,
+    name_lowest,
     panel,
     panel_size,
     sheet,
     shortened,
+    stacked,
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
@@ -440,10 +442,10 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
         ("K_Hβ", lambda pair: pair.k_h_beta),
         ("misalignment [µrad]", lambda pair: MICRO * pair.misalignment),
     )
-    figure = sheet(HEAD + len(quantities) * (_SMALL + _SMALL_ROOM) + FOOT, title, "dashed: torque of operation")
+    note = "dashed: torque of operation"
+    figure, panels = stacked(len(quantities), _SMALL, _SMALL_ROOM, title, note, first=_SMALL_ROOM)
     handles: list[Line2D] = []
-    for number, (label, value_of) in enumerate(quantities):
-        axes = panel(figure, FOOT + number * (_SMALL + _SMALL_ROOM), _SMALL)
+    for number, ((label, value_of), axes) in enumerate(zip(quantities, reversed(panels), strict=True)):
         for place, pair in enumerate(solved.point.pairs):
             if pair.force == 0.0:
                 continue
@@ -457,10 +459,7 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
             axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
         axes.set_ylabel(label)
         axes.set_xlim(*sorted((0.0, float(torques[np.abs(torques).argmax()]))))
-        if number == 0:
-            axes.set_xlabel("torque of the first driver [N m]")
-        else:
-            axes.tick_params(labelbottom=False)
+    name_lowest(panels, "torque of the first driver [N m]")
     legend(figure, handles[:4])
     return figure
 

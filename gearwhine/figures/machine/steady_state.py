@@ -26,10 +26,11 @@ from gearwhine.figures.style import (
     legend_below,
     legend_height,
     name_in_legend,
-    panel,
+    name_lowest,
     panel_pair,
     panel_title,
     sheet,
+    stacked,
     stretches,
 )
 from gearwhine.numerics.arrays import FloatArray
@@ -86,21 +87,17 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
         more = f" and {len(curve.gaps) - 1} more ranges" if len(curve.gaps) > 1 else ""
         remarks.append(f"nothing between {low:.4g} and {high:.4g} rpm{more}")
     foot = FOOT + legend_height(1)
-    figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + foot, title, "; ".join(remarks))
+    figure, panels = stacked(len(quantities), _HEIGHT, _BETWEEN, title, "; ".join(remarks), foot=foot)
     # Panels with the same names have them once, in the uppermost.
     legends = {tuple(lines): quantity for quantity, lines in reversed(quantities) if len(lines) > 1}
-    for number, (quantity, lines) in enumerate(reversed(quantities)):
-        axes = panel(figure, foot + number * (_HEIGHT + _BETWEEN), _HEIGHT)
+    for (quantity, lines), axes in zip(quantities, panels, strict=True):
         _draw_branch(axes, speeds, lines, curve)
         axes.axvline(operation, color=INK, lw=0.8, ls="-.", zorder=1)
         axes.set(xlim=(speeds.min(), speeds.max()), ylabel=quantity)
         axes.set_ylim(bottom=0.0)
-        if number:
-            axes.tick_params(labelbottom=False)
-        else:
-            axes.set_xlabel("speed of the first driver [rpm]")
         if legends.get(tuple(lines)) == quantity:
             axes.legend(loc="best", fontsize=NOTE, frameon=False)
+    name_lowest(panels, "speed of the first driver [rpm]")
     met = {event.kind for event in curve.bifurcations}
     lines_of = [Line2D([], [], color=INK, lw=1.2, label="stable")]
     if not curve.stable.all():

@@ -25,10 +25,12 @@ from gearwhine.figures.style import (
     legend_height,
     log_axis,
     name_in_legend,
+    name_lowest,
     panel,
     panel_pair,
     panel_title,
     sheet,
+    stacked,
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
@@ -75,14 +77,13 @@ def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
     sensors = [str(name) for name in dataset["sensor"].values]
-    below, count = _legend_height(places), len(sensors)
-    height = HEAD + _FIRST + count * _LEVELS + (count - 1) * _LEVELS_GAP + FOOT + below
+    foot = FOOT + _legend_height(places)
     # In a grid over several keys the peaks of several lines would stand beside each other.
     missed = {sensor: _missed_peaks(dataset, along, sensor) for sensor in sensors if len(places) == 1}
     circles = _CIRCLES if any(len(speeds) for speeds, _ in missed.values()) else ""
-    figure = sheet(height, f"Acceleration over {_key(dataset, along)}", f"{title}{circles}")
-    for number, sensor in enumerate(reversed(sensors)):
-        axes = panel(figure, FOOT + below + number * (_LEVELS + _LEVELS_GAP), _LEVELS)
+    heading, note = f"Acceleration over {_key(dataset, along)}", f"{title}{circles}"
+    figure, panels = stacked(len(sensors), _LEVELS, _LEVELS_GAP, heading, note, first=_FIRST, foot=foot)
+    for sensor, axes in zip(sensors, panels, strict=True):
         _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
         speeds, peaks = missed.get(sensor, (np.empty(0), np.empty(0)))
         peaks = np.asarray(rms_of_peak(from_decibels(peaks)))
@@ -93,11 +94,8 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
             log_axis(axes, 0.8 * float(levels.min()), 1.25 * float(levels.max()))
         axes.set_ylabel("acceleration [m/s², rms]")
         panel_title(axes, sensor)
-        if number:
-            axes.tick_params(labelbottom=False)
-        else:
-            axes.set_xlabel(_axis_label(dataset, along))
-            _name_values(axes.xaxis, dataset, along)
+    _name_values(panels[-1].xaxis, dataset, along)
+    name_lowest(panels, _axis_label(dataset, along))
     _name_lines(figure, dataset, places)
     return figure
 

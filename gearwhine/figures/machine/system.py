@@ -5,6 +5,7 @@ transmissibility gives mesh forces, bearing forces and sensors per transmission 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -41,9 +42,11 @@ from gearwhine.figures.style import (
     legend_height,
     mark_operation,
     name_in_legend,
+    name_lowest,
     panel,
     sheet,
     shortened,
+    stacked,
     stretches,
 )
 from gearwhine.output import file_stems
@@ -66,6 +69,7 @@ LINE_COLORS = {"mesh harmonic": INK, "planet pass": BLUE, "sideband": RED}
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # height of the panel [mm]
 _LARGEST_MARK_AREA = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
+_EXPONENT_STYLE: dict[str, Any] = {"ls": "", "color": INK, "ms": 3.2, "mew": 0.6}
 _SAME_PLACE = 5e-3  # part of the diagram's height within which two marks are one
 _MICROMETRE = 1e-6
 _RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # height of a panel and gap between two [mm]
@@ -99,23 +103,28 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
         note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
     speeds = RPM * np.abs(campbell.speeds)
     top, low, high = campbell.limit / HERTZ, float(speeds[0]), float(speeds[-1])
+    # Lines of one order, as those of equal planets' meshes, are one with one name.
+    lines: dict[tuple[str, float], list[ExcitationLine]] = {}
+    for line in campbell.lines:
+        lines.setdefault((line.kind, line.order), []).append(line)
     # Orders that leave the panel at its top are named above it, the others beside its right end.
     above, beside = [], []
-    for line in campbell.lines:
-        if line.kind == "sideband":
+    for (kind, order), alike in lines.items():
+        if kind == "sideband":
             continue
-        leaves = 60.0 * top / line.order
+        name = arrowed(alike[0].name) + (f" and {len(alike) - 1} more" if len(alike) > 1 else "")
+        leaves = 60.0 * top / order
         if leaves >= high:
-            beside.append(Label(arrowed(line.name), high, line.order * high / 60.0, GREY))
+            beside.append(Label(name, high, order * high / 60.0, GREY))
         elif leaves > low:
-            above.append(Label(arrowed(line.name), leaves, top, GREY))
+            above.append(Label(name, leaves, top, GREY))
     width = SHEET_WIDTH - LEFT - column_width(beside)
     row = arrange(above, [(label.x - low) / (high - low) * width for label in above], width)
     kinds = {kind for row_of_kinds in campbell.kinds for kind in row_of_kinds if kind}
     # Branches are of frozen carriers where these turn.
     marks = [("+", "turning carriers", campbell.exponents), ("x", "seen by sensors", campbell.observed)]
     turning = [
-        Line2D([], [], ls="", marker=marker, color=INK, ms=4.0, mew=0.8, label=label)
+        Line2D([], [], marker=marker, label=label, **_EXPONENT_STYLE)
         for marker, label, values in marks
         if values is not None
     ]
@@ -126,8 +135,8 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     axes.set(xlabel="speed of the first driver [rpm]", ylabel="damped frequency [Hz]")
     met = _draw_branches(axes, speeds, campbell)
     _mark_exponents(axes, speeds, campbell)
-    for line in campbell.lines:
-        _draw_line(axes, line, high)
+    for alike in lines.values():
+        _draw_line(axes, alike[0], high)
     draw_row(axes, row, _HEIGHT + 1.0)
     draw_column(axes, beside)
     _mark_crossings(axes, campbell)
@@ -158,11 +167,11 @@ def _mark_exponents(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) ->
     if turning is None:
         return
     at = np.broadcast_to(speeds[:, None], turning.shape)
-    style = {"ls": "", "color": INK, "ms": 4.0, "mew": 0.8, "zorder": 4}
-    axes.plot(at.ravel(), turning.ravel(), marker="+", label="turning", **style)  # type: ignore[arg-type]
+    axes.plot(at.ravel(), turning.ravel(), marker="+", label="turning", zorder=4, **_EXPONENT_STYLE)
     if observed is not None:
         apart = np.where(np.abs(observed - turning) > _SAME_PLACE * campbell.limit / HERTZ, observed, np.nan)
-        axes.plot(at.ravel(), apart.ravel(), marker="x", label="observed", **style)  # type: ignore[arg-type]
+        axes.plot(at.ravel(), apart.ravel(), marker="x", label="observed", zorder=4, **_EXPONENT_STYLE)
+        axes.vlines(at.ravel(), turning.ravel(), apart.ravel(), color=INK, lw=0.5, zorder=3.5, label="seen elsewhere")
 
 
 def _draw_line(axes: Axes, line: ExcitationLine, last: float) -> None:
@@ -287,12 +296,10 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
     """
     sensors = dict(list(machine.sensor_rows.items())[:_MOST_PANELS])
     note = "peak amplitudes, linear response about the mean load; numbers: mesh harmonic, and turns of carriers off it"
-    figure = sheet(HEAD + len(sensors) * (_RESPONSE_HEIGHT + _LINE_GAP) + FOOT, "Lines of the sensors", note)
+    count, title = len(sensors), "Lines of the sensors"
+    figure, panels = stacked(count, _RESPONSE_HEIGHT, _LINE_GAP, title, note, first=_LINE_GAP)
     frequencies = np.array([line.frequency for line in lines]) / HERTZ
-    bottom = FOOT
-    for number, (name, row) in enumerate(reversed(sensors.items())):
-        axes = panel(figure, bottom, _RESPONSE_HEIGHT)
-        bottom += _RESPONSE_HEIGHT + _LINE_GAP
+    for (name, row), axes in zip(sensors.items(), panels, strict=True):
         heights = np.array([line.frequency**2 * abs(row @ line.motion) for line in lines])
         top = float(heights.max())
         least = top * 10.0**-_DECADES
@@ -326,12 +333,8 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
             )
         axes.set_xlim(low, high)
         axes.set_ylabel(f"{shortened(name, 14)} [m/s²]")
-        if number == 0:
-            axes.set_xlabel("frequency [Hz]")
-        else:
-            axes.tick_params(labelbottom=False)
-        if number == len(sensors) - 1:
-            legend(figure, axes.get_legend_handles_labels()[0])
+    name_lowest(panels, "frequency [Hz]")
+    legend(figure, panels[0].get_legend_handles_labels()[0])
     return figure
 
 

@@ -28,8 +28,10 @@ from gearwhine.figures.style import (
     draw_row,
     legend_beside_title,
     name_in_legend,
+    name_lowest,
     panel,
     sheet,
+    stacked,
 )
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -228,16 +230,10 @@ def draw_torsional_response(
     row = arrange(labels, [(value - low) / (high - low) * PANEL_WIDTH for value in marked], PANEL_WIDTH)
     note = "zero to peak; torque in the shaft to the right of each place"
     note += "; above: natural frequencies in Hz, free to turn" * bool(marked)
-    figure = sheet(HEAD + row.height + 2.0 + 2.0 * _RESPONSE_HEIGHT + _RESPONSE_GAP + FOOT, title, note)
-    upper, lower = (
-        panel(figure, FOOT + _RESPONSE_HEIGHT + _RESPONSE_GAP, _RESPONSE_HEIGHT),
-        panel(figure, FOOT, _RESPONSE_HEIGHT),
-    )
+    figure, panels = stacked(2, _RESPONSE_HEIGHT, _RESPONSE_GAP, title, note, first=row.height + 2.0)
     handles: list[Line2D] = []
-    for axes, quantity, top, name in (
-        (upper, "angle", tops[0], "angle [rad]"),
-        (lower, "torque", tops[1], "torque [N·m]"),
-    ):
+    shown = zip(panels, ("angle", "torque"), tops, ("angle [rad]", "torque [N·m]"), strict=True)
+    for axes, quantity, top, name in shown:
         axes.set_xlim(low / HERTZ, high / HERTZ)
         for value in marked:
             axes.axvline(value / HERTZ, color=GREY, lw=0.7, zorder=1, label="natural frequency")
@@ -252,8 +248,7 @@ def draw_torsional_response(
             axes.set(yscale="log", ylim=(top * 10.0**-_AMPLITUDE_DECADES, 2.0 * top))
         axes.set_ylabel(name)
         handles = max(handles, lines, key=len)
-    upper.tick_params(labelbottom=False)
-    lower.set_xlabel("frequency [Hz]")
-    legend_beside_title(figure, upper, handles)
-    draw_row(upper, row, _RESPONSE_HEIGHT + 1.0)
+    name_lowest(panels, "frequency [Hz]")
+    legend_beside_title(figure, panels[0], handles)
+    draw_row(panels[0], row, _RESPONSE_HEIGHT + 1.0)
     return figure

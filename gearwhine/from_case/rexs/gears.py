@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.gears import Gear, Relief, distance_of_axes
-from gearwhine.case.planetary import Planetary
+from gearwhine.case.planetary import HeldMember
 from gearwhine.coupling.gears import Gear as BuiltGear
 from gearwhine.exchange.rexs.gears import CORNERS, SHIFTS
 from gearwhine.exchange.rexs.model import Attribute
@@ -189,23 +189,26 @@ def add_stages(case: Case, shafts: Shafts, gears: dict[str, int]) -> None:
             if set(gears_in_mesh) & set(one.planets):
                 sheet.relate("assembly", assembly=stage, part=number)
                 del found[gears_in_mesh]
-        _add_torque_support(case.gear, one, shafts)
+        if one.fixed is not None:
+            _add_torque_support(case.gear, one.fixed, shafts, f"{one.name}, fixed", f'planetary "{one.name}"', "fixed.")
     for number in found.values():
         sheet.relate("assembly", assembly=shafts.unit, part=number)
+    for support in case.torque_support:
+        words = f'torque support of "{support.member}"'
+        _add_torque_support(case.gear, support, shafts, words, words)
 
 
-def _add_torque_support(gears: Sequence[Gear], one: Planetary, shafts: Shafts) -> None:
-    """Add the coupling to the casing that holds the fixed member of a set from turning, and in no other way."""
-    rotor, fixed = one.held_rotor(gears), one.fixed
-    if rotor is None or fixed is None:
-        return
-    of_gear = next((gear.at for gear in gears if gear.name == fixed.member), None)
-    shaft, at = shafts.place(rotor, (of_gear or 0.0) if fixed.at is None else fixed.at)
+def _add_torque_support(
+    gears: Sequence[Gear], held: HeldMember, shafts: Shafts, name: str, where: str, key: str = ""
+) -> None:
+    """Add the coupling to the casing that holds a member from turning, and in no other way."""
+    rotor, at = held.place(gears)
+    shaft, along = shafts.place(rotor, at)
     attributes = {
-        "u_coordinate_on_shaft_inner_side": quantity(at, "m"),
+        "u_coordinate_on_shaft_inner_side": quantity(along, "m"),
         **quantities({"radial_stiffness": 0.0, "axial_stiffness": 0.0}, "N/m"),
-        **quantities({"rotational_stiffness": fixed.stiffness}, "N*m/rad"),
+        **quantities({"rotational_stiffness": held.stiffness}, "N*m/rad"),
     }
-    number = shafts.sheet.add("coupling", f"{one.name}, fixed", attributes)
+    number = shafts.sheet.add("coupling", name, attributes)
     shafts.sheet.relate("side", assembly=number, inner_part=shaft, outer_part=shafts.casing)
-    shafts.sheet.left_out(f'planetary "{one.name}"', fixed, ("member", "stiffness", "at"), "fixed.")
+    shafts.sheet.left_out(where, held, ("member", "stiffness", "at"), key)

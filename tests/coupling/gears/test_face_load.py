@@ -197,3 +197,19 @@ def test_a_contact_without_slices_and_stations_off_the_face_are_refused() -> Non
     for stations in (np.array([0.0]), np.array([-0.02, 0.0, 0.01])):
         with pytest.raises(GearError, match=r"stations .* m; expected two or more within the face"):
             FaceContact(sliced, geometry, stations, 0.0)
+
+
+@settings(deadline=None, max_examples=15)
+@given(st.lists(st.tuples(st.floats(-2e-5, 6e-5), approaches(0.0, 2e-5)), min_size=2, max_size=4))
+def test_an_approach_has_no_memory_of_those_before(path: list[tuple[float, FloatArray]]) -> None:
+    """The search starts from the last approach's force and slices, touching or apart."""
+    mesh = face(14.0)
+    for mean, shape in path:
+        approach = shape + mean * mesh.uniform
+        found, alone = mesh.at(approach), face(14.0).at(approach)
+        assert found.force == pytest.approx(alone.force, rel=1e-9, abs=1e-9)
+        scale = np.abs(alone.stiffness).max()
+        np.testing.assert_allclose(found.stiffness, alone.stiffness, rtol=1e-8, atol=1e-9 * scale)
+        np.testing.assert_allclose(found.loads, alone.loads, rtol=1e-8, atol=1e-9 * np.abs(alone.loads).max())
+    unloaded = face(14.0).unloaded_tangent
+    assert mesh.unloaded_tangent.mean_stiffness == pytest.approx(unloaded.mean_stiffness, rel=1e-12)

@@ -48,7 +48,7 @@ def test_work_on_two_threads_is_handed_back_in_order() -> None:
         return number * number
 
     assert in_order(solve, range(4), "squares", lambda what, part=None: said.append((what, part))) == (0, 1, 4, 9)
-    assert said == [("squares", 0.25), ("squares", 0.5), ("squares", 0.75), ("squares", 1.0)]
+    assert said == [("squares", 0.0), ("squares", 0.25), ("squares", 0.5), ("squares", 0.75), ("squares", 1.0)]
     assert len(threads) == 2
     assert in_order(solve, (), "squares") == ()
 

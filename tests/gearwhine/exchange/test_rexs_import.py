@@ -9,14 +9,18 @@ import pytest
 from rexs_files import CENTRE_DISTANCE, HELIX, PLANET, RING, SUN, RexsFile, helical_stage, planetary_stage
 
 import gearwhine as gw
-from gearwhine.case import parse_case
+from gearwhine.case import CaseError, parse_case
 from gearwhine.case.model import Case
 from gearwhine.exchange.rexs import ImportedCase, RexsError, case_of, read_content
 from gearwhine.exchange.rexs.catalogue import dimensions_of
 
 
 def imported(file: RexsFile, load_case: str = "") -> ImportedCase:
-    return case_of(read_content(file.xml()), "unit.rexs", load_case)
+    """The case of a file, each of whose notes about a value stands as a comment beside it."""
+    made = case_of(read_content(file.xml()), "unit.rexs", load_case)
+    text = made.toml
+    assert [str(note) for note in made.notes if note.at and f"# {note}" not in text] == []
+    return made
 
 
 def case(file: RexsFile) -> Case:
@@ -588,6 +592,31 @@ def test_a_ring_has_the_sign_and_hand_by_which_it_fits() -> None:
         assert entry(imported(file).document, "gear", "ring")["profile_shift"] == -0.1
 
 
+def test_an_assumed_tip_ends_where_the_involute_of_its_mate_begins() -> None:
+    """The tip of the ring would reach below the flanks of its planets; the case refuses one that is longer by 1 %."""
+    file = planetary_stage()
+    del file.named("ring")["tip_diameter"]
+    document = imported(file).document
+    parse_case(document)
+    ring = entry(document, "gear", "ring")
+    assert ring["addendum"] < 1.0
+    ring["addendum"] += 0.01
+    with pytest.raises(CaseError, match=r"the tip of 'ring' reaches .* below the involute of 'planet 1'"):
+        parse_case(document)
+
+
+@pytest.mark.parametrize(("shift", "undercut"), [(-0.25, None), (-0.33, True)])
+def test_teeth_that_their_tool_undercuts_are_told_and_accepted(shift: float, undercut: bool | None) -> None:
+    """A rack whose straight flank ends a module below its line: from 1 - z sin² α_t / (2 cos β) = -0.287 on."""
+    file = helical_stage()
+    flanks = [one["attributes"] for one in file.components if one["type"] == "cylindrical_gear_flank"]
+    for gear, flank, own in zip(("pinion", "wheel"), flanks, (shift, 0.3 - shift), strict=True):
+        del file.named(gear)["tip_diameter"], file.named(gear)["root_diameter"]
+        flank["addendum_modification_coefficient"] = (own, "none")
+    assert entry(imported(file).document, "gear", "pinion").get("allow_undercut") is undercut
+    assert any("its tool undercuts the teeth" in text for text in notes(file, "changed")) is bool(undercut)
+
+
 def test_a_coupling_between_shafts_is_one_of_their_rotor() -> None:
     file = helical_stage()
     shaft = file.part("shaft", 1, "motor shaft", support_vector=([-90.0, 0.0, 0.0], "mm"))
@@ -615,6 +644,42 @@ def test_a_bearing_between_two_shafts_stands_on_the_other_one() -> None:
     file.relate("side", assembly=bearing, inner_part=file.number("input"), outer_part=file.number("output"))
     pilot = entry(imported(file).document, "bearing", "pilot")
     assert (pilot["rotor"], pilot["seat"], pilot["at"]) == ("input", "output", "5 mm")
+
+
+@pytest.mark.parametrize(
+    ("bearing", "attribute", "value", "kind", "said"),
+    [
+        ("6205", "axial_force_absorption", ("positive", "none"), "changed", "it locates its shaft in both senses, not"),
+        (
+            "6205",
+            "radial_bearing_clearance",
+            (12.0, "mum"),
+            "changed",
+            "its clearance before mounting is taken",
+        ),
+        ("NU 207", "axial_force_absorption", ("positive", "none"), "changed", "rollers without flanges, which take no"),
+        ("6205", "misalignment_in_v_direction", (20.0, "mum"), "left out", "seats of a case on the ground have no off"),
+        ("6205", "misalignment_in_w_direction", (20.0, "mum"), "left out", "seats of a case on the ground have no off"),
+    ],
+)
+def test_what_a_bearing_does_otherwise_is_told(
+    bearing: str, attribute: str, value: tuple[Any, str], kind: str, said: str
+) -> None:
+    file = helical_stage()
+    assert not any(said in text for text in notes(file, kind))
+    if attribute == "radial_bearing_clearance":
+        del file.named(bearing)["operating_radial_bearing_clearance"]
+    file.named(bearing)[attribute] = value
+    assert sum(said in text and bearing in text for text in notes(file, kind)) == 1
+
+
+def test_the_summary_counts_the_notes_of_each_kind() -> None:
+    file = helical_stage()
+    file.named("6205")["axial_force_absorption"] = ("positive", "none")
+    found = imported(file)
+    numbers = [(len(notes(file, kind)), kind) for kind in ("assumed", "changed", "left out")]
+    assert min(numbers)[0] > 0
+    assert f": {', '.join(f'{number} {kind}' for number, kind in numbers)}; `gearwhine import`" in found.summary
 
 
 def test_what_is_not_taken_is_listed_once_with_its_components() -> None:

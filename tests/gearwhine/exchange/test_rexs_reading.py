@@ -12,6 +12,7 @@ from rexs_files import RexsFile, archive, helical_stage, planetary_stage
 from gearwhine.case.units import si_amount
 from gearwhine.exchange.file_names import LARGEST_MODEL, bare_name, is_rexs_file
 from gearwhine.exchange.rexs import RexsError, RexsModel, read_content, read_rexs
+from gearwhine.exchange.rexs.coded_values import rows_of
 from gearwhine.exchange.rexs.json_reader import DEEPEST as DEEPEST_JSON
 from gearwhine.exchange.rexs.model import Attribute, Component
 from gearwhine.exchange.rexs.units import UNITS, unit_named
@@ -354,3 +355,11 @@ def test_a_matrix_is_read_by_its_rows() -> None:
     )
     value = read_content(content).components[1].attributes["reduced_static_stiffness_matrix"].value
     assert value == (("1", "2"), ("3", "4"))
+
+
+def test_a_coded_matrix_has_the_rows_that_are_stated_or_is_square() -> None:
+    numbers = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    assert rows_of(numbers, "2", "3", "here") == ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0))
+    assert rows_of(numbers[:4], None, None, "here") == ((1.0, 2.0), (3.0, 4.0))
+    with pytest.raises(RexsError, match="2 x 2 numbers"):
+        rows_of(numbers, 2, 2, "here")

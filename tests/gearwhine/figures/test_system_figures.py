@@ -1,6 +1,7 @@
 """Pictures of the coupled system: its Campbell diagram and transmissibility, from made-up curves."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,6 +61,23 @@ def test_orders_have_their_slopes_and_crossings_their_marks() -> None:
     assert marks[1].get_sizes()[0] > marks[0].get_sizes()[0]
     texts = {text.get_text() for text in figure.axes[0].texts}
     assert {"1× pinion → wheel", SHAFT.name} <= texts
+
+
+def test_lines_of_one_order_have_one_name_and_what_is_not_solved_no_mark() -> None:
+    second = ExcitationLine("1× wheel -> other", "mesh", MESH.order)
+    exponents = np.full((11, 2), complex(np.nan, np.nan))
+    exponents[3, 1] = -5.0 + 1020.0j
+    observed = np.full((11, 2), np.nan)
+    observed[3, 1] = 1220.0
+    turned = replace(diagram(), lines=(SHAFT, MESH, second), exponents=exponents, observed=observed)
+    figure = draw_system_campbell("t", turned)
+    texts = {text.get_text() for text in figure.axes[0].texts}
+    assert "1× pinion → wheel and 1 more" in texts
+    assert not any("other" in text for text in texts)
+    for label, hertz in (("turning", 1020.0 / (2.0 * math.pi)), ("observed", 1220.0 / (2.0 * math.pi))):
+        ((at, marks),) = labelled(figure, label)
+        assert marks[~np.isnan(marks)] == pytest.approx([hertz])
+        assert at[~np.isnan(marks)] == pytest.approx([SPEEDS[3] * RPM])
 
 
 def test_the_legend_of_every_kind_lies_below_the_diagram() -> None:

@@ -85,6 +85,7 @@ def test_the_optimum_of_two_forces_is_the_corner_of_bound_and_limit(tmp_path: Pa
     assert forces[0] == pytest.approx([1000.0, 500.0])
 
 
+@pytest.mark.slow
 def test_a_robust_optimum_keeps_two_standard_deviations_from_the_limit(tmp_path: Path) -> None:
     """F2 scatters with 50 N about its designed value: the left force by 10 N, the right one by 40 N."""
     found = _optimised(tmp_path, SHAFT + SCATTER)

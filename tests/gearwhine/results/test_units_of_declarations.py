@@ -54,6 +54,7 @@ SHOWN = {
     "m/s": ("m/s", 1.0),
     "dB": ("dB", 1.0),
     "%": ("%", 1.0),
+    "‰": ("%", 0.1),
 }
 # End of a key: the dimension of its value, which is in SI's unit, or in turns a minute, hours, decibels.
 ENDS = {
@@ -149,7 +150,7 @@ def test_a_factor_takes_the_key_s_unit_to_that_of_the_heading() -> None:
         if "[" not in one.heading or (dimension is None and unit != "%"):
             continue
         if dimension is None:  # a part of 1
-            dimension, size = "%", 1e-2
+            dimension, size = "%", 1e-2 * size
         held += 1
         if unit != dimension or one.scale * size != pytest.approx(1.0, rel=1e-12):
             wrong.append((one.where, one.key, one.heading, one.scale))

@@ -355,6 +355,7 @@ def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
         solve_pairs(parse_case(given | {"gear_pair": [given["gear_pair"][0] | {"misalignment": "found"}]}), None)
 
 
+@pytest.mark.slow
 def test_check_and_gears_say_which_misalignment_they_take(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

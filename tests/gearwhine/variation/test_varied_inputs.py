@@ -1,5 +1,6 @@
 """Varied keys: what a distribution in a case changes, and what is refused."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,12 @@ from gearwhine.variation.inputs import Input, varied_inputs
 HELIX = "errors.helix.slope"
 
 
-def _inputs(tmp_path: Path, text: str, case: str = "helical-pair") -> tuple[Input, ...]:
+def _inputs(tmp_path: Path, text: str, case: str = "helical-pair", changes: Sequence[str] = ()) -> tuple[Input, ...]:
     bundled = bundled_case(case)
     assert bundled is not None
     path = tmp_path / "case.toml"
     path.write_text(bundled.read_text() + "\n[variation]\n" + text)
-    study = gw.load(path)
+    study = gw.load(path, list(changes))
     variation = study.case.variation
     assert variation is not None
     return varied_inputs(study._source, variation)
@@ -54,6 +55,28 @@ def test_units_of_one_distribution_may_differ(tmp_path: Path) -> None:
     (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { triangular = ["39 mm", "0.04 m", "41000 um"] } }')
     assert one.unit == "mm"
     assert one.value(0.5) == pytest.approx(40.0)
+
+
+@pytest.mark.parametrize(
+    ("key", "fit", "size", "low", "high"),
+    [("inner", "k6", "30 mm", 2.0, 15.0), ("outer", "H7", "62 mm", -30.0, 0.0), ("outer", "K7", "62 mm", -9.0, 21.0)],
+)
+def test_a_fit_of_an_interference_is_that_of_shaft_or_bore(
+    tmp_path: Path, key: str, fit: str, size: str, low: float, high: float
+) -> None:
+    """ISO 286-2: 30 k6 is +2 to +15 um, 62 H7 is 0 to +30 um, 62 K7 is -21 to +9 um; a wider bore holds less."""
+    place = f"bearing.input-left.stiffness.rolling.mounting.{key}_interference"
+    rolling = (
+        '{ catalogue = { type = "deep-groove", bore = "30 mm", outer_diameter = "62 mm", width = "16 mm" }, '
+        'mounting = { inner_interference = "0 um" } }'
+    )
+    (one,) = _inputs(
+        tmp_path,
+        f'vary = {{ "{place}" = {{ fit = "{fit}", size = "{size}" }} }}',
+        changes=[f"bearing.input-left.stiffness={{ rolling = {rolling} }}", "bearing.input-left.damping="],
+    )
+    ends = [1e3 * end for end in (one.law.low, one.law.high)]
+    assert ends == pytest.approx([low, high], abs=0.6)
 
 
 def test_a_fit_lies_about_the_length_of_the_case(tmp_path: Path) -> None:
@@ -111,12 +134,15 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
         ('vary = { "gear.pinion.bore" = { uniform = [1, 2], weights = [1, 2] } }', "none without 'values'"),
         ('vary = { "gear.pinion.bore" = { uniform = ["a lot", "40 mm"] } }', "a quantity such as"),
         ('vary = { "gear.pinion.bore" = { fit = "z9" } }', "a letter of e, f, g"),
+        ('vary = { "gear.pinion.bore" = { fit = "H7", size = "30 mm" } }', "no 'size' of gear[0].bore"),
+        ('vary = { "gear.pinion.bore" = { values = ["30 mm"], size = "30 mm" } }', "none without 'fit'"),
         ('vary = { "gear.pinion.bore" = { class = 6 } }', "a key of the errors of a gear"),
         ('vary = { "gear.pinion.errors.phase" = { class = 6 } }', "one of the errors pitch"),
         ('vary = { "gear.pinion.errors.runout" = { class = 12 } }', "a whole number from 1 to 11"),
         ('vary = { "gears.pinion.bore" = { uniform = [1, 2] } }', "leads to something in the case"),
         ('vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04], factor = { pinon = 2 } } }', "did you mean 'pinion'"),
         ('vary = { "gear.*.bore" = { fit = "H7" } }', "independent = true"),
+        ('vary = { "gear.*.root_relief.amount" = { uniform = ["1 um", "2 um"] } }', "'start_roll_angle' and 'length'"),
         ('vary = { "gear.pinion.bore" = { file = "none.csv" } }', "file"),
         (
             'vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04] }, "gear.*.bore" = { uniform = [0.03, 0.04] } }',

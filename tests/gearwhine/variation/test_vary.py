@@ -2,7 +2,9 @@
 
 import json
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,9 @@ from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
+from gearwhine.variation import run
 from gearwhine.variation.samples import FOLDER
+from gearwhine.variation.statistics import QuantityStatistics
 from tests.machines.belted_shaft import BELTED_SHAFT
 
 SHAFT = (
@@ -95,11 +99,23 @@ def test_the_level_of_the_motion_is_that_of_simulate(tmp_path: Path) -> None:
         assert float(level[0]) == pytest.approx(20.0 * np.log10(sensor["rms_m_per_s2"] / 1e-6), abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("values", "mean", "deviation"),
+    [([1.0, np.nan, 3.0], 2.0, np.sqrt(2.0)), ([np.nan, 4.0], 4.0, np.nan), ([np.nan], np.nan, np.nan)],
+)
+def test_statistics_of_few_gearboxes_leave_out_those_that_failed(
+    values: list[float], mean: float, deviation: float
+) -> None:
+    found = QuantityStatistics("force_n", 0.0, np.array(values), np.zeros((len(values), 1)), ("key",))
+    assert [found.mean, found.deviation] == pytest.approx([mean, deviation], nan_ok=True)
+
+
 def _by_hand(forces: np.ndarray) -> np.ndarray:
     """Forces on the bearings of the shaft, left and right, (n, 2)."""
     return forces @ np.array([[0.8, 0.2], [0.2, 0.8]])
 
 
+@pytest.mark.slow
 def test_each_gearbox_equals_the_single_calculation(tmp_path: Path) -> None:
     text = """
 [sweep]
@@ -175,6 +191,7 @@ def test_the_share_within_a_limit_is_that_of_the_known_distribution(tmp_path: Pa
     assert worst is None
 
 
+@pytest.mark.slow
 def test_sobol_indices_of_a_linear_machine_are_those_of_the_closed_form(tmp_path: Path) -> None:
     found = gw.load(_shaft(tmp_path)).vary(128, indices=True, folder=tmp_path / "out", workers=1)
     assert found.document["samples"] == 128 * 4
@@ -239,6 +256,23 @@ def test_a_study_goes_on_where_it_ended_and_a_torn_record_costs_its_last_line(tm
     other = gw.load(path, ["variation.vary.'operation.force[0].x'.uniform=['700 N', '1200 N']"])
     assert other.vary(5, folder=out, workers=1).document["resumed"] == 0
     assert [one != record for one in (out / FOLDER).glob("*.jsonl")] == [True]
+
+
+def test_workers_that_are_asked_for_are_taken_however_short_the_study_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def alone(varied: Any, points: np.ndarray, batches: Any, folder: Path, workers: int, *_: object) -> Iterator[Any]:
+        asked.append(workers)
+        for batch in batches:
+            yield [(number, varied.solve(points[number])) for number in batch]
+
+    monkeypatch.setattr(run, "_solved_by_workers", alone)
+    study = gw.load(_shaft(tmp_path))
+    for workers in (2, None, 1):
+        assert not study.vary(6, folder=tmp_path / f"by {workers}", workers=workers).document["failed"]
+    assert asked == [2]
 
 
 def test_limits_of_unknown_quantities_and_analyses_without_their_tables_are_refused(tmp_path: Path) -> None:

@@ -40,6 +40,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     return gw.load(place / "shaft.toml").vary(256, widen=1.5, folder=place / "out", workers=1).document
 
 
+@pytest.mark.slow
 def test_the_yield_with_a_wider_force_is_that_of_the_closed_form(found: dict[str, object]) -> None:
     rows = found["widened"]
     # The wider second force costs more; a diameter of two values has no tolerance.
@@ -54,6 +55,7 @@ def test_the_yield_with_a_wider_force_is_that_of_the_closed_form(found: dict[str
         assert row["change"]["high"] - row["change"]["low"] < 0.13
 
 
+@pytest.mark.slow
 def test_the_scatter_with_a_wider_force_is_that_of_the_sum(found: dict[str, object]) -> None:
     for row, first, second in zip(found["widened"], (100.0, 150.0), (600.0, 400.0), strict=True):
         (quantity,) = [one for one in row["quantities"] if one["name"] == LEFT]
