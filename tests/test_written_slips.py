@@ -274,7 +274,8 @@ def wrong_pairs(source: Source) -> Slips:
                 yield node.lineno, f"{words[0]}: {words[1]}"
         else:
             words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
-            named = [one.rpartition("_")[2] for one in words if _FILE_NAME.fullmatch(one)]
+            # What stands over a speed is no speed.
+            named = [one.partition("_over_")[0].rpartition("_")[2] for one in words if _FILE_NAME.fullmatch(one)]
             units = [one for one in words if one in _FILE_UNITS]
             if len(units) == 1 and named and named[0] in NAMES and units[0] not in NAMES[named[0]]:
                 yield node.lineno, f"{named[0]} in {units[0]}"

@@ -36,8 +36,10 @@ def draw_envelopes(title: str, condition: MachineCondition) -> Figure:
     tones = sorted((one.tone for one in condition.tones), key=height, reverse=True)[:_MOST_TONES]
     frequency = {one.tone: one.frequency_hz for one in condition.tones}
     low = legend_height(len(tones), 3)
+    limit_hz = condition.limit_hz
+    middle_hz = 0.5 * limit_hz
     note = (
-        f"{shortened(title, 40)}; squared envelope of {0.5 * condition.limit_hz:.0f} to {condition.limit_hz:.0f} Hz "
+        f"{shortened(title, 40)}; squared envelope of {middle_hz:.0f} to {limit_hz:.0f} Hz "
         "over its mean; dotted: multiples of the bearings' tones, which a damaged part raises"
     )
     figure, panels = stacked(len(sensors), _HEIGHT, _GAP, "Envelope spectra", note, first=5.0, foot=FOOT + low)

@@ -12,7 +12,12 @@ from textwrap import fill
 
 ROOT = Path(__file__).parents[3]
 LISTED = Path(__file__).with_name("names_of_results.txt")
-_PLACES = {"Quantity": ("key", "", "name", "", "unit"), "Rows": ("key",), "Part": ("key",)}
+_PLACES = {
+    "Quantity": ("key", "", "name", "", "unit"),
+    "in_file": ("name", "", "", "", "unit"),
+    "Rows": ("key",),
+    "Part": ("key",),
+}
 _WORD = re.compile(r"[a-z][a-z0-9_]*|[A-Z%][A-Za-z0-9/ -]{0,12}[A-Za-z0-9]|[A-Z%]")
 
 
