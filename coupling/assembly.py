@@ -26,7 +26,7 @@ from gearwhine.coupling.description.gear_train import (
     require_meshing,
     turning_senses,
 )
-from gearwhine.coupling.description.parts import TorqueSupport
+from gearwhine.coupling.description.parts import TorqueSupport, bolted_rotors
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
@@ -301,7 +301,7 @@ def assemble_machine(
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
-    frames = Frames(components, frame_speeds(rotors, bearings, meshes, speeds, torque_supports))
+    frames = Frames(components, frame_speeds(rotors, bearings, meshes, speeds, bolted_rotors(torque_supports)))
     components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
     if speed_ratios is None:

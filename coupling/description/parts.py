@@ -1,6 +1,6 @@
 """Parts of a machine: shafts, gears on shafts, excitation; and checks of their names, stations and seats."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, hypot, pi, sin
@@ -340,6 +340,11 @@ class TorqueSupport:
             return np.array([[self.stiffness or 0.0]])
         parts = [bolt.motions.T @ (bolt.stiffness[:, None] * bolt.motions) for bolt in self.bolts]
         return np.asarray(sum(parts), dtype=np.float64)
+
+
+def bolted_rotors(supports: Iterable[TorqueSupport]) -> set[str]:
+    """Names of the rotors that bolts hold, and not only their rotation."""
+    return {support.shaft for support in supports if support.bolts}
 
 
 class MachineParts(Protocol):

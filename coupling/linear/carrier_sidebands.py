@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.description.parts import bolted_rotors
 from gearwhine.coupling.linear.planet_phasing import PlanetPhasing
 from gearwhine.coupling.linear.turning_response import Order, TurningResponse
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
@@ -86,7 +87,8 @@ class CarrierSidebands:
     def frames(self) -> Frames:
         """Frames of the components."""
         machine = self.machine
-        speeds = frame_speeds(machine.rotors, machine.bearings, machine.meshes, machine.speeds, machine.torque_supports)
+        bolted = bolted_rotors(machine.torque_supports)
+        speeds = frame_speeds(machine.rotors, machine.bearings, machine.meshes, machine.speeds, bolted)
         return Frames(machine.system.components, speeds)
 
     @cached_property

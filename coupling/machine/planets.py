@@ -5,11 +5,10 @@ frame, at which speed each connector turns, and what the circling adds to the eq
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.machine.base_motion import rotor_participation
 from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, pin_name
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable, TurningPart
@@ -33,14 +32,13 @@ def frame_speeds(
     bearings: Sequence[MountedBearing],
     meshes: Sequence[GearMesh],
     speeds: Mapping[str, float],
-    torque_supports: Sequence[TorqueSupport] = (),
+    bolted: Collection[str] = (),
 ) -> dict[str, float]:
-    """Speed of the frame of each rotor's coordinates [rad/s].
+    """Speed of the frame of each rotor's coordinates [rad/s], with the names of the rotors that bolts hold.
 
     Planets and their carriers turn with the carrier. So does a sun or a ring whose other connectors are alike all
     round: what joins it to the planets is constant there. All other parts stand still, and among them what bolts hold.
     """
-    bolted = {support.shaft for support in torque_supports if support.bolts}
     carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
     frames = {name: speeds[carrier] for name, carrier in carriers.items()}
     frames |= {pin_name(rotor.name): frames[rotor.name] for rotor in rotors if rotor.pin is not None}
