@@ -220,7 +220,7 @@ class _Keys:
                 name = key_of(_named_place(document, place))
                 yield Input(name, *self._law(place, varied), ((key_of(place), 1.0),), varied.words)
             return
-        if varied.kind in ("fit", "class") and len(places) > 1:
+        if (varied.kind == "class" or (varied.fit and varied.size is None)) and len(places) > 1:
             raise _CannotVaryError(
                 f"independent = true beside {varied.kind!r}: each of the {len(places)} entries has a size of its own"
             )

@@ -79,6 +79,22 @@ def test_a_fit_of_an_interference_is_that_of_shaft_or_bore(
     assert ends == pytest.approx([low, high], abs=0.6)
 
 
+def test_fits_of_one_size_may_be_one_value(tmp_path: Path) -> None:
+    """Both bearings have the same interference, as of one shaft; without a size each entry has its own length."""
+    rolling = (
+        '{ rolling = { catalogue = { type = "deep-groove", bore = "30 mm", outer_diameter = "62 mm", width = "16 mm" }, '
+        'mounting = { inner_interference = "0 um" } } }'
+    )
+    changes = [
+        change
+        for name in ("input-left", "output-left")
+        for change in (f"bearing.{name}.stiffness={rolling}", f"bearing.{name}.damping=")
+    ]
+    key = "bearing.*.stiffness.rolling.mounting.inner_interference"
+    (one,) = _inputs(tmp_path, f'vary = {{ "{key}" = {{ fit = "k6", size = "30 mm" }} }}', changes=changes)
+    assert len(one.keys) == 2
+
+
 def test_a_fit_lies_about_the_length_of_the_case(tmp_path: Path) -> None:
     """40 mm H7 is 0 to 25 µm; six standard deviations fill it."""
     (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { fit = "H7" } }')
