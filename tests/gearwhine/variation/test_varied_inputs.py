@@ -82,8 +82,8 @@ def test_a_fit_of_an_interference_is_that_of_shaft_or_bore(
 def test_fits_of_one_size_may_be_one_value(tmp_path: Path) -> None:
     """Both bearings have the same interference, as of one shaft; without a size each entry has its own length."""
     rolling = (
-        '{ rolling = { catalogue = { type = "deep-groove", bore = "30 mm", outer_diameter = "62 mm", width = "16 mm" }, '
-        'mounting = { inner_interference = "0 um" } } }'
+        '{ rolling = { catalogue = { type = "deep-groove", bore = "30 mm", outer_diameter = "62 mm", width = "16 mm" } '
+        ', mounting = { inner_interference = "0 um" } } }'
     )
     changes = [
         change
