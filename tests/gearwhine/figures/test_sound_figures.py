@@ -103,7 +103,8 @@ def test_efficiencies_are_those_of_modes_and_lines(solved: SolvedSound, figures:
 
 def test_efficiencies_of_one_decade_have_plain_numbers(solved: SolvedSound) -> None:
     modes = tuple(replace(mode, radiation_efficiency=0.3) for mode in solved.modes)
-    figures = dict(draw_sound(sound_of_modes().case.title, replace(solved, modes=modes, lines=())))
+    of_modes = replace(solved.of_modes, modes=modes)
+    figures = dict(draw_sound(sound_of_modes().case.title, replace(solved, of_modes=of_modes, lines=())))
     axes = figures["sound-efficiency"].axes[0]
     low, high = axes.get_ylim()
     axes.figure.draw_without_rendering()  # type: ignore[union-attr]
