@@ -3,6 +3,7 @@
 import unicodedata
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from functools import lru_cache
 
 # Cyrillic and Greek letters with the look of Latin ones (Unicode TS 39, confusables), most of them capital.
 _LOOKS = dict(
@@ -14,6 +15,7 @@ _LOOKS = dict(
 )
 
 
+@lru_cache(maxsize=4096)
 def look_of(name: str) -> str:
     """Return what a reader sees of a name: letters of other scripts as the Latin ones that they look like.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from copy import deepcopy
 from functools import lru_cache
 from typing import Any
 
@@ -76,7 +75,7 @@ def apply_overrides(
     CaseError
         With a problem for each override that is no override or leads nowhere.
     """
-    document, sources, problems = deepcopy(document), dict[Location, str](), list[Problem]()
+    document, sources, problems = _copied(document), dict[Location, str](), list[Problem]()
     for override in overrides:
         path, equals, value_text = override.partition("=")
         steps = parse_key_path(path.strip())
@@ -98,6 +97,13 @@ def apply_overrides(
     if problems:
         raise CaseError(problems)
     return document, sources
+
+
+def _copied(value: Any) -> Any:
+    """Return a copy of tables and lists of a document, whose values are never changed in place."""
+    if isinstance(value, dict):
+        return {key: _copied(inner) for key, inner in value.items()}
+    return [_copied(inner) for inner in value] if isinstance(value, list) else value
 
 
 _WALL = ("housing", "box", "wall")
@@ -166,10 +172,16 @@ def matching_places(document: object, steps: Sequence[str], place: Location = ()
             yield from matching_places(document, rest, (*place, number))
 
 
+# A number with its unit: no TOML, which need not be tried.
+_QUANTITY = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)? [^\W\d_]")
+
+
 def _read_value(text: str) -> Any:
     """Read a TOML value; other text stands for itself. ``NOTHING`` for an empty text."""
     if not text:
         return NOTHING
+    if _QUANTITY.match(text):
+        return text
     try:
         read = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

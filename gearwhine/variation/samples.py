@@ -6,12 +6,13 @@ samples that were found before are in it, and the study goes on from there.
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -189,7 +190,16 @@ def solve_samples(varied: Sampled, points: Sequence[tuple[int, FloatArray]], cod
         Digest of the caller's code; other code on the worker could give other numbers.
     """
     require_same_code(code)
-    return [(number, varied.solve(point)) for number, point in points]
+    solved = [(number, varied.solve(point)) for number, point in points]
+    _leave_to_process()
+    return solved
+
+
+@cache
+def _leave_to_process() -> None:
+    """Take modules and what is kept for all samples out of the worker's garbage collections, once."""
+    gc.collect()
+    gc.freeze()
 
 
 class Record:
