@@ -311,7 +311,14 @@ def report(document: Document) -> Section:
 def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
     yield from table_of(_COLUMNS, rows, "Distributions")
-    yield from _what_matters([row for row in rows if row["name"] in document["headlines"]])
+    leading = [row for row in rows if row["name"] in document["headlines"]]
+    yield from _what_matters(leading)
+    by_range = any(row["key"].endswith(".errors.pitch") for row in document["inputs"])
+    if by_range and not any("sobol_total" in row for row in leading):
+        yield (
+            "Pitch deviations of all teeth are judged by their range alone here, which may explain little of what they "
+            "do: --indices counts all of them, and --widen tells what their class costs."
+        )
     yield from _what_wider_ones_cost(document)
     yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
     standing = ""

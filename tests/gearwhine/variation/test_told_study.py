@@ -149,6 +149,15 @@ def test_a_loudest_speed_at_an_end_of_the_speeds_is_warned_of_with_its_part() ->
     assert varied_document(told(at_end))["warnings"] == []
 
 
+def test_pitch_deviations_are_said_to_be_judged_by_their_range() -> None:
+    """What a range does not explain is not what all pitches do not do."""
+    plain = told(TEN)
+    pitched = replace(plain, inputs=(replace(plain.inputs[0], name="gear.pinion.errors.pitch"),))
+    for study, is_said in ((plain, False), (pitched, True)):
+        sentences, _ = shown({"command": "vary"} | varied_document(study))
+        assert any("judged by their range" in one for one in sentences) is is_said
+
+
 def test_what_has_no_mean_is_left_out_and_lives_have_no_power_of_ten() -> None:
     study = told(TEN)
     words = Input("bearing.*.clearance", Discrete([0.0, 1.0]), "", ("C2", "C3"), (), "C2, C3")
