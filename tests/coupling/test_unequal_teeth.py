@@ -75,6 +75,22 @@ def test_each_line_has_what_its_mechanisms_have_there(torque: str) -> None:
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
+def test_lines_of_a_machine_without_modes_are_solved_directly() -> None:
+    """Free masses have two equal eigenvectors each, which span nothing: their acceleration is the load on them."""
+    machine = uneven_machine()
+    model = MeshHarmonicModel(machine)
+    teeth, rows = unequal_teeth(model, LIMIT), np.array(list(machine.sensor_rows.values()))
+    rows = np.vstack([rows, machine.system.contacts[0].direction])
+    free = np.zeros((machine.system.size, machine.system.size))
+    few = UnequalTeeth(*(values[2:8] for values in (teeth.frequency, teeth.contact, teeth.error, teeth.damped)))
+    assert not few.damped.any()
+    found = unequal_teeth_rms(model, few, rows, 1.0, free, free, LIMIT)
+    number = int(few.contact[0])
+    forces = model.contact.stiffness[number] * np.abs(few.error)
+    known = np.abs(rows @ machine.system.contacts[number].direction) * np.sqrt(0.5 * np.sum(forces**2))
+    np.testing.assert_allclose(found, known, rtol=1e-9, atol=1e-12 * known.max())
+
+
 def test_another_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
     """All together, as of the machine that is made anew there; mesh harmonics apart."""
     machine = uneven()
