@@ -77,6 +77,15 @@ def test_a_changed_study_is_of_the_case_that_was_read(tmp_path: Path) -> None:
     assert studies[1].changed({}).case == studies[1].case
 
 
+def test_a_copy_of_a_case_has_the_files_of_its_tables_as_they_were_read(tmp_path: Path) -> None:
+    write_rotor(tmp_path / "fan.toml")
+    case, read = of_rotor(tmp_path).case, digest(tmp_path / "fan.toml")
+    write_rotor(tmp_path / "fan.toml", 0.6)
+    kept, without = case.model_copy(update={"title": "again"}), case.model_copy(update={"rotor": ()})
+    assert kept.input_files.contents[str(tmp_path / "fan.toml")]["sha256"] == read
+    assert not without.input_files.contents
+
+
 def test_a_file_named_by_a_change_is_read_then(tmp_path: Path) -> None:
     """Also where another change of the same study has named it before, with other content."""
     write_rotor(tmp_path / "fan.toml")
