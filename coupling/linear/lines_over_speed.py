@@ -16,13 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
-from gearwhine.coupling.linear.unequal_teeth import lines_of_meshes
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import FloatArray
 
@@ -114,20 +113,15 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
         resisted = damping + (ratio - 1.0) * system.gyroscopic + (there[1] - here[1])
-        motions = list[ComplexArray]()
-        for load in further:
-            w = ratio * load.frequency
-            dynamic = held + 1j * w * resisted
-            dynamic[np.diag_indices(system.size)] -= w**2
-            motions.append(linalg.solve(dynamic, load.load, overwrite_a=True, check_finite=False))
+        linear = DampedMachine(held, resisted)
+        motions = [linear.motion(ratio * load.frequency, load.load) for load in further]
         harmonics = {cause: motion for load, motion in zip(further, motions, strict=True) for cause in load.causes}
         lines = lines_of_meshes(
             [mesh.up_to(limit, ratio) for mesh in meshes],
             model.contact,
             system.contact_directions,
             rows,
-            held,
-            resisted,
+            linear,
             harmonics,
             ratio=ratio,
             limit=limit,

@@ -14,7 +14,10 @@ directly, too; where the two differ, as with eigenvectors that are nearly one, a
 
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import linalg
@@ -25,9 +28,80 @@ from gearwhine.coupling.statics.mean_mesh import ContactState
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _ALIKE_DIGITS = 9  # digits of the frequency of lines that are one
+_FEW = 25  # frequencies below which a solution at each is less work than the modes
 _AT_ONCE = 2000  # frequencies whose motions are summed together
 _AGREES = 1e-6  # of the highest answer by modes and directly
 _WITHIN = 1e-9  # part of a limit
+
+
+@dataclass(frozen=True, eq=False)
+class DampedMachine:
+    """A linear machine of unit modal masses at one speed.
+
+    Attributes
+    ----------
+    stiffness, damping : ndarray, shape (n, n)
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def motion(self, w: float, load: FloatArray | ComplexArray) -> ComplexArray:
+        """Motion by a harmonic load (n,) at a frequency [rad/s]."""
+        key = round(w, 6)
+        if key not in self._factors:
+            if len(self._factors) >= _FEW:
+                self._factors.clear()
+            dynamic = self.stiffness + 1j * w * self.damping
+            dynamic[np.diag_indices_from(dynamic)] -= w**2
+            self._factors[key] = linalg.lu_factor(dynamic, overwrite_a=True, check_finite=False)
+        return np.asarray(linalg.lu_solve(self._factors[key], load, check_finite=False))
+
+    def answers(self, outputs: FloatArray, direction: FloatArray, frequency: FloatArray) -> ComplexArray:
+        """Motions along rows (o, n) by a unit load along a direction (n,), shape (o, *frequency.shape).
+
+        Those at frequencies of 0 are 0 [rad/s].
+        """
+        frequencies, places = np.unique(frequency, return_inverse=True)
+        found = np.zeros((len(outputs), frequencies.size), dtype=np.complex128)
+        first = int(np.searchsorted(frequencies, 0.0, side="right"))
+        found[:, first:] = self._answers(outputs, direction, frequencies[first:])
+        return np.asarray(found[:, places.ravel()].reshape(-1, *frequency.shape))
+
+    def _answers(self, outputs: FloatArray, direction: FloatArray, frequencies: FloatArray) -> ComplexArray:
+        if frequencies.size > _FEW:
+            with suppress(np.linalg.LinAlgError):
+                found = self._by_modes(outputs, direction, frequencies)
+                highest = int(np.argmax(np.max(np.abs(found), axis=0)))
+                known = outputs @ self.motion(float(frequencies[highest]), direction)
+                if np.max(np.abs(found[:, highest] - known)) <= _AGREES * np.max(np.abs(known)):
+                    return found
+        directly = [outputs @ self.motion(w, direction) for w in frequencies.tolist()]
+        return np.reshape(np.array(directly, dtype=np.complex128), (-1, len(outputs))).T
+
+    def _by_modes(self, outputs: FloatArray, direction: FloatArray, frequencies: FloatArray) -> ComplexArray:
+        values, vectors = self._modes
+        size = len(self.stiffness)
+        # An ill-conditioned solution is found out by the answer that is solved directly.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", linalg.LinAlgWarning)
+            share = linalg.solve(vectors, np.concatenate([np.zeros(size), direction]))
+        motions = (outputs @ vectors[:size]) * share
+        parts = np.array_split(frequencies, -(-frequencies.size // _AT_ONCE))
+        return np.concatenate([motions @ (1.0 / (1j * part - values[:, None])) for part in parts], axis=1)
+
+    @cached_property
+    def _modes(self) -> tuple[ComplexArray, ComplexArray]:
+        """Eigenvalues (2 n,) and right eigenvectors (2 n, 2 n) of the state matrix."""
+        size = len(self.stiffness)
+        state = np.block([[np.zeros((size, size)), np.eye(size)], [-self.stiffness, -self.damping]])
+        values, vectors = linalg.eig(state)
+        return np.asarray(values), np.asarray(vectors)
+
+    @cached_property
+    def _factors(self) -> dict[float, Any]:
+        """LU factors of the dynamic stiffness at the last frequencies."""
+        return {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +128,7 @@ def lines_of_meshes(
     state: ContactState,
     directions: FloatArray,
     rows: FloatArray,
-    stiffness: FloatArray,
-    damping: FloatArray,
+    machine: DampedMachine,
     harmonics: Mapping[Cause, ComplexArray],
     *,
     ratio: float = 1.0,
@@ -72,8 +145,8 @@ def lines_of_meshes(
         Of all contacts of the system.
     rows : ndarray, shape (o, n)
         Rows of the motions at sensors.
-    stiffness, damping : ndarray, shape (n, n)
-        Of the machine linear about its mean load at this speed.
+    machine : DampedMachine
+        Linear about its mean load, at this speed.
     harmonics : mapping of (int, int) to ndarray of complex, shape (n,)
         Motion at mesh harmonics with the mean stiffness, by all that drives it, by contact and harmonic.
     ratio : float
@@ -86,7 +159,7 @@ def lines_of_meshes(
     answers, compressions, loads = list[ComplexArray](), list[ComplexArray](), list[ComplexArray]()
     for place, mesh in enumerate(meshes):
         w, k = ratio * mesh.rate * mesh.orders, float(state.stiffness[mesh.number])
-        answer = answers_to(stiffness, damping, outputs, along[:, place], np.abs(w))
+        answer = machine.answers(outputs, along[:, place], np.abs(w))
         answer = np.where(w < 0.0, answer.conj(), answer)
         # A free train turns until its mesh carries the mean force again.
         answer[:, 0, mesh.reach] = 0.0
@@ -128,53 +201,3 @@ def lines_of_meshes(
     together = np.zeros((len(first), sensors), dtype=np.complex128)
     np.add.at(together, line, parts.T)
     return LinesOfMeshes(by_stiffness, every[first], together.T)
-
-
-def answers_to(
-    stiffness: FloatArray, damping: FloatArray, outputs: FloatArray, direction: FloatArray, frequency: FloatArray
-) -> ComplexArray:
-    """Motions along rows by a unit load at some frequencies, shape (o, *frequency.shape).
-
-    Parameters
-    ----------
-    stiffness, damping : ndarray, shape (n, n)
-    outputs : ndarray, shape (o, n)
-    direction : ndarray, shape (n,)
-        Of the load.
-    frequency : ndarray of any shape
-        Those that are 0 have no answer, 0 [rad/s].
-    """
-    flat = frequency.ravel()
-    turning = np.flatnonzero(flat > 0.0)
-
-    def directly(w: float) -> ComplexArray:
-        return np.asarray(
-            outputs @ linalg.solve(stiffness + 1j * w * damping - w**2 * np.eye(len(stiffness)), direction)
-        )
-
-    found = np.zeros((len(outputs), flat.size), dtype=np.complex128)
-    try:
-        found[:, turning] = _by_modes(stiffness, damping, outputs, direction, flat[turning])
-        highest = turning[np.argmax(np.max(np.abs(found[:, turning]), axis=0))]
-        known = directly(float(flat[highest]))
-        agrees = bool(np.max(np.abs(found[:, highest] - known)) <= _AGREES * np.max(np.abs(known)))
-    except np.linalg.LinAlgError:
-        agrees = False
-    if not agrees:
-        found[:, turning] = np.stack([directly(w) for w in flat[turning].tolist()], axis=1)
-    return found.reshape(-1, *frequency.shape)
-
-
-def _by_modes(
-    stiffness: FloatArray, damping: FloatArray, outputs: FloatArray, direction: FloatArray, frequency: FloatArray
-) -> ComplexArray:
-    """Motions by the modes of the damped machine, shape (o, f)."""
-    size = len(stiffness)
-    values, vectors = linalg.eig(np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness, -damping]]))
-    # An ill-conditioned solution is found out by the answer that is solved directly.
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", linalg.LinAlgWarning)
-        share = linalg.solve(vectors, np.concatenate([np.zeros(size), direction]))
-    motions = (outputs @ vectors[:size]) * share
-    parts = np.array_split(frequency, -(-frequency.size // _AT_ONCE))
-    return np.concatenate([motions @ (1.0 / (1j * part - values[:, None])) for part in parts], axis=1)

@@ -11,7 +11,7 @@ from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
-from gearwhine.coupling.linear.unequal_teeth import lines_of_meshes
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 LIMIT = 2.0 * np.pi * 6000.0
@@ -34,7 +34,9 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
         rows = np.array(list(there.sensor_rows.values()))
         matrices = linear_matrices(there.system, model.contact)
         meshes, directions = varying_meshes(model, LIMIT), there.system.contact_directions
-        varying = lines_of_meshes(meshes, model.contact, directions, rows, *matrices, harmonics).by_stiffness
+        varying = lines_of_meshes(
+            meshes, model.contact, directions, rows, DampedMachine(*matrices), harmonics
+        ).by_stiffness
         amplitudes = found.amplitudes[:, place]
         assert np.isfinite(amplitudes[0]).sum() == len(lines)
         constant = np.array([line.frequency**2 * np.abs(rows @ line.motion) for line in lines]).T

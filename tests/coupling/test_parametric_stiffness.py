@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
-from gearwhine.coupling.linear.unequal_teeth import LinesOfMeshes, answers_to, lines_of_meshes
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, LinesOfMeshes, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import ContactState
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -82,16 +82,16 @@ def solved(meshes: list[int], size: float) -> tuple[LinesOfMeshes, dict[int, Com
                 of[1, order // PERIODS + reach] = one
         varying.append(VaryingMesh(mesh, RATE, np.array([0.0, 1.0 / 3.0]), error, stiffness, np.array([False, False])))
     stiffness = GROUND + (DIRECTIONS * MEAN) @ DIRECTIONS.T
+    machine = DampedMachine(stiffness, DAMPING)
     harmonics = {}
     for harmonic in range(1, REACH + 1):
         motion = np.zeros(3, dtype=np.complex128)
         for mesh in varying:
             load = 2.0 * MEAN[mesh.number] * mesh.error[0, REACH + harmonic]
-            w = np.array([harmonic * RATE])
-            motion += load * answers_to(stiffness, DAMPING, np.eye(3), DIRECTIONS[:, mesh.number], w)[:, 0]
+            motion += load * machine.motion(harmonic * RATE, DIRECTIONS[:, mesh.number])
         harmonics |= {(mesh.number, harmonic): motion for mesh in varying}
     state = ContactState(MEAN, np.zeros(2))
-    found = lines_of_meshes(varying, state, DIRECTIONS, ROWS, stiffness, DAMPING, harmonics)
+    found = lines_of_meshes(varying, state, DIRECTIONS, ROWS, machine, harmonics)
     constant = {h: -((h * RATE) ** 2) * (ROWS @ harmonics[meshes[0], h]) for h in range(1, REACH + 1)}
     return found, constant
 

@@ -16,7 +16,7 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
-from gearwhine.coupling.linear.unequal_teeth import answers_to, lines_of_meshes
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 PITCH = np.random.default_rng(3).normal(scale=3.0, size=28)
@@ -69,7 +69,13 @@ def test_each_line_has_what_its_mechanisms_have_there(torque: str) -> None:
     rows = np.array(list(machine.sensor_rows.values()))
     shaft = abs(machine.speed)
     found = lines_of_meshes(
-        [mesh], model.contact, machine.system.contact_directions, rows, stiffness, damping, {}, limit=LIMIT
+        [mesh],
+        model.contact,
+        machine.system.contact_directions,
+        rows,
+        DampedMachine(stiffness, damping),
+        {},
+        limit=LIMIT,
     )
     orders = np.round(found.frequency / shaft).astype(int)
     np.testing.assert_array_equal(orders, sorted(set(range(1, 32)) - {28}))
@@ -83,9 +89,9 @@ def test_each_line_has_what_its_mechanisms_have_there(torque: str) -> None:
 
 def test_answers_of_a_machine_without_modes_are_solved_directly() -> None:
     """Free masses have two equal eigenvectors each, which span nothing: they move as the load on them accelerates."""
-    free, frequency = np.zeros((3, 3)), np.array([[1.0, 2.0], [0.0, 5.0]])
-    found = answers_to(free, free, np.eye(3), np.array([1.0, 0.0, -2.0]), frequency)
-    known = np.array([[1.0, 0.25], [0.0, 0.04]])
+    free, frequency = np.zeros((3, 3)), np.arange(80.0).reshape(2, 40)
+    found = DampedMachine(free, free).answers(np.eye(3), np.array([1.0, 0.0, -2.0]), frequency)
+    known = np.divide(1.0, frequency**2, out=np.zeros((2, 40)), where=frequency > 0.0)
     np.testing.assert_allclose(found, [-known, 0.0 * known, 2.0 * known], rtol=1e-12)
 
 
