@@ -203,16 +203,6 @@ def _far_points(x, places, normals, weights, far, k, g, dg, dg0):  # type: ignor
 
 
 @_summed
-def _product(g, flux):  # type: ignore[no-untyped-def]
-    """Sum of G q, both with real and imaginary parts apart, shape (2, n)."""
-    real, imaginary = 0.0, 0.0
-    for e in range(g.shape[1]):
-        real += g[0, e] * flux[0, e] - g[1, e] * flux[1, e]
-        imaginary += g[0, e] * flux[1, e] + g[1, e] * flux[0, e]
-    return complex(real, imaginary)
-
-
-@_summed
 def _sum(values):  # type: ignore[no-untyped-def]
     total = 0.0
     for e in range(values.size):
@@ -243,12 +233,12 @@ def _in_blocks(values: FloatArray) -> FloatArray:
 @_compiled
 def _integrate_rows(  # type: ignore[no-untyped-def]
     targets, vertex, corners, triangles, normals, areas, reaches, centers, k, places, point_normals, weights,
-    point_flux, flux, near_rule, duffy, duffy_weights, single, double, static,
+    near_rule, duffy, duffy_weights, layer, double, static,
 ):  # fmt: skip
     """Integrals over all triangles for some points; `vertex` is the vertex at a point, or -1.
 
     With the three points of degree 2 the shape function of a corner is 2/3 at its own and 1/6 at the others.
-    `centers` to `point_flux` are in blocks, see :func:`_in_blocks`.
+    `centers` to `weights` are in blocks, see :func:`_in_blocks`; `layer` is set, `double` and `static` are added to.
     """
     count, blocks = triangles.shape[0], weights.shape[0]
     far, near = np.empty((blocks, _BLOCK)), np.empty(count, np.int64)
@@ -272,8 +262,8 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                     far_g, far_dg[q], far_dg0,
                 )  # fmt: skip
                 total += _sum(far_dg0)
-                for column in range(flux.shape[1]):
-                    single[t, column] += _product(far_g, point_flux[block, column, q])
+                for part in range(2):
+                    layer[t, part, q, start : start + length] = far_g[part, :length]
             for e in range(length):
                 real = (far_dg[0, 0, e] + far_dg[1, 0, e] + far_dg[2, 0, e]) / 6.0
                 imaginary = (far_dg[0, 1, e] + far_dg[1, 1, e] + far_dg[2, 1, e]) / 6.0
@@ -292,14 +282,17 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                 _corner_triangle(corners[e], areas[e], k, corner, duffy, duffy_weights, g)
             else:
                 _near_triangle(x, corners[e], normals[e], areas[e], k, near_rule, g, dg, dg0, stack)
+            mean = (g[0] + g[1] + g[2]) / 3.0
             for i in range(3):
-                for column in range(flux.shape[1]):
-                    single[t, column] += g[i] * flux[3 * e + i, column]
+                # Values at the three points are S q of those at the corners, and S⁻¹ = 2 − 1/3.
+                layer[t, 0, i, e] = 2.0 * g[i].real - mean.real
+                layer[t, 1, i, e] = 2.0 * g[i].imag - mean.imag
                 double[t, triangles[e, i]] += dg[i]
                 total += dg0[i]
         static[t] += total
 
 
+_LAYER = 4_000_000  # values of Green's function that are held at once: 32 MB
 _ROWS = 16  # directions whose phases are held at once: 8 MB with 10,000 triangles
 
 
@@ -367,7 +360,12 @@ class SurfaceIntegrals:
 
 
 def surface_integrals(
-    surface: RadiatingSurface, points: FloatArray, own: IntArray | None, wavenumber: float, flux: ComplexArray
+    surface: RadiatingSurface,
+    points: FloatArray,
+    own: IntArray | None,
+    wavenumber: float,
+    flux: ComplexArray,
+    progress: Callable[[float], None] = lambda fraction: None,
 ) -> SurfaceIntegrals:
     """Integrate Green's function and its normal derivative over a surface.
 
@@ -382,20 +380,42 @@ def surface_integrals(
         k [rad/m].
     flux : ndarray, shape (3 n_triangles, n)
         q at the corners of the triangles.
+    progress : callable
+        Called with the completed fraction.
     """
     vertex = np.full(len(points), -1) if own is None else own
+    count, columns = len(surface.triangles), flux.shape[1]
     double = np.zeros((len(points), len(surface.points)), dtype=np.complex128)
     static = np.zeros(len(points))
-    single = np.zeros((len(points), flux.shape[1]), dtype=np.complex128)
+    single = np.zeros((len(points), columns), dtype=np.complex128)
     shares = _DEGREE_2[:, :3]
-    at_points = np.einsum("qa,ean->nqe", shares, flux.reshape(-1, 3, flux.shape[1]))
-    _integrate_rows(
-        np.ascontiguousarray(points), vertex, surface.corners, surface.triangles, surface.normals, surface.areas,
-        _in_blocks(9.0 * surface.lengths**2), _in_blocks(surface.corners.mean(axis=1).T), wavenumber,
-        _in_blocks(np.einsum("qa,eaj->qje", shares, surface.corners)), _in_blocks(surface.normals.T),
-        _in_blocks(surface.areas / (12.0 * math.pi)), _in_blocks(np.stack([at_points.real, at_points.imag], axis=2)),
-        flux, _DEGREE_4, _POINTS, _WEIGHTS, single, double, static,
-    )  # fmt: skip
+    at_points = np.einsum("qa,ean->qen", shares, flux.reshape(-1, 3, columns)).reshape(-1, columns)
+    blocks = [
+        _in_blocks(values)
+        for values in (
+            9.0 * surface.lengths**2,
+            surface.corners.mean(axis=1).T,
+            np.einsum("qa,eaj->qje", shares, surface.corners),
+            surface.normals.T,
+            surface.areas / (12.0 * math.pi),
+        )
+    ]
+    places = np.ascontiguousarray(points)
+    rows = max(_LAYER // (6 * count), 1)
+    layer = np.empty((min(rows, len(points)), 2, 3, count))
+    for start in range(0, len(points), rows):
+        some = slice(start, min(start + rows, len(points)))
+        part = layer[: some.stop - start]
+        _integrate_rows(
+            places[some], vertex[some], surface.corners, surface.triangles, surface.normals, surface.areas,
+            *blocks[:2], wavenumber, *blocks[2:], _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
+        )  # fmt: skip
+        # Products of real numbers alone: a velocity in phase has an imaginary flux.
+        for factor, values in ((1.0, at_points.real), (1j, at_points.imag)):
+            if values.any():
+                product = (part.reshape(-1, 3 * count) @ np.ascontiguousarray(values)).reshape(-1, 2, columns)
+                single[some] += factor * (product[:, 0] + 1j * product[:, 1])
+        progress(some.stop / len(points))
     return SurfaceIntegrals(single, double, static)
 
 
