@@ -73,6 +73,22 @@ MOST_TRIANGLES = 16_000
 
 
 @dataclass(frozen=True)
+class FarSphere:
+    """Far field over all directions into the air.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n_directions,)
+        Solid angle that each direction stands for [sr].
+    amplitudes : ndarray of complex, shape (n_directions, n)
+        Amplitude F of the far field F exp(−i k r) / r [Pa m].
+    """
+
+    weights: FloatArray
+    amplitudes: ComplexArray
+
+
+@dataclass(frozen=True)
 class SoundField:
     """Solution for some distributions of normal velocity at one frequency.
 
@@ -92,6 +108,8 @@ class SoundField:
         which has no inside, and where no point inside is far enough from the surface, as in a thin plate.
     known : KnownField or None
         Solution for known sources inside by the same equations. None for a baffled face, and where no source can stand.
+    far : FarSphere or None
+        The far field, where it is known already.
     """
 
     surface: RadiatingSurface
@@ -102,6 +120,7 @@ class SoundField:
     pressure: ComplexArray
     inside: ComplexArray
     known: KnownField | None = None
+    far: FarSphere | None = None
 
     @property
     def wavenumber(self) -> float:
@@ -172,13 +191,12 @@ class SoundField:
         positive semidefinite by construction; an error ε of the pressure that is out of phase with the velocity, which
         spoils the surface's power of a weak radiator, changes it by ε² only.
         """
-        directions, weights = _directions(self._degree)
-        far = self.far_field(directions)
-        share = 1.0 if self.plane is None else 0.5  # the field and its mirror image hold each direction twice
-        return np.asarray(share / self.medium.impedance * ((far.conj().T * weights) @ far).real)
+        far = self.over_sphere(self.degree) if self.far is None else self.far
+        return np.asarray(((far.amplitudes.conj().T * far.weights) @ far.amplitudes).real / self.medium.impedance)
 
     @property
-    def _degree(self) -> int:
+    def degree(self) -> int:
+        """Degree of spherical harmonics up to which the field's squares are integrated over the directions."""
         center = self.surface.points.mean(axis=0)
         reach = np.linalg.norm(self.surface.points - center, axis=1).max()
         if self.plane is not None:
@@ -193,16 +211,29 @@ class SoundField:
         directions : ndarray, shape (n_directions, 3)
             Unit vectors. Distances r are from the centre of the surface's vertices, or its foot on the hard plane.
         """
+        far = self._without_image(directions)
+        if self.plane is not None:
+            images = directions - 2.0 * np.outer(directions @ self.plane.normal, self.plane.normal)
+            far = far + self._without_image(images)
+        return far
+
+    def over_sphere(self, degree: int) -> FarSphere:
+        """Far field in the directions into the air that integrate products of spherical harmonics of a degree."""
+        if self.plane is None:
+            directions, weights = _directions(degree, np.array([0.0, 1.0, 0.0]))
+            return FarSphere(weights, self.far_field(directions))
+        directions, weights = _directions(degree, self.plane.normal)
+        of_circles = self._without_image(directions).reshape(-1, 2 * degree + 2, self.pressure.shape[1])
+        upper = (of_circles + of_circles[::-1])[len(of_circles) // 2 :]
+        return FarSphere(weights[len(weights) // 2 :], upper.reshape(-1, self.pressure.shape[1]))
+
+    def _without_image(self, directions: FloatArray) -> ComplexArray:
+        """Amplitude of the far field of the surface alone."""
         center = self.surface.points.mean(axis=0)
         if self.plane is not None:
             center = center - self.plane.height(center[None])[0] * self.plane.normal
         sources = SourcePoints.of(self.surface)
-        flux = self.flux
-        far = far_field_amplitudes(sources, directions, center, self.wavenumber, self.pressure, flux)
-        if self.plane is not None:
-            images = directions - 2.0 * np.outer(directions @ self.plane.normal, self.plane.normal)
-            far = far + far_field_amplitudes(sources, images, center, self.wavenumber, self.pressure, flux)
-        return far
+        return far_field_amplitudes(sources, directions, center, self.wavenumber, self.pressure, self.flux)
 
     def pressure_at(self, points: FloatArray) -> ComplexArray:
         """Sound pressure at points in the air [Pa], shape (n_points, n).
@@ -574,18 +605,18 @@ def surface_load(surface: RadiatingSurface, field: FloatArray | ComplexArray) ->
     return np.asarray(weighted.reshape(3 * len(surface.areas), -1))
 
 
-def _directions(degree: int) -> tuple[FloatArray, FloatArray]:
+def _directions(degree: int, axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return unit vectors and weights that integrate products of two spherical harmonics of a degree.
 
-    Gauss's points along the axis y, which is the height of the cases, times even steps around it; upper and lower
-    directions mirror each other.
+    Gauss's points along an axis, an even number of them, times even steps around it: circles, the lowest first, of
+    2 degree + 2 directions each. Upper and lower ones mirror each other.
     """
-    heights, weights = np.polynomial.legendre.leggauss(degree + 1)
+    heights, weights = np.polynomial.legendre.leggauss(degree + 1 + (degree + 1) % 2)
     angles = np.pi * np.arange(2 * degree + 2) / (degree + 1)
-    level = np.sqrt(1.0 - heights**2)
-    directions = np.stack(
-        [np.outer(level, np.cos(angles)), np.outer(heights, np.ones(len(angles))), np.outer(level, np.sin(angles))], -1
-    )
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    around = np.outer(np.cos(angles), first) + np.outer(np.sin(angles), np.cross(axis, first))
+    directions = heights[:, None, None] * axis + np.sqrt(1.0 - heights**2)[:, None, None] * around
     return directions.reshape(-1, 3), np.repeat(weights, len(angles)) * np.pi / (degree + 1)
 
 

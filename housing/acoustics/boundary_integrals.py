@@ -293,7 +293,7 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
 
 
 _LAYER = 4_000_000  # values of Green's function that are held at once: 32 MB
-_ROWS = 16  # directions whose phases are held at once: 8 MB with 10,000 triangles
+_ROWS = 64  # directions whose phases are held at once: 32 MB with 10,000 triangles
 
 
 @dataclass(frozen=True)
@@ -410,18 +410,16 @@ def surface_integrals(
             places[some], vertex[some], surface.corners, surface.triangles, surface.normals, surface.areas,
             *blocks[:2], wavenumber, *blocks[2:], _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
         )  # fmt: skip
-        # Products of real numbers alone: a velocity in phase has an imaginary flux.
-        for factor, values in ((1.0, at_points.real), (1j, at_points.imag)):
-            if values.any():
-                product = (part.reshape(-1, 3 * count) @ np.ascontiguousarray(values)).reshape(-1, 2, columns)
-                single[some] += factor * (product[:, 0] + 1j * product[:, 1])
+        single[some] = _real_products(np.moveaxis(part.reshape(-1, 2, 3 * count), 1, 0), at_points)
         progress(some.stop / len(points))
     return SurfaceIntegrals(single, double, static)
 
 
 @_compiled
-def _phases(directions, places, k, cosines, sines):  # type: ignore[no-untyped-def]
-    """Set cosine and sine of k d . y."""
+def _direction_rows(  # type: ignore[no-untyped-def]
+    directions, places, normals, weights, triangles, k, cosines, sines, double
+):
+    """Set cosine and sine of k d . y; add the weighted (d . n) exp(i k d . y) of each vertex's shape function."""
     for d in range(directions.shape[0]):
         d0, d1, d2 = directions[d, 0], directions[d, 1], directions[d, 2]
         for q in range(places.shape[1]):
@@ -429,6 +427,14 @@ def _phases(directions, places, k, cosines, sines):  # type: ignore[no-untyped-d
             sine, cosine = _sine_and_cosine(math.fabs(k * along))
             cosines[d, q] = cosine
             sines[d, q] = math.copysign(1.0, along) * sine
+        for e in range(triangles.shape[0]):
+            at = 3 * e
+            scale = weights[at] * (d0 * normals[0, at] + d1 * normals[1, at] + d2 * normals[2, at])
+            real = (cosines[d, at] + cosines[d, at + 1] + cosines[d, at + 2]) / 6.0
+            imaginary = (sines[d, at] + sines[d, at + 1] + sines[d, at + 2]) / 6.0
+            for i in range(3):
+                value = complex(real + 0.5 * cosines[d, at + i], imaginary + 0.5 * sines[d, at + i])
+                double[d, triangles[e, i]] += scale * value
 
 
 @_compiled
@@ -460,23 +466,30 @@ def far_field_amplitudes(
 
     ``F(d) = (1 / 4 pi) integral of (i k (d . n) p - q) exp(i k d . (y - center)) dS``
     """
-    shares = _DEGREE_2[:, :3]
     columns = pressure.shape[1]
-    at_points = np.einsum("qa,ean->eqn", shares, pressure[source.triangles]).reshape(-1, columns)
-    rate = np.einsum("qa,ean->eqn", shares, flux.reshape(-1, 3, columns)).reshape(-1, columns)
-    weight = source.weights[:, None] / (4.0 * math.pi)
-    layers = np.hstack([weight * rate, *(weight * source.normals[j][:, None] * at_points for j in range(3))])
-    layers = np.hstack([layers.real, layers.imag])  # phases and layers with their parts apart have the real products
+    rate = np.einsum("qa,ean->eqn", _DEGREE_2[:, :3], flux.reshape(-1, 3, columns)).reshape(-1, columns)
+    rate *= source.weights[:, None]
     far = np.empty((len(directions), columns), dtype=np.complex128)
     places = np.ascontiguousarray(source.places - center[:, None])
     for start in range(0, len(directions), _ROWS):
         some = np.ascontiguousarray(directions[start : start + _ROWS])
         phases = np.empty((2, len(some), places.shape[1]))
-        _phases(some, places, wavenumber, phases[0], phases[1])
-        (cc, cs), (sc, ss) = np.moveaxis((phases @ layers).reshape(2, len(some), 2, 4, columns), 2, 1)
-        moments = cc - ss + 1j * (cs + sc)
-        far[start : start + _ROWS] = 1j * wavenumber * np.einsum("dj,djn->dn", some, moments[:, 1:]) - moments[:, 0]
-    return far
+        double = np.zeros((len(some), len(pressure)), dtype=np.complex128)
+        _direction_rows(
+            some, places, source.normals, source.weights, source.triangles, wavenumber, phases[0], phases[1], double
+        )
+        far[start : start + _ROWS] = 1j * wavenumber * (double @ pressure) - _real_products(phases, rate)
+    return far / (4.0 * math.pi)
+
+
+def _real_products(parts: FloatArray, values: ComplexArray) -> ComplexArray:
+    """Return A x of A = parts[0] + i parts[1] by products of real numbers, with none for a part of x that is zero."""
+    total = np.zeros((parts.shape[1], values.shape[1]), dtype=np.complex128)
+    for factor, part in ((1.0, values.real), (1j, values.imag)):
+        if part.any():
+            real, imaginary = parts @ np.ascontiguousarray(part)
+            total += factor * (real + 1j * imaginary)
+    return total
 
 
 def solid_angles(surface: RadiatingSurface, points: FloatArray) -> FloatArray:
