@@ -341,6 +341,40 @@ def linear_projection(surface: RadiatingSurface, field: Callable[[FloatArray], C
 
 
 @dataclass(frozen=True)
+class RealParts:
+    """Complex columns as real ones, for products of real numbers: a velocity in phase has an imaginary flux alone.
+
+    Attributes
+    ----------
+    parts : tuple of (complex, ndarray)
+        Factor 1 or i and its real columns, shape (m, n); none of a part that is zero.
+    columns : int
+    """
+
+    parts: tuple[tuple[complex, FloatArray], ...]
+    columns: int
+
+    @classmethod
+    def of(cls, values: ComplexArray) -> "RealParts":
+        """Columns of shape (m, n)."""
+        both = ((1.0 + 0.0j, values.real), (1.0j, values.imag))
+        return cls(tuple((by, np.ascontiguousarray(part)) for by, part in both if part.any()), values.shape[1])
+
+    def times(self, real: FloatArray, imaginary: FloatArray) -> ComplexArray:
+        """Return (real + i imaginary) x, matrices of shape (k, m)."""
+        total = np.zeros((len(real), self.columns), dtype=np.complex128)
+        for factor, part in self.parts:
+            total += factor * (real @ part + 1j * (imaginary @ part))
+        return total
+
+
+def point_flux(flux: ComplexArray) -> RealParts:
+    """Flux at the quadrature points of degree 2 from that at the corners of the triangles, shape (3 n_triangles, n)."""
+    columns = flux.shape[1]
+    return RealParts.of(np.einsum("qa,ean->qen", _DEGREE_2[:, :3], flux.reshape(-1, 3, columns)).reshape(-1, columns))
+
+
+@dataclass(frozen=True)
 class SurfaceIntegrals:
     """Integrals over a surface for some points x.
 
@@ -364,8 +398,7 @@ def surface_integrals(
     points: FloatArray,
     own: IntArray | None,
     wavenumber: float,
-    flux: ComplexArray,
-    progress: Callable[[float], None] = lambda fraction: None,
+    flux: RealParts,
 ) -> SurfaceIntegrals:
     """Integrate Green's function and its normal derivative over a surface.
 
@@ -378,19 +411,16 @@ def surface_integrals(
         Vertex that each point is, or -1; None where no point is a vertex.
     wavenumber : float
         k [rad/m].
-    flux : ndarray, shape (3 n_triangles, n)
-        q at the corners of the triangles.
-    progress : callable
-        Called with the completed fraction.
+    flux : RealParts
+        q, see :func:`point_flux`.
     """
     vertex = np.full(len(points), -1) if own is None else own
-    count, columns = len(surface.triangles), flux.shape[1]
+    count = len(surface.triangles)
     double = np.zeros((len(points), len(surface.points)), dtype=np.complex128)
     static = np.zeros(len(points))
-    single = np.zeros((len(points), columns), dtype=np.complex128)
+    single = np.zeros((len(points), flux.columns), dtype=np.complex128)
     shares = _DEGREE_2[:, :3]
-    at_points = np.einsum("qa,ean->qen", shares, flux.reshape(-1, 3, columns)).reshape(-1, columns)
-    blocks = [
+    reaches, centers, quadrature, normals, weights = (
         _in_blocks(values)
         for values in (
             9.0 * surface.lengths**2,
@@ -399,7 +429,7 @@ def surface_integrals(
             surface.normals.T,
             surface.areas / (12.0 * math.pi),
         )
-    ]
+    )
     places = np.ascontiguousarray(points)
     rows = max(_LAYER // (6 * count), 1)
     layer = np.empty((min(rows, len(points)), 2, 3, count))
@@ -408,10 +438,11 @@ def surface_integrals(
         part = layer[: some.stop - start]
         _integrate_rows(
             places[some], vertex[some], surface.corners, surface.triangles, surface.normals, surface.areas,
-            *blocks[:2], wavenumber, *blocks[2:], _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
+            reaches, centers, wavenumber, quadrature, normals, weights,
+            _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
         )  # fmt: skip
-        single[some] = _real_products(np.moveaxis(part.reshape(-1, 2, 3 * count), 1, 0), at_points)
-        progress(some.stop / len(points))
+        real, imaginary = np.moveaxis(part.reshape(-1, 2, 3 * count), 1, 0)
+        single[some] = flux.times(real, imaginary)
     return SurfaceIntegrals(single, double, static)
 
 
@@ -467,8 +498,8 @@ def far_field_amplitudes(
     ``F(d) = (1 / 4 pi) integral of (i k (d . n) p - q) exp(i k d . (y - center)) dS``
     """
     columns = pressure.shape[1]
-    rate = np.einsum("qa,ean->eqn", _DEGREE_2[:, :3], flux.reshape(-1, 3, columns)).reshape(-1, columns)
-    rate *= source.weights[:, None]
+    at_points = np.einsum("qa,ean->eqn", _DEGREE_2[:, :3], flux.reshape(-1, 3, columns)).reshape(-1, columns)
+    rate = RealParts.of(source.weights[:, None] * at_points)
     far = np.empty((len(directions), columns), dtype=np.complex128)
     places = np.ascontiguousarray(source.places - center[:, None])
     for start in range(0, len(directions), _ROWS):
@@ -478,18 +509,8 @@ def far_field_amplitudes(
         _direction_rows(
             some, places, source.normals, source.weights, source.triangles, wavenumber, phases[0], phases[1], double
         )
-        far[start : start + _ROWS] = 1j * wavenumber * (double @ pressure) - _real_products(phases, rate)
+        far[start : start + _ROWS] = 1j * wavenumber * (double @ pressure) - rate.times(*phases)
     return far / (4.0 * math.pi)
-
-
-def _real_products(parts: FloatArray, values: ComplexArray) -> ComplexArray:
-    """Return A x of A = parts[0] + i parts[1] by products of real numbers, with none for a part of x that is zero."""
-    total = np.zeros((parts.shape[1], values.shape[1]), dtype=np.complex128)
-    for factor, part in ((1.0, values.real), (1j, values.imag)):
-        if part.any():
-            real, imaginary = parts @ np.ascontiguousarray(part)
-            total += factor * (real + 1j * imaginary)
-    return total
 
 
 def solid_angles(surface: RadiatingSurface, points: FloatArray) -> FloatArray:
