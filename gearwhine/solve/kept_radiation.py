@@ -6,6 +6,8 @@ from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.coupling.sound.motion_lines import MotionLines
@@ -67,6 +69,9 @@ def kept_radiation(
     record = housing.record
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
+    spans = KeptSpan(acoustics, housing)
+    radiation = spans.spanned(radiation, np.linspace(*between, POINTS), between, progress)
+    housing, record = spans.housing, spans.housing.record
     solved = ModalRadiation.solve(radiation, places, *between, points=POINTS, each=partial(_each, progress=progress))
     # All arrays of an earlier table are removed: its microphones must not stay where there are none now.
     other_extras = {name: array for name, array in record.extras.items() if name not in ARRAYS}

@@ -31,7 +31,7 @@ from gearwhine.housing.storage.netcdf import LabelledArray
 from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 from gearwhine.numerics.dense_least_squares import solve_least_squares
 
-LARGEST_MISFIT = 1e-2
+LARGEST_MISFIT = 1.5e-2
 """Largest root mean square of what equations without a part in a solution leave over, relative to the pressure."""
 
 SPACING = 4.5
@@ -41,6 +41,7 @@ _NEIGHBOURS = 4  # frequencies around one whose solutions span its own
 _LEAST_SINGULAR_VALUE = 1e-3  # of the largest one
 _CLOSER = 0.8  # power of even steps by which the frequencies of a span lie closer at high ones
 _EQUATIONS = 2.0  # vertices whose equations are taken, over the columns of the basis
+_WORTH = 2.0  # frequencies at which fields are wanted for each at which all modes are solved, above which these pay
 _PROVING = 150  # vertices whose equations prove it
 _MOST = 0.6  # part of the vertices above which all equations are as cheap
 
@@ -188,7 +189,7 @@ def spanning_frequencies(
     low, high = between
     reach = elements.medium.wavenumber(high - low) * float(np.ptp(elements.surface.points, axis=0).max())
     count = max(int(np.ceil(reach / SPACING)) + 1, _NEIGHBOURS)
-    if len(wanted) <= count:
+    if len(wanted) <= _WORTH * count:
         return None
     even = low + (high - low) * np.linspace(0.0, 1.0, count) ** _CLOSER
     for place in range(1, count - 1):
