@@ -32,7 +32,8 @@ of A with σ at the limit gives the response there and its derivatives by ω²,
     X_1 = A⁻¹ F,    X_j = A⁻¹ M X_{j-1},        A = K - σM on the complement.                             (5)
 
 With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
-(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The residual modes of the lowest frequencies
+(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). They take no solutions of their own: since
+A⁻¹ K = I + σ A⁻¹ M, the directions of the first j sweeps span X_1 to X_j. The residual modes of the lowest frequencies
 then come close to the modes just above the limit, as far as the ports drive them.
 
 Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
@@ -224,20 +225,16 @@ def residual_attachment_modes(
     elastic = values > floor
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
 
-    static = _ConjugateGradients(loads - inertia @ motions, 0.0, _SETTLED_RESPONSE_SHARE, modal.diagonal())
+    static = _ConjugateGradients(loads - inertia @ motions, 0.0, _SETTLED_RESPONSE_SHARE, modal.diagonal(), orders - 1)
     sweeps = _sweep_until_settled(stiffness, mass, solve, [static], vectors, inertia, progress)
     residual = static.x - vectors @ (inertia.T @ static.x)
     span = _independent(np.asarray(stiffness @ residual), residual, modal.diagonal())
-    response = loads
-    for order in range(1, orders):
-        progress(f"response {order} of {orders - 1} at the limit")
-        response = _complement_solve(solve, response, vectors, inertia)
-        span = _extended(stiffness, span, response)
-        response = np.asarray(mass @ response)
+    for directions, products in static.first:
+        span = _extended(stiffness, span, directions, products)
     progress("orthonormal shapes")
-    squared, shapes = _orthonormal(stiffness, mass, span, vectors, inertia)
-    turn = _turn(stiffness, squared, shapes, values, vectors)
-    inertia += np.asarray(mass @ shapes) @ turn
+    squared, shapes, products, weights = _orthonormal(stiffness, mass, span, vectors, inertia)
+    turn = _turn(products, squared, values, vectors)
+    inertia += weights @ turn
     vectors, shapes = vectors + shapes @ turn, shapes - vectors @ turn.T
     motions = vectors.T @ loads
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
@@ -296,7 +293,7 @@ def extended_residual_modes(
     """
     frequencies, count = residual_modes.frequencies, len(residual_modes.frequencies)
     shapes = residual_modes.shapes.reshape(count, -1).T[free]
-    added = _extended(stiffness, shapes / frequencies, further)[:, count:]
+    added = _extended(stiffness, shapes / frequencies, further, np.asarray(stiffness @ further))[:, count:]
     # The given modes are orthonormal to the kept ones already, so that only what is added is made so.
     inertia = np.asarray(mass @ vectors)
     for _ in range(2):
@@ -309,7 +306,7 @@ def extended_residual_modes(
     joined = shapes @ mixture[:count]
     joined += added @ mixture[count:]
     full = np.zeros((len(squared), residual_modes.shapes[0].size))
-    full[:, free] = _upright(joined).T
+    full[:, free] = (joined * _signs(joined)).T
     return ResidualModes(
         np.sqrt(squared), full.reshape(len(squared), *residual_modes.shapes.shape[1:]), residual_modes.proof
     )
@@ -382,11 +379,15 @@ class _ConjugateGradients:
     Each sweep minimises the energy of every column over all columns' directions D, with Dᵀ (K - ω²M) D = I. The
     iteration has settled where a sweep moves no column by more than a part ``settled`` in the norm of the strain
     energy. ``covered`` [m/N] is the compliance held already, added to the columns' own as the measure where little is
-    left.
+    left. The directions of the sweeps up to a number ``kept`` stay in ``first``, each with its product.
     """
 
-    def __init__(self, loads: FloatArray, squared: float, settled: float, covered: FloatArray | float) -> None:
+    def __init__(
+        self, loads: FloatArray, squared: float, settled: float, covered: FloatArray | float, kept: int = 0
+    ) -> None:
         self.x = np.zeros_like(loads)
+        self.first: list[tuple[FloatArray, FloatArray]] = []
+        self._kept = kept
         self.squared, self.left = squared, loads
         self._loads, self._settled, self._covered = loads.copy(), settled, covered
         self._directions = self._products = np.zeros((len(loads), 0))
@@ -408,12 +409,14 @@ class _ConjugateGradients:
         new = shares > _ROUNDING_ENERGY_SHARE * max(shares.max(initial=0.0), 0.0)
         mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
         self._directions, self._products = step @ mixture, product @ mixture
+        if len(self.first) < self._kept:
+            self.first.append((self._directions, self._products))
         length = self._directions.T @ self.left
         self.x += self._directions @ length
         self.left -= self._products @ length
         moved = np.einsum("ij,ij->j", length, length)
         own = np.einsum("ij,ij->j", self._loads, self.x)
-        return bool(np.all(moved <= self._settled**2 * (self._covered + own)))
+        return len(self.first) == self._kept and bool(np.all(moved <= self._settled**2 * (self._covered + own)))
 
 
 def _sweep_until_settled(
@@ -450,12 +453,6 @@ def _sweep_until_settled(
     )
 
 
-def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, inertia: FloatArray) -> FloatArray:
-    """A⁻¹ of loads in the M-orthogonal complement of the modes: the response of the discarded modes at ω² = σ."""
-    solution = solve(right - inertia @ (vectors.T @ right))
-    return np.asarray(solution - vectors @ (inertia.T @ solution))
-
-
 def _independent(product: FloatArray, residual: FloatArray, known_energy: FloatArray) -> FloatArray:
     """Residual vectors orthonormal in K, whose ``product`` with them is given, that span the given ones.
 
@@ -470,20 +467,20 @@ def _independent(product: FloatArray, residual: FloatArray, known_energy: FloatA
     return np.asarray((residual * scale) @ (mixture[:, new] / np.sqrt(shares[new])))
 
 
-def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> FloatArray:
-    """Extend vectors orthonormal in K by the part of further ones outside their span.
+def _extended(stiffness: Operator, span: FloatArray, further: FloatArray, force: FloatArray) -> FloatArray:
+    """Extend vectors orthonormal in K by the part of further ones, whose product with K is given, outside their span.
 
     A combination that adds less than the part `_ADDS_NOTHING` of its own strain energy is dropped.
     """
-    force = np.asarray(stiffness @ further)
     energy_before = np.einsum("ij,ij->j", further, force)
     scale = _ratio(np.ones(len(energy_before)), np.sqrt(np.maximum(energy_before, 0.0)))
-    further, force = further * scale, force * scale
-    for _ in range(2):
-        # Twice, for the rounding that the first time leaves.
-        further = further - span @ (span.T @ force)
-        force = np.asarray(stiffness @ further)
-    energy = further.T @ force
+    further = further * scale
+    further -= span @ ((span.T @ force) * scale)
+    # Once more, for the rounding that the first time leaves.
+    force = np.asarray(stiffness @ further)
+    rest = span.T @ force
+    further -= span @ rest
+    energy = further.T @ force  # the span's part of this product is in no direction left
     shares, mixture = linalg.eigh(0.5 * (energy + energy.T))
     new = shares > _ADDS_NOTHING
     return np.hstack([span, further @ (mixture[:, new] / np.sqrt(shares[new]))])
@@ -491,28 +488,30 @@ def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> Flo
 
 def _orthonormal(
     stiffness: Operator, mass: Operator, shapes: FloatArray, vectors: FloatArray, inertia: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """ω² and M-orthonormal shapes with the span of the given ones, less the modes', that diagonalise K, ascending."""
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """ω² and M-orthonormal shapes with the span of the given ones, less the modes', that diagonalise K, ascending.
+
+    Their products with K and M come behind them.
+    """
     # Twice: the first pass mixes vectors of very different mass, whose rounding the second takes off.
-    squared = np.zeros(shapes.shape[1])
+    squared, products, weights = np.zeros(shapes.shape[1]), shapes, shapes
     for _ in range(2):
         shapes = shapes - vectors @ (inertia.T @ shapes)
-        squared, mixture = linalg.eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
+        products, weights = np.asarray(stiffness @ shapes), np.asarray(mass @ shapes)
+        squared, mixture = linalg.eigh(shapes.T @ products, shapes.T @ weights)
         shapes = shapes @ mixture
-    return squared, _upright(shapes)
+    signs = _signs(shapes)
+    return squared, shapes * signs, products @ (mixture * signs), weights @ (mixture * signs)
 
 
-def _upright(shapes: FloatArray) -> FloatArray:
-    """Shapes (n, k) with their largest entries positive."""
-    largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
-    return np.asarray(shapes * np.sign(largest))
+def _signs(shapes: FloatArray) -> FloatArray:
+    """Signs of the largest entries of shapes (n, k), shape (k,)."""
+    return np.asarray(np.sign(shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]))
 
 
-def _turn(
-    stiffness: Operator, squared: FloatArray, shapes: FloatArray, values: FloatArray, vectors: FloatArray
-) -> FloatArray:
+def _turn(products: FloatArray, squared: FloatArray, values: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return s of Eq. (3) for each residual mode and mode, shape (k, p); 0 beyond the error of a certified mode."""
-    coupling = np.asarray(stiffness @ shapes).T @ vectors
+    coupling = products.T @ vectors
     apart = values - squared[:, None]
     small = np.abs(coupling) <= RESIDUAL_BOUND * np.abs(apart)
     return np.asarray(np.divide(coupling, apart, out=np.zeros_like(coupling), where=small & (apart != 0.0)))
