@@ -8,7 +8,7 @@ and the lines are solved again. The adjoint load of a sensor is one on a point, 
 skin.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -104,7 +104,12 @@ class SolvedLines:
         displacement = self.housing.modes.displacement
         return np.asarray(displacement(housing_motion.real, every) + 1j * displacement(housing_motion.imag, every))
 
-    def rates(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> HousingRates:
+    def rates(
+        self,
+        fields: StaticSensitivity,
+        changes: Sequence[HousingChange],
+        report: Callable[[float], None] = lambda fraction: None,
+    ) -> HousingRates:
         """Project derivatives of the housing by the coordinates of parameters on its modes and residual modes.
 
         Parameters
@@ -112,6 +117,8 @@ class SolvedLines:
         fields : StaticSensitivity
             Fields with the housing's material and its displacement at the operating point.
         changes : sequence of HousingChange
+        report : callable
+            Called with the completed fraction.
         """
         modes, ratios = self.housing.modes, self.housing.damping_ratios
         shapes, omega = modes.shapes, modes.frequencies
@@ -122,7 +129,7 @@ class SolvedLines:
         omega = np.concatenate([omega, modes.residual_modes.frequencies])
         ratios = np.concatenate([ratios, np.full(extra, ratios.max(initial=0.0))])
         rates = [change.rate for change in changes]
-        sensitivities = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates)
+        sensitivities = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates, report)
         motions = [self.field(harmonic.line.motion) for harmonic in self.sound]
         powers = [
             {}
