@@ -202,6 +202,7 @@ def solve_modes(
             free=system.free,
             n_nodes=system.n_nodes,
             orders=port_orders,
+            threads=threads,
             progress=lambda step: progress(f"{work}: {step}"),
         )
         search.seconds["reduction"] = time.perf_counter() - start
@@ -286,6 +287,7 @@ class ModeSetExtension:
             free=system.free,
             n_nodes=system.n_nodes,
             orders=orders,
+            threads=system.threads,
             progress=progress,
         )
         if modes.residual_modes is None:
@@ -333,6 +335,7 @@ class ModeSetExtension:
             np.asarray(system.mass @ self._vectors),
             residual.shapes.reshape(len(residual.shapes), -1).T[system.free],
             residual.frequencies,
+            system.threads,
             progress,
         )
         return self._joined(modes, np.hstack(missing))
@@ -341,7 +344,7 @@ class ModeSetExtension:
         assert modes.residual_modes is not None
         system = self._system
         joined = extended_residual_modes(
-            system.stiffness, system.mass, modes.residual_modes, columns, self._vectors, system.free
+            system.stiffness, system.mass, modes.residual_modes, columns, self._vectors, system.free, system.threads
         )
         return replace(modes, residual_modes=joined)
 
