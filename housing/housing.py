@@ -7,6 +7,7 @@ seats and sensors, damping), what a measurement is compared with, and what sound
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -463,20 +464,19 @@ class Housing:
             refuse([finding], HousingError)
             raise
         damping = modal_damping(modes, whole) if whole.damping.nnz else None
-        progress("estimating the error by the mesh")
+        progress("checking the housing against its geometry, and estimating the error by the mesh")
         begin = time.perf_counter()
-        modes = self.with_discretisation_errors(free, whole, modes)
-        estimated = time.perf_counter() - begin
-        progress("checking the housing against its geometry")
-        begin = time.perf_counter()
-        health = self.health(free, whole, modes)
+        with ThreadPoolExecutor(1) as beside:
+            estimate = beside.submit(self.with_discretisation_errors, free, whole, modes)
+            health, masses = self.health(free, whole, modes), effective_mass(whole, self.mesh.points, modes)
+        modes = estimate.result()
+        health = health.with_discretisation(modes)
         health.require()
-        masses = effective_mass(whole, self.mesh.points, modes)
         checked = time.perf_counter() - begin
         warnings = defect_warnings(defects) + discretisation_warnings(
             self.mesh, self.material, modes, mesh_size=self.mesh_size, below_limit=below_hz is not None
         )
-        seconds = {"assembly": assembled, **modes.seconds, "error_estimate": estimated, "checks": checked}
+        seconds = {"assembly": assembled, **modes.seconds, "checks": checked}
         record = ModeRecord(
             self.mesh,
             modes,
