@@ -9,7 +9,7 @@ skin.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,6 +61,8 @@ class SolvedLines:
     sidebands : tuple of SidebandSound
         Sound of mesh harmonics and their sidebands, where directions turn with planet carriers; `model` and all other
         lines freeze these.
+    responses : mapping of str to ndarray
+        Responses by which the housing's modes were extended, for a next solution.
     """
 
     model: LineModel
@@ -68,6 +70,7 @@ class SolvedLines:
     sound: "tuple[HarmonicSound, ...]"
     housing: HousingModes
     sidebands: "tuple[SidebandSound, ...]" = ()
+    responses: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -202,9 +205,9 @@ def solve_lines(
     if not loaded or not (housing.sensors or acoustics):
         return None
     work = "residual modes of the sensors"
-    progress(f"{work}: factorisation at the limit of the modes")
+    progress(work)
     matrices = housing.housing.matrices()
-    extension = ModeSetExtension(matrices, housing.modes)
+    extension = ModeSetExtension(matrices, housing.modes, known=housing.responses)
     modes = housing.modes
     if housing.sensors:
         ports = [sensor.matrix for sensor in housing.sensors.values()]
@@ -244,6 +247,7 @@ def solve_lines(
         modes, _housing_loads(first, loaded), lambda step: progress(f"responses of the housing at the lines: {step}")
     )
     lines = solved(exact, [sound.line.frequency for sound in first.sound])
+    lines = replace(lines, responses=extension.responses)
     return replace(lines, sidebands=_sidebands(acoustics, lines, radiation, progress))
 
 
