@@ -208,12 +208,9 @@ class EarlyPictures:
 @contextmanager
 def early_pictures() -> Iterator[EarlyPictures]:
     """Start the drawing process of this block, and draw beside its other work."""
-    with one_process() as process, tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, one_process() as process:
         process.start()
-        try:
-            yield EarlyPictures(process, Path(folder))
-        finally:
-            process.stop()  # before the folder goes
+        yield EarlyPictures(process, Path(folder))
 
 
 class _Running(NamedTuple):
