@@ -205,9 +205,10 @@ def unrendered() -> Iterator[None]:
     from gearwhine import drawing_process
 
     def shapes_unrendered(
-        housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None, beside: str | None = None
+        housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None, drawn: Any = (), **__: Any
     ) -> list[str]:
-        names = [f"{shape.name}.png" for shape in shapes] + ([] if sheet is None else [sheet])
+        names = [f"{shape.name}.png" for shape in shapes if shape.name not in drawn]
+        names += [] if sheet is None else [sheet]
         for name in names:
             (folder / name).write_bytes(_POINT)
         return names
