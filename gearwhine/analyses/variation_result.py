@@ -35,7 +35,7 @@ from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.study_folder import StudyFolder
-from gearwhine.variation.inputs import Input, Wider, correlation_matrix, values_at, varied_inputs
+from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, values_at, varied_inputs
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
@@ -112,6 +112,11 @@ def solve_variation(
     if design is not None:
         aim = "Sobol' indices" if indices else "what wider ones cost"
         folder.progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
+    if "gears" in wanted.analyses and not wanted.names and any(isinstance(one.law, Pitches) for one in inputs):
+        folder.progress(
+            "pitch deviations make all mesh periods of a gearbox differ: its transmission error over all of them may "
+            'take most of the time; [variation] quantities = ["*.transmission_error_peak_to_peak_m", …] leaves it out\n'
+        )
     solved = run_samples(varied, points, folder)
     speeds = np.array(wanted.speeds or ([] if case.operation is None else [case.operation.speed]))
     result = VariedResult(

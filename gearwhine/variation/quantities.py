@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property, partial
-from itertools import chain
 
 import numpy as np
 
@@ -72,10 +72,13 @@ class Evaluation:
         By name.
     curves : dict of str to ndarray, shape (s,)
         Over the speeds.
+    seconds : dict of str to float
+        Time that took each quantity which is found by itself, and each analysis beside these [s]; empty of one on file.
     """
 
     numbers: dict[str, float]
     curves: dict[str, FloatArray] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
 
 
 Named = Iterator[tuple[str, float | FloatArray | Callable[[], float]]]
@@ -91,20 +94,28 @@ def evaluate(machine: Machine, wanted: Wanted) -> Evaluation:
         Where a machine with these values cannot be solved.
     """
     gearbox = _Gearbox(machine, wanted)
-    return _evaluation(wanted, chain.from_iterable(_ANALYSES[analysis](gearbox) for analysis in wanted.analyses))
+    return _evaluation(wanted, {analysis: _ANALYSES[analysis](gearbox) for analysis in wanted.analyses})
 
 
-def _evaluation(wanted: Wanted, named: Named) -> Evaluation:
+def _evaluation(wanted: Wanted, by_analysis: Mapping[str, Named]) -> Evaluation:
     """Return the wanted ones among quantities; others that are functions are not called."""
-    numbers, curves = dict[str, float](), dict[str, FloatArray]()
-    for name, found in named:
-        if wanted.has(name):
+    numbers, curves, seconds = dict[str, float](), dict[str, FloatArray](), dict[str, float]()
+    for analysis, named in by_analysis.items():
+        start, alone = time.perf_counter(), 0.0
+        for name, found in named:
+            if not wanted.has(name):
+                continue
+            begin = time.perf_counter()
             value = found() if callable(found) else found
+            if callable(found):
+                seconds[name] = time.perf_counter() - begin
+                alone += seconds[name]
             if isinstance(value, np.ndarray):
                 curves[name] = value
             else:
                 numbers[name] = float(value)
-    return Evaluation(numbers, curves)
+        seconds[analysis] = time.perf_counter() - start - alone
+    return Evaluation(numbers, curves, seconds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +149,7 @@ class _Gearbox:
 
 def evaluate_pairs(pairs: Sequence[LoadedGearPair], wanted: Wanted) -> Evaluation:
     """Find the quantities of gear pairs without shafts."""
-    return _evaluation(wanted, _of_pairs(pairs))
+    return _evaluation(wanted, {"gears": _of_pairs(pairs)})
 
 
 def _of_gears(gearbox: _Gearbox) -> Named:
