@@ -15,7 +15,7 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import in_solved_housing, limits_of, sampled_points, wanted_of
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
-from gearwhine.case.errors import NOTHING, UNSAID
+from gearwhine.case.errors import NOTHING, UNSAID, Refusal
 from gearwhine.case.model import lacking
 from gearwhine.case.optimisation import Aim, Method, Optimisation, Robust
 from gearwhine.case.units import si_amount
@@ -33,13 +33,13 @@ from gearwhine.optimisation.design import (
     ProposedCase,
     design_inputs,
     require_scatter,
-    require_values,
     space_of,
     start_point,
+    value_problems,
     written_value,
 )
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
-from gearwhine.optimisation.goals import Goals, goals_of
+from gearwhine.optimisation.goals import NO_AIM, Goals, goals_of
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
@@ -89,20 +89,25 @@ def solve_optimisation(
     optimisation = case.optimisation
     if optimisation is None:
         raise lacking(case, "optimisation", command="optimise")
+    refusal, plain = Refusal(), source.without("variation", "optimisation")
     if not optimisation.design:
-        raise CaseError([Problem("optimisation.design", UNSAID, "the values of one key or more")])
+        refusal.add(Problem("optimisation.design", UNSAID, "the values of one key or more"))
+    if not optimisation.aim:
+        refusal.add(NO_AIM)
     settings = _Settings(
         optimisation.method if method is None else method,
         optimisation.evaluations if evaluations is None else evaluations,
         optimisation.seed if seed is None else seed,
     )
     settings.require_library(optimisation.aim)
-    inputs = design_inputs(source, optimisation)
-    plain = source.without("variation", "optimisation")
-    require_values(plain, inputs)
+    inputs = design_inputs(source, optimisation, refusal)
+    refusal.add(*value_problems(plain, inputs))
     variation = None if optimisation.robust is None else case.variation
-    scatter = _scatter(optimisation.robust, variation, plain, inputs)
-    wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
+    with refusal:
+        scatter = _scatter(optimisation.robust, variation, plain, inputs)
+    with refusal:
+        wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
+    refusal.require_none()
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
     folder.progress("the case as it is written")

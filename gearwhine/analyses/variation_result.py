@@ -16,7 +16,7 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
 from gearwhine.case.analysis_speeds import with_sense_of
-from gearwhine.case.errors import UNSAID
+from gearwhine.case.errors import UNSAID, Refusal
 from gearwhine.case.model import lacking
 from gearwhine.case.operation import Operation
 from gearwhine.case.optimisation import Optimisation
@@ -35,7 +35,7 @@ from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.study_folder import StudyFolder
-from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, values_at, varied_inputs
+from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
@@ -96,19 +96,26 @@ def solve_variation(
         raise lacking(case, "variation", command="vary")
     if not variation.vary:
         raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
-    inputs = varied_inputs(source, variation)
+    refusal, plain = Refusal(), source.without("variation")
+    inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
+    refusal.add(*_median_problems(plain, inputs))
+    with refusal:
+        correlation_matrix(inputs, variation)
+    with refusal:
+        wanted = wanted_of(case, variation)
+    refusal.require_none()
     count = variation.samples if samples is None else samples
     wider = _wider(inputs, widen)
     seed = variation.seed if seed is None else seed
     points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
-    wanted = wanted_of(case, variation)
-    varied = VariedCase(source.without("variation"), inputs, wanted, wider=wider)
-    varied, housing = in_solved_housing(varied, folder, "vary")
-    _require_distributions(varied, variation)
+    varied, housing = in_solved_housing(VariedCase(plain, inputs, wanted, wider=wider), folder, "vary")
     folder.progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
-    _require_quantities(wanted, nominal)
-    require_known_limits(variation.limit, list(nominal.numbers))
+    with refusal:
+        _require_quantities(wanted, nominal)
+    with refusal:
+        require_known_limits(variation.limit, list(nominal.numbers))
+    refusal.require_none()
     if design is not None:
         aim = "Sobol' indices" if indices else "what wider ones cost"
         folder.progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
@@ -376,25 +383,17 @@ def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
         raise CaseError(Problem(f"variation.quantities[{place}]", name, expected) for place, name in without)
 
 
-def _require_distributions(varied: VariedCase, variation: Variation) -> None:
-    """Refuse a key that does not take its median; what the parts make together is refused with its gearbox.
-
-    Raises
-    ------
-    CaseError
-    """
-    problems = dict[Problem, None]()
-    for one in varied.inputs:
+def _median_problems(source: CaseSource, inputs: Sequence[Input]) -> Iterator[Problem]:
+    """Yield problems of keys that do not take their median; those of parts together are told by their gearbox."""
+    for one in inputs:
         if isinstance(one.law, Discrete):
             continue
         try:
-            varied.source.changed(texts := list(one.overrides(0.5)))
+            source.changed(texts := list(one.overrides(0.5)))
         except CaseError as error:
             sources = [f"--set {text}" for text in texts]
             own = [problem for problem in error.problems if problem.source in sources]
-            problems |= dict.fromkeys(replace(problem, source=f"variation.vary, {one.name}") for problem in own)
-    if problems:
-        raise CaseError(problems)
+            yield from (replace(problem, source=f"variation.vary, {one.name}") for problem in own)
 
 
 def _result(

@@ -16,6 +16,7 @@ from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
 
+NO_AIM = Problem("optimisation.aim", UNSAID, "the name of one quantity or more, each with its sense")
 Worse = dict[str, tuple[float, float]]
 """Low and high side of each quantity: of a design alone twice its value."""
 
@@ -144,7 +145,7 @@ def goals_of(
         Where there is no aim, or one of a quantity that the gearboxes do not have.
     """
     if not aims:
-        raise CaseError([Problem("optimisation.aim", UNSAID, "the name of one quantity or more, each with its sense")])
+        raise CaseError([NO_AIM])
     problems = list[Problem]()
 
     def matching(table: str, name: str) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ def duration(seconds: float) -> str:
 
 
 def cost_of_study(first: Evaluation, taken: float, count: int, noun: str, table: str) -> str:
-    """Return what a study will take by its first gearbox, and which key leaves out what takes most; empty of a short one.
+    """Return what a long study will take by its first gearbox, and which key leaves out what takes most.
 
     Parameters
     ----------

@@ -20,7 +20,13 @@ HARMONIC, LIFE = f"{PAIR}.transmission_error_harmonic_1_m", "bearing.left.life_h
 
 
 def test_times_are_told_in_the_unit_that_a_reader_takes() -> None:
-    assert [duration(one) for one in (42.4, 89.0, 240.0, 5000.0, 9000.0)] == ["42 s", "89 s", "4 min", "83 min", "2.5 h"]
+    assert [duration(one) for one in (42.4, 89.0, 240.0, 5000.0, 9000.0)] == [
+        "42 s",
+        "89 s",
+        "4 min",
+        "83 min",
+        "2.5 h",
+    ]
 
 
 def test_the_key_that_is_told_leaves_out_what_takes_most_and_nothing_else() -> None:
@@ -37,13 +43,16 @@ def test_the_key_that_is_told_leaves_out_what_takes_most_and_nothing_else() -> N
 def test_an_analysis_that_takes_most_is_left_out_by_its_name() -> None:
     first = Evaluation({LIFE: 1.0}, {}, {"gears": 1.0, "load": 1.0, "lines": 6.0})
     text = cost_of_study(first, 800.0, 100, "gearboxes", "variation")
-    assert "75 % of it for 'lines'; without it: [variation] analyses = [\"gears\", \"load\"], which leaves 3 min" in text
+    assert '75 % of it for \'lines\'; without it: [variation] analyses = ["gears", "load"], which leaves 3 min' in text
     # Alone it is what is asked for; and what is short, or evenly spent, needs no advice.
     alone = Evaluation({LIFE: 1.0}, {}, {"lines": 6.0})
     assert "without" not in cost_of_study(alone, 800.0, 100, "gearboxes", "variation")
     assert cost_of_study(first, 50.0, 100, "gearboxes", "variation") == ""
     even = Evaluation({LIFE: 1.0}, {}, {"gears": 1.0, "load": 1.0, "lines": 1.0})
-    assert cost_of_study(even, 800.0, 100, "gearboxes", "variation") == "100 gearboxes take some 13 min by the first of them"
+    assert (
+        cost_of_study(even, 800.0, 100, "gearboxes", "variation")
+        == "100 gearboxes take some 13 min by the first of them"
+    )
 
 
 def test_the_time_of_a_quantity_is_its_own() -> None:
