@@ -344,7 +344,7 @@ def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | Non
 def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "vary") -> Wanted:
     """Return what is found of each gearbox: as asked for, else what the case allows."""
     analyses: tuple[str, ...]
-    names = variation.quantities if isinstance(variation, Variation) else ()
+    names = variation.quantities
     asked: tuple[str, ...] | None = variation.analyses
     needed = [analysis_of(name) for name in names]
     if asked is None and names and None not in needed:
