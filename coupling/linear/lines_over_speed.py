@@ -42,6 +42,8 @@ class LinesOverSpeed:
         Peak amplitudes of acceleration [m/s²]; NaN above the limit.
     between : ndarray, shape (o, s)
         Root mean square of all lines between these, of what differs between teeth [m/s²].
+    rates : ndarray of complex, shape (s, l, h)
+        Rates of the housing's coordinates by each line; zero above the limit, and none without a housing.
     """
 
     speeds: FloatArray
@@ -49,6 +51,7 @@ class LinesOverSpeed:
     sensors: tuple[str, ...]
     amplitudes: FloatArray
     between: FloatArray
+    rates: ComplexArray
 
     @property
     def rms(self) -> FloatArray:
@@ -72,6 +75,29 @@ def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
     moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
     return _rms(np.abs(rows @ moved.T))
+
+
+def housing_rates(machine: CoupledMachine, limit: float) -> tuple[FloatArray, ComplexArray]:
+    """Frequencies of the mesh harmonics up to a limit [rad/s], and the rates of the housing's coordinates by each.
+
+    Of a machine with turning carriers these are the mesh harmonics with their sidebands. The arrays have the shapes
+    (l,) and (l, h).
+    """
+    if not machine.system.turns:
+        over = lines_over_speed(machine, [machine.speed], limit)
+        return over.orders * abs(machine.speed), over.rates[0]
+    lines = MeshHarmonicModel(machine).responses(limit)
+    rows = _housing_rows(machine)
+    rates = [1j * line.frequency * (rows @ line.motion) for line in lines]
+    return np.array([line.frequency for line in lines]), np.array(rates).reshape(-1, len(rows))
+
+
+def _housing_rows(machine: CoupledMachine) -> FloatArray:
+    """Motions of the housing's coordinates by those of the system, shape (h, n)."""
+    housing = machine.housing
+    if housing is None:
+        return np.zeros((0, machine.system.size))
+    return machine.rows(housing.name, np.eye(housing.size))
 
 
 def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: float) -> LinesOverSpeed:
@@ -104,7 +130,8 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
     here = system.connector_matrices()
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, system.size)
     amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
-    between = np.zeros(amplitudes.shape[:2])
+    between, moves = np.zeros(amplitudes.shape[:2]), _housing_rows(machine)
+    rates = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128)
     for place, ratio in enumerate(ratios):
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
@@ -118,5 +145,7 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
             dynamic[np.diag_indices(system.size)] -= w**2
             moved = linalg.solve(dynamic, load.load, overwrite_a=True, check_finite=False)
             amplitudes[:, place, number] = w**2 * np.abs(rows @ moved)
+            rates[place, number] = 1j * w * (moves @ moved)
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
-    return LinesOverSpeed(np.array(speeds, dtype=np.float64), orders, tuple(machine.sensor_rows), amplitudes, between)
+    given = np.array(speeds, dtype=np.float64)
+    return LinesOverSpeed(given, orders, tuple(machine.sensor_rows), amplitudes, between, rates)

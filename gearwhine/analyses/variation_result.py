@@ -29,11 +29,13 @@ from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
-from gearwhine.output import file_stems
+from gearwhine.output import file_stems, staging
+from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
-from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
+from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
@@ -52,6 +54,7 @@ _NEEDS = {
     "rotors": ("rotor",),
     "mass": ("rotor", "operation"),
     "lines": ("rotor", "operation", "gear_pair"),
+    "sound": ("housing", "rotor", "operation", "gear_pair"),
     "motion": ("rotor", "operation", "transient"),
 }
 """Tables that an analysis needs of a case."""
@@ -323,8 +326,16 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
     if case.housing is None or not case.rotor:
         return varied, None
     housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)
+    radiated = None
+    if "sound" in varied.wanted.analyses:
+        radiated, housing = radiated_power_of(case, housing, folder.progress)
+        if not housing.source_holds:
+            # Before the samples: what ends them leaves the radiation, which may take minutes.
+            with staging(folder.path) as place:
+                write_mode_cache(place, housing)
+            housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
     key = housing_key(given_housing(case, command))
-    return replace(varied, housing=reduce_housing(case, housing), housing_key=key), housing
+    return replace(varied, housing=reduce_housing(case, housing), housing_key=key, radiated=radiated), housing
 
 
 def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | None]] | None) -> dict[str, Limit]:
@@ -366,7 +377,8 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
             expected = "a gear pair or a shaft: nothing else is found of a varied case"
             raise CaseError([Problem("variation.analyses", UNSAID, expected)])
     speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
-    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else (), names=names)
+    over_speed = {"lines", "sound"} & set(analyses)
+    return Wanted(analyses, with_sense_of(case.operation, speeds) if over_speed else (), names=names)
 
 
 def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:

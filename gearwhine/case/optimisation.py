@@ -106,7 +106,8 @@ class Optimisation(Table):
     """Names of the quantities that are found beside those of aims and limits, as in `[variation]`; what they do not
     need is not computed. Default: all of the analyses."""
     speed: Speeds | None = None
-    """Speeds of levels at sensors, a range or a list. Default: those of `[sweep]`, else that of operation."""
+    """Speeds of levels at sensors and of the sound, a range or a list. Default: those of `[sweep]`, else that of
+    operation."""
     design: dict[KeyPath, DesignKey] = Field(default={}, max_length=MOST_KEYS)
     """Values by key path; `*` stands for every entry."""
     aim: dict[QuantityName, Aim] = Field(default={}, max_length=MOST_AIMS)

@@ -9,7 +9,12 @@ _STATISTIC = re.compile(r"(mean|standard deviation|quantile 0?\.\d+) of (?=.)")
 
 _SCALES = {"m": ("µm", 1e6), "Pa": ("MPa", 1e-6), "N/m": ("N/µm", 1e-6), "rad": ("µrad", 1e6)}
 """Units that tables and figures show in place of those of the names, and the factors to them."""
-_LEVELS = {"level_db": "highest level over speed", "motion_level_db": "level of the motion"}
+_LEVELS = {
+    "level_db": ("highest level over speed", "dB re 1 µm/s²"),
+    "motion_level_db": ("level of the motion", "dB re 1 µm/s²"),
+    "sound_power_db": ("highest sound power over speed", "dB re 1 pW"),
+    "sound_power_db_a": ("highest A-weighted sound power over speed", "dB re 1 pW"),
+}
 _SYMBOLS = {"k_h_beta": "K_Hβ", "mesh_load_factor": "mesh load factor K_γ"}
 
 
@@ -33,8 +38,9 @@ def shown_quantity(name: str) -> tuple[str, float]:
     last = name.rpartition(".")[2]
     end = max((end for end in UNITS if last.endswith(end)), key=len, default="")
     words = _SYMBOLS.get(last, last.removesuffix(end).replace("_", " "))
-    if last.endswith("level_db"):
-        words, unit = _LEVELS[last], "dB" if statistic == "standard deviation" else "dB re 1 µm/s²"
+    if last in _LEVELS:
+        words, reference = _LEVELS[last]
+        unit = "dB" if statistic == "standard deviation" else reference
     words = f"{statistic} of {words}" if statistic else words
     return (f"{words} [{unit}]" if unit else words), factor
 
