@@ -33,6 +33,7 @@ from gearwhine.output import file_stems, staging
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.radiated_power import radiated_power_of
@@ -327,8 +328,8 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
         return varied, None
     housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)
     radiated = None
-    if "sound" in varied.wanted.analyses:
-        radiated, housing = radiated_power_of(case, housing, folder.progress)
+    if varied.wanted.has_sound:
+        radiated, housing = radiated_power_of(acoustics_of(case), housing, folder.progress)
         if not housing.source_holds:
             # Before the samples: what ends them leaves the radiation, which may take minutes.
             with staging(folder.path) as place:

@@ -4,19 +4,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwhine.case import Case
+from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+from gearwhine.solve.acoustics import refused_by_key
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sweep.line_sound import RadiatedPower
 
 
 def radiated_power_of(
-    case: Case, housing: HousingModes, progress: Progress = silent
+    acoustics: Acoustics, housing: HousingModes, progress: Progress = silent
 ) -> "tuple[RadiatedPower, HousingModes]":
-    """Return the radiation of a housing as `[acoustics]` of its case says, and the housing whose record holds it.
+    """Return the radiation of a housing as `[acoustics]` of a case says, and the housing whose record holds it.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def radiated_power_of(
     from gearwhine.coupling.sweep.line_sound import RadiatedPower
     from gearwhine.solve.kept_radiation import kept_radiation
 
-    acoustics, field = acoustics_of(case), housing.displacement_field
+    field = housing.displacement_field
     limit = acoustics.limit_hz(field)
     with refused_by_key(acoustics):
         radiation = build_radiation(acoustics, field, progress)

@@ -63,6 +63,11 @@ class Wanted:
     needs_load: bool = False
     names: tuple[str, ...] = ()
 
+    @property
+    def has_sound(self) -> bool:
+        """Whether the sound is wanted, which needs the radiation of the housing."""
+        return "sound" in self.analyses
+
     def has(self, name: str) -> bool:
         """Whether a quantity is wanted."""
         return not self.names or any(fnmatchcase(name, pattern) for pattern in self.names)

@@ -31,6 +31,7 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
 from gearwhine.solve.radiated_power import radiated_power_of
@@ -81,7 +82,7 @@ def outcome_of(find: Callable[[], Evaluation]) -> Outcome:
         return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
 
 
-_Housing: TypeAlias = "tuple[HousingComponent | None, RadiatedPower | None]"
+_Housing: TypeAlias = "tuple[HousingComponent, RadiatedPower | None]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +141,8 @@ class VariedCase:
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))
-        return evaluate(self.machine(case), wanted, self._housing_of(case)[1])
+        machine = self.machine(case)
+        return evaluate(machine, wanted, self.radiated_by(machine.housing_component))
 
     @cached_property
     def start_warnings(self) -> list[ResultWarning]:
@@ -152,21 +154,22 @@ class VariedCase:
 
     def machine(self, case: Case) -> Machine:
         """Return the machine of a case of the study, in its housing."""
-        housing, _ = self._housing_of(case)
+        housing = self.housing
+        # Places of bearings and materials belong to the housing, too.
+        if case.housing is not None and (key := housing_key(given_housing(case, "vary"))) != self.housing_key:
+            if key not in self.housings:
+                if len(self.housings) >= _KEPT_HOUSINGS:
+                    self.housings.pop(next(iter(self.housings)))
+                solved = solve_housing(case, command="vary")
+                radiated = radiated_power_of(acoustics_of(case), solved)[0] if self.wanted.has_sound else None
+                self.housings[key] = reduce_housing(case, solved), radiated
+            housing = self.housings[key][0]
         return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
 
-    def _housing_of(self, case: Case) -> _Housing:
-        """Return the housing of a case of the study, with its radiation where the sound is wanted."""
-        # Places of bearings and materials belong to the housing, too.
-        if case.housing is None or (key := housing_key(given_housing(case, "vary"))) == self.housing_key:
-            return self.housing, self.radiated
-        if key not in self.housings:
-            if len(self.housings) >= _KEPT_HOUSINGS:
-                self.housings.pop(next(iter(self.housings)))
-            solved = solve_housing(case, command="vary")
-            radiated = radiated_power_of(case, solved)[0] if "sound" in self.wanted.analyses else None
-            self.housings[key] = reduce_housing(case, solved), radiated
-        return self.housings[key]
+    def radiated_by(self, housing: HousingComponent | None) -> RadiatedPower | None:
+        """Return the radiation of a housing of the study; None where the sound is not wanted."""
+        others = (radiated for other, radiated in self.housings.values() if other is housing)
+        return self.radiated if housing is self.housing else next(others, None)
 
     @cached_property
     def key(self) -> str:
