@@ -650,7 +650,7 @@ class Machine:
             components,
             self.housing_component,
             speeds=self.speeds,
-            bearings=[self._on_displaced_pin(mounted) for mounted in self.bearings],
+            bearings=[self._in_displaced_seat(mounted) for mounted in self.bearings],
             meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
@@ -693,7 +693,7 @@ class Machine:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
                 [
-                    static_bearing(mounted, self.bearing_speed(mounted), self._pin_displacement(mounted.rotor))
+                    static_bearing(mounted, self.bearing_speed(mounted), self._seat_displacement(mounted))
                     for mounted in self.bearings
                 ],
                 pairs,
@@ -1103,13 +1103,18 @@ class Machine:
         radial, tangential = planet.pin_error
         return np.array([radial * x - tangential * y, radial * y + tangential * x, 0.0, 0.0, 0.0])
 
-    def _on_displaced_pin(self, mounted: MountedBearing) -> MountedBearing:
-        """Return a bearing with a linear law with the force of its pin's error, unless the pin has that in motion.
+    def _seat_displacement(self, mounted: MountedBearing, *, of_pin: bool = True) -> FloatArray:
+        """Displacement of a bearing's seat by its own error and, of a planet, by its pin's [m, rad], (5,)."""
+        pin = self._pin_displacement(mounted.rotor) if of_pin else None
+        return mounted.seat_displacement if pin is None else mounted.seat_displacement + pin
+
+    def _in_displaced_seat(self, mounted: MountedBearing) -> MountedBearing:
+        """Return a bearing with a linear law with the force of its seat's error, but for what a pin has in motion.
 
         The offset of one that is linear about its load is of the deflection in its seat.
         """
-        displacement = self._pin_displacement(mounted.rotor)
-        if displacement is None or self._pin_has_error(mounted.rotor):
+        displacement = self._seat_displacement(mounted, of_pin=not self._pin_has_error(mounted.rotor))
+        if not np.any(displacement):
             return mounted
         stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
         about = np.zeros(5) if mounted.offset is None else mounted.offset

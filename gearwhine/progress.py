@@ -72,6 +72,9 @@ def _live() -> Iterator[Progress]:
         current = [""]
 
         def progress(message: str, fraction: float | None = None) -> None:
+            if message.endswith("\n"):
+                bar.console.print(message.rstrip(), markup=False, highlight=False)
+                return
             if _work(message) != _work(current[0]):
                 bar.reset(task, total=None if fraction is None else 1.0)
             if message != current[0]:
@@ -90,6 +93,7 @@ def _lines() -> Progress:
 
     def progress(message: str, fraction: float | None = None) -> None:
         nonlocal last, printed, reported, begun
+        message = message.rstrip()
         tenths = 0 if fraction is None else int(10 * fraction)
         now = time.perf_counter()
         news = message != last and _work(message) == _work(last)

@@ -13,7 +13,8 @@ _THREADS = 2
 class Progress(Protocol):
     """Receives the present work in words, and its completed fraction (0 to 1) where that is known.
 
-    Words after a colon are news of the same work: its clock goes on.
+    Words after a colon are news of the same work: its clock goes on. A message with a line break at its end is a note,
+    which stays on a live terminal as the work goes on.
     """
 
     def __call__(self, message: str, fraction: float | None = None) -> None:

@@ -15,7 +15,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
@@ -23,9 +22,7 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
-from gearwhine.numerics.arrays import FloatArray
-
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +40,8 @@ class LinesOverSpeed:
         Peak amplitudes of acceleration [m/s²]; NaN above the limit.
     between : ndarray, shape (o, s)
         Root mean square of all lines between these, of what differs between teeth [m/s²].
+    rates : ndarray of complex, shape (s, l, h)
+        Rates of the housing's coordinates by each line; zero above the limit, and none without a housing.
     """
 
     speeds: FloatArray
@@ -50,6 +49,7 @@ class LinesOverSpeed:
     sensors: tuple[str, ...]
     amplitudes: FloatArray
     between: FloatArray
+    rates: ComplexArray
 
     @property
     def rms(self) -> FloatArray:
@@ -73,6 +73,29 @@ def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
     moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
     return _rms(np.abs(rows @ moved.T))
+
+
+def housing_rates(machine: CoupledMachine, limit: float) -> tuple[FloatArray, ComplexArray]:
+    """Frequencies of the mesh harmonics up to a limit [rad/s], and the rates of the housing's coordinates by each.
+
+    Of a machine with turning carriers these are the mesh harmonics with their sidebands. The arrays have the shapes
+    (l,) and (l, h).
+    """
+    if not machine.system.turns:
+        over = lines_over_speed(machine, [machine.speed], limit)
+        return over.orders * abs(machine.speed), over.rates[0]
+    lines = MeshHarmonicModel(machine).responses(limit)
+    rows = _housing_rows(machine)
+    rates = [1j * line.frequency * (rows @ line.motion) for line in lines]
+    return np.array([line.frequency for line in lines]), np.array(rates).reshape(-1, len(rows))
+
+
+def _housing_rows(machine: CoupledMachine) -> FloatArray:
+    """Motions of the housing's coordinates by those of the system, shape (h, n)."""
+    housing = machine.housing
+    if housing is None:
+        return np.zeros((0, machine.system.size))
+    return machine.rows(housing.name, np.eye(housing.size))
 
 
 def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: float) -> LinesOverSpeed:
@@ -108,7 +131,8 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
     here = system.connector_matrices()
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, system.size)
     amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
-    between = np.zeros(amplitudes.shape[:2])
+    between, moves = np.zeros(amplitudes.shape[:2]), _housing_rows(machine)
+    rates, outputs = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128), np.vstack([rows, moves])
     for place, ratio in enumerate(ratios):
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
@@ -120,17 +144,19 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
             [mesh.up_to(limit, ratio) for mesh in meshes],
             model.contact,
             system.contact_directions,
-            rows,
+            outputs,
             linear,
             harmonics,
             ratio=ratio,
             limit=limit,
         )
-        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(lines.between) ** 2, axis=1))
+        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(lines.between[: len(rows)]) ** 2, axis=1))
         for number, (load, motion) in enumerate(zip(loads, motions, strict=False)):
             w = ratio * load.frequency
             if w <= limit * (1.0 + 1e-9):
-                moved = sum((lines.by_stiffness[cause] for cause in load.causes), -(w**2) * (rows @ motion))
-                amplitudes[:, place, number] = np.abs(moved)
+                moved = sum((lines.by_stiffness[cause] for cause in load.causes), -(w**2) * (outputs @ motion))
+                amplitudes[:, place, number] = np.abs(moved[: len(rows)])
+                rates[place, number] = moved[len(rows) :] / (1j * w)
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
-    return LinesOverSpeed(np.array(speeds, dtype=np.float64), orders, tuple(machine.sensor_rows), amplitudes, between)
+    given = np.array(speeds, dtype=np.float64)
+    return LinesOverSpeed(given, orders, tuple(machine.sensor_rows), amplitudes, between, rates)

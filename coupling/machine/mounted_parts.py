@@ -14,7 +14,7 @@ from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingL
 from gearwhine.coupling.machine.face_compliance import FaceCompliance
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing, RollingSpall
@@ -44,6 +44,9 @@ class MountedBearing:
     design_load : tuple of float or None
         Force of the shaft along x, y, z for which its stiffness is made [N]; None where that depends on no load, or is
         still to follow from it.
+    seat_error : tuple of float or None
+        Error of the place of its seat: position of the bore along x and y [m], and rotation of its axis about x and y
+        [rad]. Not beside a nonlinear ``law``.
     """
 
     bearing: Bearing
@@ -54,13 +57,14 @@ class MountedBearing:
     offset: FloatArray | None = field(default=None, compare=False)
     damping_time: float = 0.0
     design_load: Sequence[float] | None = None
+    seat_error: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check that parts and places are such."""
         if self.seat == "ground":
             object.__setattr__(self, "seat", None)
         keep_arrays(self, "offset")
-        keep_tuples(self, "design_load")
+        keep_tuples(self, "design_load", "seat_error")
         refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
         rules: dict[str, Rule] = {
             "rotor": Text(),
@@ -71,7 +75,13 @@ class MountedBearing:
         }
         if self.offset is not None:
             rules["offset"] = Numbers(5)
-        refuse(attribute_findings(("bearing", self.bearing.name), self, **rules), CouplingError)
+        if self.seat_error is not None:
+            rules["seat_error"] = Numbers(4)
+        part = ("bearing", self.bearing.name)
+        refuse(attribute_findings(part, self, **rules), CouplingError)
+        if self.law is not None and self.seat_error is not None:
+            expected = "None of a bearing with a nonlinear law, which is about the nominal place of its seat"
+            refuse([Finding(part, "seat_error", self.seat_error, expected)], CouplingError)
 
     @classmethod
     def from_elements(
@@ -120,6 +130,12 @@ class MountedBearing:
         if self.rolling is None and isinstance(self.law, RollingLaw):
             return self.law.state.bearing
         return self.rolling
+
+    @property
+    def seat_displacement(self) -> FloatArray:
+        """Displacement of its seat by the error of its place, along x, y, z and about x, y [m, rad], (5,)."""
+        x, y, rx, ry = self.seat_error or (0.0, 0.0, 0.0, 0.0)
+        return np.array([x, y, 0.0, rx, ry])
 
     @property
     def spalls(self) -> tuple[RollingSpall, ...]:

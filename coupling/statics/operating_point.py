@@ -126,9 +126,10 @@ class BearingLoad:
 _EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
 _TE_PHASES = 200
 
-CAUSES = ("shafts", "bearings", "housing", "carrier", "bodies")
+CAUSES = ("shafts", "bearings", "housing", "carrier", "seats", "bodies")
 """Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, of planets that of
-their pins on the carrier with the pins' bending and errors, and the twist of shaft and gear body over the face."""
+their pins on the carrier with the pins' bending and errors, errors of the seats' places, and the twist of shaft and
+gear body over the face."""
 
 
 @dataclass(frozen=True, eq=False)

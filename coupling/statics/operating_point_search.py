@@ -575,14 +575,16 @@ class _StaticModel:
             places = part.shaft.places
             bearings_of_shaft = [bearing for bearing in bearings if bearing.mounted.rotor == part.name]
             of_seats = "housing" if part.carrier is None else "carrier"
-            rigid_by = {"bearings": np.zeros(5), of_seats: np.zeros(5)}
+            rigid_by = {"bearings": np.zeros(5), of_seats: np.zeros(5), "seats": np.zeros(5)}
             matrix = np.zeros((5, 5))
             for bearing in bearings_of_shaft:
                 moved = _rigid_rows(bearing.mounted.bearing.at)
                 metric = 0.5 * (bearing.stiffness + bearing.stiffness.T)
                 matrix += moved.T @ metric @ moved
                 rigid_by["bearings"] += moved.T @ metric @ bearing.deflection
-                rigid_by[of_seats] += moved.T @ metric @ bearing.seat_motion
+                of_error = bearing.mounted.seat_displacement
+                rigid_by[of_seats] += moved.T @ metric @ (bearing.seat_motion - of_error)
+                rigid_by["seats"] += moved.T @ metric @ of_error
             whole = np.zeros((places.size, 6))
             for cause, side in rigid_by.items():
                 rigid = np.linalg.lstsq(matrix, side, rcond=1e-12)[0]

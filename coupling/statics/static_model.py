@@ -102,7 +102,7 @@ class FaceContactLaw:
 
 @dataclass(frozen=True, eq=False)
 class OffsetLaw:
-    """A law about a seat that stands off its place by an offset (d,) [m, rad], such as a planet's pin."""
+    """A law about a seat that stands off its place by an offset (d,) [m, rad], as a bore or a planet's pin may."""
 
     law: ConnectorLaw
     offset: FloatArray
@@ -130,7 +130,7 @@ class StaticBearing:
     nominal : ndarray, shape (5, 5)
         Nominal stiffness that the search starts from.
     displacement : ndarray, shape (5,)
-        Displacement of its seat from its place, such as a planet's pin by its error [m, rad].
+        Displacement of its seat from its place, such as that of a bore or of a planet's pin by its error [m, rad].
     """
 
     mounted: MountedBearing
@@ -144,13 +144,12 @@ class StaticBearing:
         return OffsetLaw(self.law, self.displacement) if np.any(self.displacement) else self.law
 
 
-def static_bearing(mounted: MountedBearing, speed: float, displacement: FloatArray | None = None) -> StaticBearing:
+def static_bearing(mounted: MountedBearing, speed: float, displacement: FloatArray) -> StaticBearing:
     """Make a bearing of the static model: by its elements, its gap, or its stiffness at a speed [rad/s].
 
-    ``displacement`` (5,) is that of its seat from its place [m, rad]; zero by default.
+    ``displacement`` (5,) is that of its seat from its place [m, rad].
     """
-    bearing = _static_bearing(mounted, speed)
-    return bearing if displacement is None else replace(bearing, displacement=displacement)
+    return replace(_static_bearing(mounted, speed), displacement=displacement)
 
 
 def _static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:

@@ -29,7 +29,7 @@ from gearwhine.housing.acoustics.radiation import (
     HousingRadiation,
     RadiatedSound,
 )
-from gearwhine.housing.acoustics.sound_levels import power_level
+from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, sum_of_levels
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 
@@ -168,3 +168,43 @@ def radiated_level(
             return float(power_level(power))
     sphere = pulsating_efficiency(np.array([hertz]), radiation.area, radiation.medium.speed_of_sound)
     return float(power_level(radiation.equivalent_power(rates[:, None])[0] * sphere[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class RadiatedPower:
+    """Radiation of a housing, by which the sound power of lines follows without a further solution.
+
+    Attributes
+    ----------
+    radiation : HousingRadiation
+    table : ModalRadiation or None
+        Radiation over frequency; None of the method ``erp``, whose power is the equivalent one.
+    lowest_hz, highest_hz : float
+        Range of the sound; lines outside are left out [Hz].
+    """
+
+    radiation: HousingRadiation
+    table: ModalRadiation | None
+    lowest_hz: float
+    highest_hz: float
+
+    def levels(self, hertz: FloatArray, rates: ComplexArray) -> tuple[float, float]:
+        """Sound power level of lines together, and that by the frequency weighting A [dB re 1 pW].
+
+        Parameters
+        ----------
+        hertz : ndarray, shape (l,)
+        rates : ndarray of complex, shape (l, n)
+            Rates of the housing's coordinates.
+        """
+        single = [
+            (level, level + float(a_weighting(frequency)))
+            for frequency, rate in zip(hertz.tolist(), rates, strict=True)
+            if self.lowest_hz <= frequency <= self.highest_hz and np.isfinite(level := self._level(frequency, rate))
+        ]
+        return sum_of_levels(one for one, _ in single), sum_of_levels(one for _, one in single)
+
+    def _level(self, hertz: float, rates: ComplexArray) -> float:
+        if self.radiation.method == "erp":
+            return float(power_level(self.radiation.equivalent_power(rates[:, None])[0]))
+        return radiated_level(self.radiation, self.table, hertz, rates)

@@ -15,11 +15,11 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import in_solved_housing, limits_of, sampled_points, wanted_of
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
-from gearwhine.case.errors import NOTHING, UNSAID
+from gearwhine.case.errors import NOTHING, UNSAID, Refusal
 from gearwhine.case.model import lacking
 from gearwhine.case.optimisation import Aim, Method, Optimisation, Robust
 from gearwhine.case.units import si_amount
-from gearwhine.case.variation import Variation
+from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.failures import explain
@@ -33,22 +33,25 @@ from gearwhine.optimisation.design import (
     ProposedCase,
     design_inputs,
     require_scatter,
-    require_values,
     space_of,
     start_point,
+    value_problems,
     written_value,
 )
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
-from gearwhine.optimisation.goals import Goals, goals_of
+from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, plain_pattern, statistic_problems
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
+from gearwhine.output.named_quantities import statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solve.machine import plan_of
 from gearwhine.study_folder import StudyFolder
+from gearwhine.variation.cost import cost_of_study, duration
 from gearwhine.variation.inputs import varied_inputs
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.samples import Failure, outcome_of
+from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -89,25 +92,32 @@ def solve_optimisation(
     optimisation = case.optimisation
     if optimisation is None:
         raise lacking(case, "optimisation", command="optimise")
+    refusal, plain = Refusal(), source.without("variation", "optimisation")
     if not optimisation.design:
-        raise CaseError([Problem("optimisation.design", UNSAID, "the values of one key or more")])
+        refusal.add(Problem("optimisation.design", UNSAID, "the values of one key or more"))
+    if not optimisation.aim:
+        refusal.add(NO_AIM)
     settings = _Settings(
         optimisation.method if method is None else method,
         optimisation.evaluations if evaluations is None else evaluations,
         optimisation.seed if seed is None else seed,
     )
     settings.require_library(optimisation.aim)
-    inputs = design_inputs(source, optimisation)
-    plain = source.without("variation", "optimisation")
-    require_values(plain, inputs)
+    inputs = design_inputs(source, optimisation, refusal)
+    refusal.add(*value_problems(plain, inputs))
+    good = {} if case.variation is None else case.variation.limit
+    refusal.add(*statistic_problems(optimisation.aim, optimisation.limit, optimisation.robust, good))
     variation = None if optimisation.robust is None else case.variation
-    scatter = _scatter(optimisation.robust, variation, plain, inputs)
-    wanted = wanted_of(case, _with_analyses(optimisation), "optimise")
+    with refusal:
+        scatter = _scatter(optimisation.robust, variation, plain, inputs)
+    with refusal:
+        wanted = wanted_of(case, _with_what_is_named(optimisation, good), "optimise")
+    refusal.require_none()
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
     folder.progress("the case as it is written")
     nominal = proposed.evaluation(proposed.case(None))
-    goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust)
+    goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust, good)
     coordinates = start_point(plain, inputs)
     evaluated = Evaluations(proposed, folder)
 
@@ -121,8 +131,15 @@ def solve_optimisation(
             for point, numbers, group in zip(points, found, groups, strict=True)
         ]
 
+    count = _most_designs(inputs, settings) * len(scatter)
+    as_written = np.full((1, len(inputs)), AS_WRITTEN)
     with evaluated.opened():
-        (start,) = tried(np.full((1, len(inputs)), AS_WRITTEN), 0)
+        (start,) = tried(as_written, 0)
+        first = evaluated.of(_with_scatter(as_written[0], scatter[:1]))[0]
+        if isinstance(first, Evaluation) and folder.scheduler is None:
+            taken = sum(first.seconds.values()) * count / (folder.workers or default_workers())
+            if text := cost_of_study(first, taken, count, "gearboxes at most", "optimisation"):
+                folder.progress(f"{text}\n")
         designs, ended = _searched(inputs, goals, settings, coordinates, tried, folder.progress)
     document = case_document(plain.changed_case())
     optimised = Optimised(
@@ -264,6 +281,8 @@ def optimise(
 
     progress("the start")
     nominal = found(first)
+    if problems := list(statistic_problems(senses, ranges, None, {})):
+        raise CaseError(problems)
     goals = goals_of(senses, ranges, list(nominal.numbers))
     settings = _Settings(method, evaluations, seed)
     settings.require_library(senses)
@@ -339,11 +358,7 @@ def _searched(
 ) -> tuple[list[Design], Ended]:
     """Try designs as the method says."""
     designs, space = list[Design](), space_of(inputs)
-    budget, levels = settings.evaluations, [one.levels for one in inputs]
-    if settings.method == "grid":
-        budget = int(np.prod([one.count or one.levels for one in inputs], dtype=np.float64))
-        if budget > MOST_GRID:
-            raise CaseError([Problem("the number of designs of the grid", budget, f"at most {MOST_GRID}")])
+    budget, levels = _most_designs(inputs, settings), [one.levels for one in inputs]
     told = _Teller(budget, progress)
 
     def find(points: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -359,11 +374,22 @@ def _searched(
     return designs, search(trials, start, settings.seed, goals.count)
 
 
+def _most_designs(inputs: Sequence[DesignInput], settings: _Settings) -> int:
+    """Return the largest number of designs that are tried."""
+    if settings.method != "grid":
+        return settings.evaluations
+    count = int(np.prod([one.count or one.levels for one in inputs], dtype=np.float64))
+    if count > MOST_GRID:
+        raise CaseError([Problem("the number of designs of the grid", count, f"at most {MOST_GRID}")])
+    return count
+
+
 class _Teller:
     """Tells how many designs are tried, and the best of them by one aim."""
 
     def __init__(self, total: int, progress: Progress) -> None:
-        self._total, self._progress, self._last = total, progress, time.perf_counter()
+        self._total, self._progress, self._start = total, progress, time.perf_counter()
+        self._last = self._start
 
     def took(self, designs: Sequence[Design]) -> None:
         """Count designs that are tried."""
@@ -371,7 +397,9 @@ class _Teller:
         if now - self._last >= _TOLD_EACH:
             self._last = now
             within = sum(one.excess == 0.0 for one in designs)
-            self._progress(f"design {len(designs)} of at most {self._total}, {within} within the limits")
+            left = (now - self._start) / len(designs) * (self._total - len(designs))
+            remaining = f", {duration(left)} left" if left >= 1.0 else ""
+            self._progress(f"design {len(designs)} of at most {self._total}, {within} within the limits{remaining}")
 
 
 def _with_scatter(point: FloatArray, scatter: FloatArray) -> FloatArray:
@@ -400,15 +428,23 @@ def _shown(one: DesignInput, value: object) -> str:
     return f"{amount / one.keys[0][1] / scale:.6g} {one.unit}".strip()
 
 
-def _with_analyses(optimisation: Optimisation) -> Optimisation:
-    """Return an optimisation with the analyses of the quantities that it names.
+def _with_what_is_named(optimisation: Optimisation, good: Mapping[str, Limit]) -> Optimisation:
+    """Return an optimisation with the analyses of the quantities that it names, and with these beside its own.
 
-    None are named where no analysis has one of them: it is refused with those that there are by default.
+    No analyses are named where none has one of them: it is refused with those that there are by default.
     """
-    found = {analysis_of(name) for name in (*optimisation.aim, *optimisation.limit)}
-    if optimisation.analyses is not None or None in found or not found:
-        return optimisation
-    return optimisation.model_copy(update={"analyses": tuple(name for name in ANALYSES if name in found)})
+    named = [*optimisation.aim, *optimisation.limit]
+    if YIELD in named:
+        named = [*(name for name in named if name != YIELD), *good]
+    named = [statistic_of(name)[1] for name in named]
+    found = {analysis_of(name) for name in (*named, *optimisation.quantities)}
+    changes: dict[str, Any] = {}
+    if optimisation.quantities:
+        kept = (*optimisation.quantities, *map(plain_pattern, named), "sensor.*.loudest_speed_rpm")
+        changes["quantities"] = tuple(dict.fromkeys(kept))
+    if optimisation.analyses is None and None not in found and found:
+        changes["analyses"] = tuple(name for name in ANALYSES if name in found)
+    return optimisation.model_copy(update=changes)
 
 
 def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None:

@@ -16,7 +16,7 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
 from gearwhine.case.analysis_speeds import with_sense_of
-from gearwhine.case.errors import UNSAID
+from gearwhine.case.errors import UNSAID, Refusal
 from gearwhine.case.model import lacking
 from gearwhine.case.operation import Operation
 from gearwhine.case.optimisation import Optimisation
@@ -29,13 +29,16 @@ from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
-from gearwhine.output import file_stems
+from gearwhine.output import file_stems, staging
+from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
-from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.acoustics import acoustics_of
+from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
+from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.study_folder import StudyFolder
-from gearwhine.variation.inputs import Input, Wider, correlation_matrix, values_at, varied_inputs
+from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
@@ -52,6 +55,7 @@ _NEEDS = {
     "rotors": ("rotor",),
     "mass": ("rotor", "operation"),
     "lines": ("rotor", "operation", "gear_pair"),
+    "sound": ("housing", "rotor", "operation", "gear_pair"),
     "motion": ("rotor", "operation", "transient"),
 }
 """Tables that an analysis needs of a case."""
@@ -96,22 +100,34 @@ def solve_variation(
         raise lacking(case, "variation", command="vary")
     if not variation.vary:
         raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
-    inputs = varied_inputs(source, variation)
+    refusal, plain = Refusal(), source.without("variation")
+    inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
+    refusal.add(*_median_problems(plain, inputs))
+    with refusal:
+        correlation_matrix(inputs, variation)
+    with refusal:
+        wanted = wanted_of(case, variation)
+    refusal.require_none()
     count = variation.samples if samples is None else samples
     wider = _wider(inputs, widen)
     seed = variation.seed if seed is None else seed
     points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
-    wanted = wanted_of(case, variation)
-    varied = VariedCase(source.without("variation"), inputs, wanted, wider=wider)
-    varied, housing = in_solved_housing(varied, folder, "vary")
-    _require_distributions(varied, variation)
+    varied, housing = in_solved_housing(VariedCase(plain, inputs, wanted, wider=wider), folder, "vary")
     folder.progress("the gearbox without changes")
     nominal = varied.evaluation(varied.case(None))
-    _require_quantities(wanted, nominal)
-    require_known_limits(variation.limit, list(nominal.numbers))
+    with refusal:
+        _require_quantities(wanted, nominal)
+    with refusal:
+        require_known_limits(variation.limit, list(nominal.numbers))
+    refusal.require_none()
     if design is not None:
         aim = "Sobol' indices" if indices else "what wider ones cost"
         folder.progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
+    if "gears" in wanted.analyses and not wanted.names and any(isinstance(one.law, Pitches) for one in inputs):
+        folder.progress(
+            "pitch deviations make all mesh periods of a gearbox differ: its transmission error over all of them may "
+            'take most of the time; [variation] quantities = ["*.transmission_error_peak_to_peak_m", …] leaves it out\n'
+        )
     solved = run_samples(varied, points, folder)
     speeds = np.array(wanted.speeds or ([] if case.operation is None else [case.operation.speed]))
     result = VariedResult(
@@ -311,8 +327,16 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
     if case.housing is None or not case.rotor:
         return varied, None
     housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)
+    radiated = None
+    if varied.wanted.has_sound:
+        radiated, housing = radiated_power_of(acoustics_of(case), housing, folder.progress)
+        if not housing.source_holds:
+            # Before the samples: what ends them leaves the radiation, which may take minutes.
+            with staging(folder.path) as place:
+                write_mode_cache(place, housing)
+            housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
     key = housing_key(given_housing(case, command))
-    return replace(varied, housing=reduce_housing(case, housing), housing_key=key), housing
+    return replace(varied, housing=reduce_housing(case, housing), housing_key=key, radiated=radiated), housing
 
 
 def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | None]] | None) -> dict[str, Limit]:
@@ -332,7 +356,7 @@ def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | Non
 def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "vary") -> Wanted:
     """Return what is found of each gearbox: as asked for, else what the case allows."""
     analyses: tuple[str, ...]
-    names = variation.quantities if isinstance(variation, Variation) else ()
+    names = variation.quantities
     asked: tuple[str, ...] | None = variation.analyses
     needed = [analysis_of(name) for name in names]
     if asked is None and names and None not in needed:
@@ -354,7 +378,8 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
             expected = "a gear pair or a shaft: nothing else is found of a varied case"
             raise CaseError([Problem("variation.analyses", UNSAID, expected)])
     speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
-    return Wanted(analyses, with_sense_of(case.operation, speeds) if "lines" in analyses else (), names=names)
+    over_speed = {"lines", "sound"} & set(analyses)
+    return Wanted(analyses, with_sense_of(case.operation, speeds) if over_speed else (), names=names)
 
 
 def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
@@ -371,25 +396,17 @@ def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
         raise CaseError(Problem(f"variation.quantities[{place}]", name, expected) for place, name in without)
 
 
-def _require_distributions(varied: VariedCase, variation: Variation) -> None:
-    """Refuse a key that does not take its median; what the parts make together is refused with its gearbox.
-
-    Raises
-    ------
-    CaseError
-    """
-    problems = dict[Problem, None]()
-    for one in varied.inputs:
+def _median_problems(source: CaseSource, inputs: Sequence[Input]) -> Iterator[Problem]:
+    """Yield problems of keys that do not take their median; those of parts together are told by their gearbox."""
+    for one in inputs:
         if isinstance(one.law, Discrete):
             continue
         try:
-            varied.source.changed(texts := list(one.overrides(0.5)))
+            source.changed(texts := list(one.overrides(0.5)))
         except CaseError as error:
             sources = [f"--set {text}" for text in texts]
             own = [problem for problem in error.problems if problem.source in sources]
-            problems |= dict.fromkeys(replace(problem, source=f"variation.vary, {one.name}") for problem in own)
-    if problems:
-        raise CaseError(problems)
+            yield from (replace(problem, source=f"variation.vary, {one.name}") for problem in own)
 
 
 def _result(

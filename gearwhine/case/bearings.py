@@ -16,6 +16,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
+    Angle,
     Coefficient,
     Damping,
     DampingFromZero,
@@ -726,6 +727,24 @@ def _damping_form(value: Any) -> str:
     return next((form for key, form in (("matrix", "~matrix"), ("over_stiffness", "~time")) if key in keys), "~radial")
 
 
+class SeatError(Table):
+    """Error of the place of a bearing's seat: position of its bore [m] and rotation of its axis [rad]."""
+
+    x: Length = 0.0
+    """Position along x."""
+    y: Length = 0.0
+    """Position along y."""
+    tilt_x: Angle = 0.0
+    """Rotation of its axis about x."""
+    tilt_y: Angle = 0.0
+    """Rotation of its axis about y."""
+
+    def build(self) -> tuple[float, float, float, float] | None:
+        """Return position and rotation; None where all are 0."""
+        error = self.x, self.y, self.tilt_x, self.tilt_y
+        return error if any(error) else None
+
+
 class Bearing(Table):
     """`[[bearing]]`: between a rotor at a station [m from its left end] and a seat, or "ground".
 
@@ -765,6 +784,9 @@ class Bearing(Table):
     ) = None
     """Damping, in one of three forms. Default: of a rolling bearing by its elements `{ over_stiffness = "8 us" }`, the
     middle of Krämer's range; of others none."""
+    seat_error: SeatError = SeatError()
+    """Error of the place of its bore, as by a position tolerance. A bearing with `law = "nonlinear"` or a stop takes
+    none. Default: none."""
     load: BearingLoad | None = None
     """Mean force of the shaft on a rolling bearing or stop. Default: of a rolling bearing that of the static
     equilibrium, in a case with an operation where gear pairs, a force, gravity or an `axial_offset` on its rotor load
@@ -790,6 +812,14 @@ class Bearing(Table):
         if isinstance(self.stiffness, RollingStiffness):
             return self.stiffness.rolling.law == "nonlinear"
         return isinstance(self.stiffness, StopStiffness)
+
+    @model_validator(mode="after")
+    def _placed(self) -> Bearing:
+        if self.follows_own_law and self.seat_error.build() is not None:
+            raise wrong(
+                "none of a stop or of law = 'nonlinear', which take the seat in its nominal place", "seat_error"
+            )
+        return self
 
     @model_validator(mode="after")
     def _loaded(self) -> Bearing:

@@ -120,6 +120,36 @@ class CaseError(ValueError):
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
+class Refusal:
+    """Problems of several checks, which are refused together: ``with refusal: check()`` collects those of a check."""
+
+    def __init__(self) -> None:
+        self.problems: dict[Problem, None] = {}
+
+    def __enter__(self) -> None:
+        """Begin a check."""
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> bool:
+        """Keep the problems of a check that has failed."""
+        if isinstance(error, CaseError):
+            self.add(*error.problems)
+        return isinstance(error, CaseError)
+
+    def add(self, *problems: Problem) -> None:
+        """Keep problems."""
+        self.problems |= dict.fromkeys(problems)
+
+    def require_none(self) -> None:
+        """Refuse what has been found.
+
+        Raises
+        ------
+        CaseError
+        """
+        if self.problems:
+            raise CaseError(self.problems)
+
+
 LOOK_UP = _Nothing()
 
 

@@ -67,21 +67,27 @@ class Robust(Table):
     """`[optimisation.robust]`: each design is judged by gearboxes that scatter about it as `[variation]` says.
 
     Aims and limits take the side of the scatter that is worse: of a quantity to be small its mean and some standard
-    deviations more, or its quantile; of one to be large as much less.
+    deviations more, or its quantile; of one to be large as much less. Names such as "mean of sensor.top.level_db" and
+    "yield" take one statistic.
     """
 
     samples: Annotated[int, Whole(2, 100_000)] = 16
     """Number of gearboxes about each design."""
     deviations: Annotated[float, Quantity(units.RATIO, at_least=0.0)] | None = None
-    """Standard deviations from the mean. One of this and `quantile`."""
+    """Standard deviations from the mean. This or `quantile`. Default: 2 without a `quantile`."""
     quantile: Annotated[float, Quantity(units.RATIO, above=0.5, below=1.0)] | None = None
     """Part of the gearboxes that are no worse."""
 
     @model_validator(mode="after")
     def _one_measure(self) -> Robust:
-        if (self.deviations is None) == (self.quantile is None):
+        if self.deviations is not None and self.quantile is not None:
             raise wrong("either 'deviations' or 'quantile'")
         return self
+
+    @property
+    def reach(self) -> float:
+        """Standard deviations from the mean, where there is no quantile."""
+        return 2.0 if self.deviations is None else self.deviations
 
 
 class Optimisation(Table):
@@ -96,14 +102,21 @@ class Optimisation(Table):
     """Seed of the search. The same seed gives the same designs."""
     analyses: tuple[AnalysisName, ...] | None = None
     """What is found of each design, as in `[variation]`. Default: what aims and limits name."""
+    quantities: Annotated[tuple[Annotated[str, Field(min_length=1, max_length=200)], ...], Field(max_length=1000)] = ()
+    """Names of the quantities that are found beside those of aims and limits, as in `[variation]`; what they do not
+    need is not computed. Default: all of the analyses."""
     speed: Speeds | None = None
-    """Speeds of levels at sensors, a range or a list. Default: those of `[sweep]`, else that of operation."""
+    """Speeds of levels at sensors and of the sound, a range or a list. Default: those of `[sweep]`, else that of
+    operation."""
     design: dict[KeyPath, DesignKey] = Field(default={}, max_length=MOST_KEYS)
     """Values by key path; `*` stands for every entry."""
     aim: dict[QuantityName, Aim] = Field(default={}, max_length=MOST_AIMS)
-    """Aims by the name of a quantity. With `*` in the name the worst of the quantities is meant."""
+    """Aims by the name of a quantity. With `*` in the name the worst of the quantities is meant. With `[optimisation.
+    robust]` also "mean of", "standard deviation of" or "quantile 0.95 of" a quantity over the gearboxes about a design,
+    and "yield", the part of them within all of `[variation.limit]`."""
     limit: dict[QuantityName, Limit] = Field(default={}, max_length=1000)
-    """Limits by the name of a quantity. With `*` in the name each of the quantities has it."""
+    """Limits by the name of a quantity, or of a statistic as of aims. With `*` in the name each of the quantities has
+    it."""
     robust: Robust | None = None
     """Scatter about each design. Default: none."""
     verify: StrictBool = True

@@ -231,6 +231,7 @@ class Parts:
             elements,
             damping_time=entry.damping_time,
             design_load=_given_load(entry) if depends else None,
+            seat_error=entry.seat_error.build(),
         )
 
     def _is_around_pin(self, rotor: str) -> bool:

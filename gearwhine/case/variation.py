@@ -132,7 +132,7 @@ class Limit(Table):
         return low <= value <= high
 
 
-AnalysisName = Literal["gears", "load", "rotors", "mass", "lines", "motion"]
+AnalysisName = Literal["gears", "load", "rotors", "mass", "lines", "sound", "motion"]
 MOST_SAMPLES = 10_000_000
 MOST_KEYS = 500
 
@@ -146,14 +146,15 @@ class Variation(Table):
     """Seed of the samples. The same seed gives the same samples, the first ones whatever their number."""
     analyses: tuple[AnalysisName, ...] | None = None
     """What is found of each gearbox: "gears" (transmission error, mesh stiffness), "load" (operating point), "rotors"
-    (critical speeds), "mass" (gears, shafts, housing), "lines" (levels at sensors by the linear machine under load) and
-    "motion" (levels at sensors by the transient). Default: gears, load and lines, as far as the case has them."""
+    (critical speeds), "mass" (gears, shafts, housing), "lines" (levels at sensors by the linear machine under load),
+    "sound" (sound power of its mesh harmonics, as `[acoustics]` says) and "motion" (levels at sensors by the
+    transient). Default: gears, load and lines, as far as the case has them."""
     quantities: Annotated[tuple[Annotated[str, Field(min_length=1, max_length=200)], ...], Field(max_length=1000)] = ()
     """Names of the quantities that are found, `*` for any part of a name, such as
     "gear_pair.*.transmission_error_peak_to_peak_m"; what they do not need is not computed. Default: all of the
     analyses."""
     speed: Speeds | None = None
-    """Speeds of "lines", a range or a list. Default: those of `[sweep]`, else that of operation."""
+    """Speeds of "lines" and "sound", a range or a list. Default: those of `[sweep]`, else that of operation."""
     vary: dict[KeyPath, Varied] = Field(default={}, max_length=MOST_KEYS)
     """Distribution by key path; `*` stands for every entry."""
     correlation: tuple[Correlation, ...] = Field(default=(), max_length=MOST_ENTRIES)

@@ -28,6 +28,8 @@ _FRESH_RUN = "Start again, even if OUT holds the housing's modes or an interrupt
 _FRESH_POINTS = "Solve again the points and modes that OUT holds."
 _FRESH_SAMPLES = "Solve again the gearboxes and modes that OUT holds."
 _FRESH_DESIGNS = "Solve again the designs and modes that OUT holds."
+_MOST_FAILED = 0.5
+"""Part of the gearboxes of a varied case that may fail."""
 _OUT = "Results go to OUT (default: ./<case>-results)."
 
 
@@ -245,12 +247,15 @@ def _sections(place: str) -> Callable[["Document"], Any]:
 
 def _require_whole(document: Mapping[str, Any]) -> None:
     """Refuse to end well where points of a sweep failed; what is there is shown and written before."""
-    # A varied case goes without the gearboxes that cannot be, and says so.
+    # A varied case goes without the gearboxes that cannot be, and says so, up to half of them.
     if "points" in document and (failed := document["failed"]):
         total = len(document["points"])
         raise PartlyFailedError(f"{failed} of {total} points failed; they are tried again on the next run")
-    if "quantities" in document and len(document["failed"]) == document["samples"]:
-        raise PartlyFailedError(f"no gearbox can be solved: {document['failed'][0]['message']}")
+    if "quantities" in document and (failed := len(document["failed"])) > _MOST_FAILED * document["samples"]:
+        raise PartlyFailedError(
+            f"{failed} of {document['samples']} gearboxes cannot be solved: the others stand for no production; the "
+            f"first fails by {document['failed'][0]['message']}"
+        )
     if "designs" in document and len(document["failed"]) == document["designs"]:
         raise PartlyFailedError(f"no design can be solved: {document['failed'][0]['message']}")
     if missed := document.get("missed"):

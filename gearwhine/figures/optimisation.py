@@ -34,7 +34,7 @@ from gearwhine.figures.style import (
     stacked,
 )
 from gearwhine.optimisation.verification import Motion, Verification
-from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
+from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit, statistic_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,8 +102,8 @@ def _values(optimised: Optimised, place: int) -> FloatArray:
 
 def _label(optimised: Optimised, place: int) -> str:
     name = optimised.goals.aims[place].name
-    of = name.rpartition(".")[0] if "*" in name else part_of(name)
-    return f"{of}, {shown_quantity(name)[0]}"
+    of = statistic_of(name)[1].rpartition(".")[0] if "*" in name else part_of(name)
+    return f"{of}, {shown_quantity(name)[0]}".removeprefix(", ")
 
 
 def _set_label(axes: Axes, text: str, *, across: bool) -> None:

@@ -74,10 +74,11 @@ def _begins(title: str, letters: int) -> str:
 def _distributions(title: str, quantities: Sequence[QuantityStatistics]) -> Figure:
     columns = min(len(quantities), 2)
     rows, below = -(-len(quantities) // columns), 2.0
+    limited = any(one.limit is not None for one in quantities)
     figure = sheet(
         HEAD + FOOT + below + rows * _HEIGHT + (rows - 1) * _GAP,
         "Distributions of varied gearboxes",
-        f"{_begins(title, 50)}blue: without changes, red: limit, grey: 5 %, median, 95 %.",
+        f"{_begins(title, 50)}blue: without changes, {'red: limit, ' if limited else ''}grey: 5 %, median, 95 %.",
     )
     for number, one in enumerate(quantities):
         row, column = divmod(number, columns)
@@ -200,10 +201,11 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)
     label, factor = shown_quantity(one.name)
+    beyond = "" if one.limit is None else ", red where it is beyond the limit"
     figure = sheet(
         HEAD + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
         f"{part_of(one.name)}: {label.partition(' [')[0]}",
-        f"{_begins(title, 60)}each dot is a gearbox, red where it is beyond the limit.",
+        f"{_begins(title, 60)}each dot is a gearbox{beyond}.",
     )
     chosen = np.isfinite(one.values)
     good = np.array([one.limit is None or one.limit.holds(value) for value in one.values.tolist()])
@@ -248,6 +250,7 @@ def _over_speed(title: str, varied: VariedResult) -> Figure:
             if end is not None:
                 axes.axhline(end, color=RED, lw=1.0)
         axes.set_ylabel("level [dB]")
-        panel_title(axes, part_of(name))
+        quantity = shown_quantity(name)[0].partition(" [")[0].removeprefix("highest ").removesuffix(" over speed")
+        panel_title(axes, f"{part_of(name)}, {quantity}")
     name_lowest(panels, "speed [rpm]")
     return figure

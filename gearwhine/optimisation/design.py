@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 from gearwhine.case import CaseError, CaseSource, Problem, case_document
-from gearwhine.case.errors import NOTHING, UNSAID, key_of, look_up
+from gearwhine.case.errors import NOTHING, UNSAID, Refusal, key_of, look_up
 from gearwhine.case.optimisation import DesignKey, Optimisation
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import si_amount, unit_ratio
@@ -77,8 +77,10 @@ def space_of(inputs: Sequence[DesignInput]) -> Space:
     return Space(tuple(one.count for one in inputs))
 
 
-def design_inputs(source: CaseSource, optimisation: Optimisation) -> tuple[DesignInput, ...]:
-    """Return the inputs of a design, in its order.
+def design_inputs(
+    source: CaseSource, optimisation: Optimisation, refusal: Refusal | None = None
+) -> tuple[DesignInput, ...]:
+    """Return the inputs of a design, in its order; with a ``refusal`` those without the problems that it keeps.
 
     Raises
     ------
@@ -86,7 +88,7 @@ def design_inputs(source: CaseSource, optimisation: Optimisation) -> tuple[Desig
         With every key that leads nowhere or is no number, and every range that cannot be.
     """
     document = case_document(source.changed_case())
-    inputs, problems = list[DesignInput](), list[Problem]()
+    inputs, refused = list[DesignInput](), Refusal() if refusal is None else refusal
     for key, designed in optimisation.design.items():
         try:
             found = inputs_of(source, {key: _as_varied(designed)}, _TABLE)
@@ -96,7 +98,7 @@ def design_inputs(source: CaseSource, optimisation: Optimisation) -> tuple[Desig
                 for one in inputs_of(source, {path: Varied(values=values)}, (*_TABLE, key, "with"))
             ]
         except CaseError as error:
-            problems += [replace(one, key=_as_written(one.key)) for one in error.problems]
+            refused.add(*(replace(one, key=_as_written(one.key)) for one in error.problems))
             continue
         for one in found:
             values = {field.name: getattr(one, field.name) for field in fields(Input)}
@@ -104,18 +106,16 @@ def design_inputs(source: CaseSource, optimisation: Optimisation) -> tuple[Desig
             written = written_value(document, inputs[-1])
             if designed.range is not None and written is not NOTHING and si_amount(written) is None:
                 place = key_of((*_TABLE, key, "range"))
-                problems.append(Problem(place, UNSAID, f"a key with a quantity or a number; {key} is {written!r}"))
-    if problems:
-        raise CaseError(problems)
+                refused.add(Problem(place, UNSAID, f"a key with a quantity or a number; {key} is {written!r}"))
     taken = dict[str, str]()
     for one in inputs:
         for path in [path for part in (one, *one.along) for path, _ in part.keys]:
             if path in taken:
                 expected = f"each key once: {path} is designed by {taken[path]!r}, too"
-                problems.append(Problem(key_of((*_TABLE, one.name)), UNSAID, expected))
+                refused.add(Problem(key_of((*_TABLE, one.name)), UNSAID, expected))
             taken[path] = one.name
-    if problems:
-        raise CaseError(problems)
+    if refusal is None:
+        refused.require_none()
     return tuple(inputs)
 
 
@@ -227,14 +227,8 @@ def _scattered(one: Input, coordinate: float, designed: Mapping[str, tuple[float
         yield f"{path}={one.text(amount)}"
 
 
-def require_values(source: CaseSource, inputs: Sequence[DesignInput]) -> None:
-    """Refuse values that their key does not take; what the parts make together is refused with its design.
-
-    Raises
-    ------
-    CaseError
-    """
-    problems = dict[Problem, None]()
+def value_problems(source: CaseSource, inputs: Sequence[DesignInput]) -> Iterator[Problem]:
+    """Yield problems of values that their key does not take; those of parts together are told by their design."""
     for one in inputs:
         ends = ((number + 0.5) / one.count for number in range(min(one.count, _MOST_CHECKED)))
         for at in ends if one.count else (0.0, 1.0):
@@ -245,9 +239,7 @@ def require_values(source: CaseSource, inputs: Sequence[DesignInput]) -> None:
                 sources = [f"--set {text}" for text in texts]
                 own = [problem for problem in error.problems if problem.source in sources]
                 name = key_of((*_TABLE, one.name))
-                problems |= dict.fromkeys(replace(problem, source=name) for problem in own)
-    if problems:
-        raise CaseError(problems)
+                yield from (replace(problem, source=name) for problem in own)
 
 
 def require_scatter(inputs: Sequence[DesignInput], source: CaseSource, variation: Variation) -> None:

@@ -208,16 +208,20 @@ _PAIR_COLUMNS = (
 )
 
 
-def _by_carrier(row: Document) -> str:
-    """Return the misalignment by the carrier and its pins; nothing of gears that are no planets."""
-    part = row["misalignment_by_cause_rad"]["carrier"]
-    return "" if part == 0.0 else f"{_MICRO * part:z.2f}"
+def _where_not_zero(cause: str) -> Column:
+    """Return the misalignment by a cause that few machines have: by a carrier and its pins, by errors of seats."""
+
+    def shown(row: Document) -> str:
+        part = row["misalignment_by_cause_rad"][cause]
+        return "" if part == 0.0 else f"{_MICRO * part:z.2f}"
+
+    return Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO, shown=shown)
 
 
 _CAUSE_COLUMNS = (
     *columns_of((*_GEARS, _MISALIGNMENT)),
     *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES[:3]),
-    Column("by\ncarrier", "misalignment_by_cause_rad.carrier", "z.2f", _MICRO, shown=_by_carrier),
+    *map(_where_not_zero, CAUSES[3:5]),
     Column("by\nbodies", "misalignment_by_cause_rad.bodies", "z.2f", _MICRO),
 )
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.named_quantities import part_of, shown_quantity
+from gearwhine.output.named_quantities import part_of, shown_quantity, statistic_of
 from gearwhine.output.quantity import document_of, in_file, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
 from gearwhine.results.many_solutions import FAILED, failed_sentences, failed_warnings, finite, numbered
@@ -102,7 +102,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
 
 def _of(name: str) -> str:
     """Return what a quantity is of; of several ones as they are named."""
-    return name.rpartition(".")[0] if "*" in name else part_of(name)
+    return statistic_of(name)[1].rpartition(".")[0] if "*" in name else part_of(name)
 
 
 def _allowed(one: Any) -> str:
@@ -377,6 +377,19 @@ def _as_text(value: float | None, form: str) -> str:
     return "" if value is None else format(value, form)
 
 
+def _proven_yield(document: Document, about: int) -> Iterator[str]:
+    """Yield how well the gearboxes about the first design know its yield."""
+    from gearwhine.variation.statistics import Share
+
+    row = next((row for row in (*document["aims"], *document["limits"]) if row["name"] == "yield"), None)
+    if row is not None and row["designs"] and row["designs"][0] is not None:
+        share = Share.of(round(row["designs"][0] * about), about)
+        yield (
+            f"Yield: {share.good} of {about} gearboxes about the {document['chosen'][0]['design']} design are within "
+            f"all limits, 95 % interval {100.0 * share.low:.0f} to {100.0 * share.high:.0f} %; vary has more of them"
+        )
+
+
 def _sentences(document: Document) -> Iterator[str]:
     for row in document["keys"]:
         if row["at_bound"]:
@@ -388,6 +401,7 @@ def _sentences(document: Document) -> Iterator[str]:
         yield f"Missed: {row['text']}."
     yield from failed_sentences(document, "design", _MOST_FAILURES)
     about = document["gearboxes_about_each"]
+    yield from _proven_yield(document, about)
     scatter = f", {about} gearboxes about each" if about > 1 else ""
     resumed = f"; {document['resumed']} evaluations by an earlier run" if document["resumed"] else ""
     within = f", {document['within_limits']} within all limits" if document["limits"] else ""

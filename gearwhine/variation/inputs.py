@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gearwhine.case import CaseError, CaseSource, Problem, case_document
-from gearwhine.case.errors import NOTHING, UNSAID, Location, key_of, look_up
+from gearwhine.case.errors import NOTHING, UNSAID, Location, Refusal, key_of, look_up
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import si_amount, split_quantity
@@ -155,25 +155,28 @@ def varied_inputs(source: CaseSource, variation: Variation) -> tuple[Input, ...]
     return inputs_of(source, variation.vary, ("variation", "vary"))
 
 
-def inputs_of(source: CaseSource, vary: Mapping[str, Varied], table: Location) -> tuple[Input, ...]:
-    """Return the inputs of the distributions of a table of the case, by key path; see :func:`varied_inputs`."""
-    inputs, problems, keys = list[Input](), list[Problem](), _Keys(source)
+def inputs_of(
+    source: CaseSource, vary: Mapping[str, Varied], table: Location, refusal: Refusal | None = None
+) -> tuple[Input, ...]:
+    """Return the inputs of the distributions of a table of the case, by key path; see :func:`varied_inputs`.
+
+    With a ``refusal`` the problems are kept in it, and the inputs are those of the other keys.
+    """
+    inputs, found, keys = list[Input](), Refusal() if refusal is None else refusal, _Keys(source)
     for key, varied in vary.items():
         try:
             inputs += keys.inputs(key, varied)
         except _CannotVaryError as error:
-            problems.append(Problem(key_of((*table, key, *error.at)), error.value, error.expected))
-    if problems:
-        raise CaseError(problems)
+            found.add(Problem(key_of((*table, key, *error.at)), error.value, error.expected))
     taken: dict[str, str] = {}
     for one in inputs:
         for path, _ in one.keys:
             if path in taken:
                 expected = f"each key once: {path} is varied by {taken[path]!r}, too"
-                problems.append(Problem(key_of((*table, one.name)), UNSAID, expected))
+                found.add(Problem(key_of((*table, one.name)), UNSAID, expected))
             taken[path] = one.name
-    if problems:
-        raise CaseError(problems)
+    if refusal is None:
+        found.require_none()
     return tuple(inputs)
 
 
@@ -424,14 +427,16 @@ def correlation_matrix(inputs: Sequence[Input], variation: Variation) -> FloatAr
         return None
     from gearwhine.numerics.distributions import correlation_findings
 
-    names, matrix = [one.name for one in inputs], np.eye(len(inputs))
+    refusal, names, matrix = Refusal(), [one.name for one in inputs], np.eye(len(inputs))
     for number, pair in enumerate(variation.correlation):
         for place, key in enumerate(pair.keys):
-            if key not in names:
+            if variation.vary[key].independent:
                 expected = "a key with one value; this one has an independent value for each entry"
-                raise CaseError([Problem(f"variation.correlation[{number}].keys[{place}]", key, expected)])
-        first, second = (names.index(key) for key in pair.keys)
-        matrix[first, second] = matrix[second, first] = pair.coefficient
+                refusal.add(Problem(f"variation.correlation[{number}].keys[{place}]", key, expected))
+        if all(key in names for key in pair.keys):  # others are refused themselves
+            first, second = (names.index(key) for key in pair.keys)
+            matrix[first, second] = matrix[second, first] = pair.coefficient
+    refusal.require_none()
     if findings := list(correlation_findings(matrix)):
         raise CaseError([Problem("variation.correlation", UNSAID, finding.expected) for finding in findings])
     return matrix

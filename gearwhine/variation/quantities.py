@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property, partial
-from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.shafts_alone import bearings_on_rigid_seats
@@ -18,7 +20,7 @@ from gearwhine.coupling.description.parts import gear_disc
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, transmission_error_phasors
-from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
+from gearwhine.coupling.linear.lines_over_speed import LinesOverSpeed, housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
@@ -26,11 +28,15 @@ from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.analyses.critical_speeds import critical_speeds
 
+if TYPE_CHECKING:  # with kernels of its own
+    from gearwhine.coupling.sweep.line_sound import RadiatedPower
+
 HARMONICS = 3
 """Number of harmonics of a transmission error."""
 _CRITICAL_SPEEDS = 3
 _RPM = 30.0 / np.pi
 _SILENCE = 1e-12  # acceleration that stands for none [m/s²]
+_NO_SOUND = -100.0  # sound power level that stands for none [dB]
 
 
 @dataclass(frozen=True)
@@ -57,6 +63,11 @@ class Wanted:
     needs_load: bool = False
     names: tuple[str, ...] = ()
 
+    @property
+    def has_sound(self) -> bool:
+        """Whether the sound is wanted, which needs the radiation of the housing."""
+        return "sound" in self.analyses
+
     def has(self, name: str) -> bool:
         """Whether a quantity is wanted."""
         return not self.names or any(fnmatchcase(name, pattern) for pattern in self.names)
@@ -72,39 +83,50 @@ class Evaluation:
         By name.
     curves : dict of str to ndarray, shape (s,)
         Over the speeds.
+    seconds : dict of str to float
+        Time that took each quantity which is found by itself, and each analysis beside these [s]; empty of one on file.
     """
 
     numbers: dict[str, float]
     curves: dict[str, FloatArray] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
 
 
 Named = Iterator[tuple[str, float | FloatArray | Callable[[], float]]]
 """Quantities by name; a function finds one that takes long."""
 
 
-def evaluate(machine: Machine, wanted: Wanted) -> Evaluation:
-    """Find the quantities of a gearbox.
+def evaluate(machine: Machine, wanted: Wanted, radiated: RadiatedPower | None = None) -> Evaluation:
+    """Find the quantities of a gearbox; its sound needs the radiation of its housing.
 
     Raises
     ------
     gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError, ...
         Where a machine with these values cannot be solved.
     """
-    gearbox = _Gearbox(machine, wanted)
-    return _evaluation(wanted, chain.from_iterable(_ANALYSES[analysis](gearbox) for analysis in wanted.analyses))
+    gearbox = _Gearbox(machine, wanted, radiated)
+    return _evaluation(wanted, {analysis: _ANALYSES[analysis](gearbox) for analysis in wanted.analyses})
 
 
-def _evaluation(wanted: Wanted, named: Named) -> Evaluation:
+def _evaluation(wanted: Wanted, by_analysis: Mapping[str, Named]) -> Evaluation:
     """Return the wanted ones among quantities; others that are functions are not called."""
-    numbers, curves = dict[str, float](), dict[str, FloatArray]()
-    for name, found in named:
-        if wanted.has(name):
+    numbers, curves, seconds = dict[str, float](), dict[str, FloatArray](), dict[str, float]()
+    for analysis, named in by_analysis.items():
+        start, alone = time.perf_counter(), 0.0
+        for name, found in named:
+            if not wanted.has(name):
+                continue
+            begin = time.perf_counter()
             value = found() if callable(found) else found
+            if callable(found):
+                seconds[name] = time.perf_counter() - begin
+                alone += seconds[name]
             if isinstance(value, np.ndarray):
                 curves[name] = value
             else:
                 numbers[name] = float(value)
-    return Evaluation(numbers, curves)
+        seconds[analysis] = time.perf_counter() - start - alone
+    return Evaluation(numbers, curves, seconds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +135,7 @@ class _Gearbox:
 
     machine: Machine
     wanted: Wanted
+    radiated: RadiatedPower | None = None
 
     @cached_property
     def load(self) -> SolvedLoad | None:
@@ -127,9 +150,36 @@ class _Gearbox:
         return load_machine(self.machine, None if self.load is None else self.load.point)
 
     @cached_property
+    def speeds(self) -> tuple[float, ...]:
+        """Signed speeds of the lines [rad/s]."""
+        return self.wanted.speeds or (self.loaded.coupled.speed,)
+
+    @cached_property
+    def limit(self) -> float:
+        """Frequency up to which lines are complete [rad/s]."""
+        housing = self.machine.housing_component
+        if housing is None or housing.complete_below is None:
+            raise CouplingError("lines: expected a housing whose modes are complete up to a known frequency")
+        return housing.complete_below
+
+    @cached_property
+    def over_speed(self) -> LinesOverSpeed | None:
+        """Lines at all speeds; None of sidebands and of tables over speed, with a machine of their own at each."""
+        coupled = self.loaded.coupled
+        if coupled.system.turns or any(one.bearing.speeds is not None for one in self.machine.bearings):
+            return None
+        return lines_over_speed(coupled, self.speeds, self.limit)
+
+    @cached_property
+    def at_speeds(self) -> tuple[CoupledMachine, ...]:
+        """The machine at each speed."""
+        point = None if self.load is None else self.load.point
+        return tuple(load_machine(replace(self.machine, speed=speed), point).coupled for speed in self.speeds)
+
+    @cached_property
     def pairs(self) -> Sequence[LoadedGearPair]:
         """Gear pairs under load; of an assembled machine those of it."""
-        if {"lines", "motion"} & set(self.wanted.analyses):
+        if {"lines", "sound", "motion"} & set(self.wanted.analyses):
             return self.loaded.pairs
         left_to_load = any(pair.misalignment is None for pair in self.machine.gear_pairs)
         point = self.load.point if left_to_load and self.load is not None else None
@@ -138,7 +188,7 @@ class _Gearbox:
 
 def evaluate_pairs(pairs: Sequence[LoadedGearPair], wanted: Wanted) -> Evaluation:
     """Find the quantities of gear pairs without shafts."""
-    return _evaluation(wanted, _of_pairs(pairs))
+    return _evaluation(wanted, {"gears": _of_pairs(pairs)})
 
 
 def _of_gears(gearbox: _Gearbox) -> Named:
@@ -233,26 +283,32 @@ def _of_mass(gearbox: _Gearbox) -> Named:
 
 
 def _of_lines(gearbox: _Gearbox) -> Named:
-    machine, coupled = gearbox.machine, gearbox.loaded.coupled
-    housing = machine.housing_component
-    limit = None if housing is None else housing.complete_below
-    if limit is None:
-        raise CouplingError("lines: expected a housing whose modes are complete up to a known frequency")
-    speeds = gearbox.wanted.speeds or (coupled.speed,)
-    tables = any(one.bearing.speeds is not None for one in machine.bearings)
-    if coupled.system.turns or tables:
-        # Sidebands and tables over speed have a machine of their own at each speed.
-        point = None if gearbox.load is None else gearbox.load.point
-        at = [load_machine(replace(machine, speed=speed), point).coupled for speed in speeds]
-        over_speed = np.array([sensor_rms(one, limit) for one in at]).T
+    over = gearbox.over_speed
+    rms = np.array([sensor_rms(one, gearbox.limit) for one in gearbox.at_speeds]).T if over is None else over.rms
+    for sensor, levels in zip(gearbox.loaded.coupled.sensor_rows, level_of(rms), strict=True):
+        yield from _highest(gearbox, f"sensor.{sensor}.level_db", f"sensor.{sensor}.loudest_speed_rpm", levels)
+
+
+def _highest(gearbox: _Gearbox, name: str, name_of_speed: str, levels: FloatArray) -> Named:
+    """Yield the highest of the levels at the speeds, the speed at which it is, and all."""
+    place = int(np.argmax(levels))
+    yield name, float(levels[place])
+    if len(levels) > 1:
+        yield name_of_speed, _RPM * abs(float(gearbox.speeds[place]))
+    yield name, levels
+
+
+def _of_sound(gearbox: _Gearbox) -> Named:
+    radiated, over = gearbox.radiated, gearbox.over_speed
+    if radiated is None:
+        raise CouplingError("sound: expected a case with a housing of its own mesh, whose surface radiates")
+    if over is None:
+        lines = [housing_rates(one, gearbox.limit) for one in gearbox.at_speeds]
     else:
-        over_speed = lines_over_speed(coupled, speeds, limit).rms
-    for sensor, levels in zip(coupled.sensor_rows, level_of(over_speed), strict=True):
-        place = int(np.argmax(levels))
-        yield f"sensor.{sensor}.level_db", float(levels[place])
-        if len(levels) > 1:
-            yield f"sensor.{sensor}.loudest_speed_rpm", _RPM * abs(float(speeds[place]))
-        yield f"sensor.{sensor}.level_db", levels
+        lines = [(over.orders * abs(speed), rates) for speed, rates in zip(gearbox.speeds, over.rates, strict=True)]
+    levels = np.array([radiated.levels(frequencies / (2.0 * np.pi), rates) for frequencies, rates in lines]).T
+    for name, of_name in zip(("sound_power_db", "sound_power_db_a"), np.maximum(levels, _NO_SOUND), strict=True):
+        yield from _highest(gearbox, f"housing.{name}", f"housing.{name}_speed_rpm", of_name)
 
 
 def level_of(rms: FloatArray) -> FloatArray:
@@ -278,6 +334,7 @@ _ANALYSES: Mapping[str, Callable[[_Gearbox], Named]] = {
     "rotors": _of_rotors,
     "mass": _of_mass,
     "lines": _of_lines,
+    "sound": _of_sound,
     "motion": _of_motion,
 }
 
@@ -288,6 +345,9 @@ _ANALYSIS_BY_END = {
     "motion_level_db": "motion",
     "level_db": "lines",
     "loudest_speed_rpm": "lines",
+    "sound_power_db": "sound",
+    "sound_power_db_a": "sound",
+    "_speed_rpm": "sound",
     "mass_kg": "mass",
     "_rpm": "rotors",
     "k_h_beta": "load",

@@ -12,6 +12,7 @@ from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
 from gearwhine.study_folder import StudyFolder
+from gearwhine.variation.cost import cost_of_study, duration
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import FOLDER, Failure, Outcome, Record, Sampled, solve_samples
 from gearwhine.workers import as_they_end, called, code_digest, default_workers
@@ -75,6 +76,7 @@ def run_samples(varied: Sampled, points: FloatArray, folder: StudyFolder, place:
         record.append([(first, outcomes[first])], points)
         told.took([(first, outcomes[first])])
         rest = todo[1:]
+        told.expects(outcomes[first], each, len(rest), folder)
         is_short = folder.workers is None and each * len(rest) < _WORTH_WORKERS
         alone = not rest or (folder.scheduler is None and (folder.workers == 1 or is_short))
         workers = folder.workers or default_workers()
@@ -137,6 +139,13 @@ class _Teller:
         self._failed = 0
         self._start = self._last = time.perf_counter()
 
+    def expects(self, first: Outcome, each: float, rest: int, folder: StudyFolder) -> None:
+        """Tell what all samples will take by the first, where that is long."""
+        if isinstance(first, Evaluation) and folder.scheduler is None:
+            taken = each * rest / (folder.workers or default_workers())
+            if text := cost_of_study(first, taken, self._total, "gearboxes", "variation"):
+                self._progress(f"{text}\n")
+
     def took(self, solved: Sequence[tuple[int, Outcome]]) -> None:
         """Count samples that are done, and those of them that failed."""
         self._done += len(solved)
@@ -147,5 +156,5 @@ class _Teller:
         self._last = now
         left = (now - self._start) / (self._done - self._before) * (self._total - self._done)
         failures = f", {self._failed} failed" if self._failed else ""
-        remaining = f", {left:.0f} s left" if left >= 1.0 else ""
+        remaining = f", {duration(left)} left" if left >= 1.0 else ""
         self._progress(f"gearbox {self._done} of {self._total}{failures}{remaining}")

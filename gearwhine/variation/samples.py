@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -31,16 +31,21 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
+from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.variation.inputs import Input, Wider, inputs_at
 from gearwhine.variation.quantities import Evaluation, Wanted, evaluate, evaluate_pairs
 from gearwhine.workers import code_digest, require_same_code
 
+if TYPE_CHECKING:  # with kernels of its own
+    from gearwhine.coupling.sweep.line_sound import RadiatedPower
+
 _REMARKS = frozenset({"title", "notes", "provenance"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 _KEPT_HOUSINGS = 50  # kilobytes each
-_UNDER_LOAD = frozenset({"gears", "load", "lines", "motion"})  # analyses about an operating point
+_UNDER_LOAD = frozenset({"gears", "load", "lines", "sound", "motion"})  # analyses about an operating point
 FOLDER = "samples"
 """Folder of the record within the results folder."""
 
@@ -77,6 +82,9 @@ def outcome_of(find: Callable[[], Evaluation]) -> Outcome:
         return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
 
 
+_Housing: TypeAlias = "tuple[HousingComponent, RadiatedPower | None]"
+
+
 @dataclass(frozen=True, eq=False)
 class VariedCase:
     """A case, its varied inputs, and what is found of each sample.
@@ -93,8 +101,10 @@ class VariedCase:
         Key of all that a machine takes of this housing; samples of another key have a housing of their own.
     wider : sequence of (Input or None)
         See :func:`gearwhine.variation.inputs.inputs_at`.
-    housings : dict of str to HousingComponent
-        Last housings of other samples by their key, so that samples with the same walls share one.
+    radiated : RadiatedPower or None
+        Radiation of this housing, where the sound is wanted.
+    housings : dict of str to tuple
+        Last housings of other samples with their radiation by their key, so that samples with the same walls share one.
     """
 
     source: CaseSource
@@ -103,7 +113,8 @@ class VariedCase:
     housing: HousingComponent | None = None
     housing_key: str = ""
     wider: Wider = ()
-    housings: dict[str, HousingComponent] = field(default_factory=dict, repr=False)
+    radiated: RadiatedPower | None = field(default=None, repr=False)
+    housings: dict[str, _Housing] = field(default_factory=dict, repr=False)
 
     def overrides(self, point: FloatArray) -> list[str]:
         """Return the ``key.path=value`` of a sample at a point of the unit cube."""
@@ -130,7 +141,8 @@ class VariedCase:
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))
-        return evaluate(self.machine(case), wanted)
+        machine = self.machine(case)
+        return evaluate(machine, wanted, self.radiated_by(machine.housing_component))
 
     @cached_property
     def start_warnings(self) -> list[ResultWarning]:
@@ -148,9 +160,16 @@ class VariedCase:
             if key not in self.housings:
                 if len(self.housings) >= _KEPT_HOUSINGS:
                     self.housings.pop(next(iter(self.housings)))
-                self.housings[key] = reduce_housing(case, solve_housing(case, command="vary"))
-            housing = self.housings[key]
+                solved = solve_housing(case, command="vary")
+                radiated = radiated_power_of(acoustics_of(case), solved)[0] if self.wanted.has_sound else None
+                self.housings[key] = reduce_housing(case, solved), radiated
+            housing = self.housings[key][0]
         return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+
+    def radiated_by(self, housing: HousingComponent | None) -> RadiatedPower | None:
+        """Return the radiation of a housing of the study; None where the sound is not wanted."""
+        others = (radiated for other, radiated in self.housings.values() if other is housing)
+        return self.radiated if housing is self.housing else next(others, None)
 
     @cached_property
     def key(self) -> str:

@@ -25,6 +25,7 @@ WORST = 3
 """Number of the worst gearboxes of a quantity that are written as cases."""
 CHANCE = 0.001
 """Probability by chance of an explained part or a rank correlation above which it is not told."""
+_LEADING = ("level_db", "sound_power_db", "transmission_error_peak_to_peak_m")
 _LEAST_SPEEDS = 3  # below which every speed is an end
 _LEAST_FOR_RANKS = 8  # samples below which no correlation is told
 
@@ -449,16 +450,10 @@ class VariedResult:
 
     @property
     def headlines(self) -> tuple[QuantityStatistics, ...]:
-        """Quantities that are drawn: those with a limit, else levels at sensors, else transmission errors, else all."""
+        """Quantities that are drawn: those with a limit, else levels and transmission errors, else all."""
         varying = [one for one in self.quantities if one.found.size and np.ptp(one.found) > 0.0]
-        for chosen in (
-            [one for one in varying if one.limit is not None],
-            [one for one in varying if one.name.endswith("level_db")],
-            [one for one in varying if one.name.endswith("transmission_error_peak_to_peak_m")],
-        ):
-            if chosen:
-                return tuple(chosen)
-        return tuple(varying)
+        limited = [one for one in varying if one.limit is not None]
+        return tuple(limited or [one for one in varying if one.name.endswith(_LEADING)] or varying)
 
 
 def _cost(one: WidenedInput) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from sounding_gearbox import small_gearbox
 
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
-from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
+from gearwhine.coupling.linear.lines_over_speed import housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
@@ -47,6 +47,13 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
         assert np.allclose(
             found.orders[: len(lines)] * part * abs(machine.speed), [line.frequency for line in lines], rtol=1e-12
         )
+        housing = there.housing
+        assert housing is not None
+        moves = there.rows(housing.name, np.eye(housing.size))
+        rates = np.array([1j * line.frequency * (moves @ line.motion) for line in lines])
+        assert np.allclose(found.rates[place, : len(lines)], rates, rtol=1e-7, atol=1e-10 * np.abs(rates).max())
+        assert not found.rates[place, len(lines) :].any()
+        assert np.allclose(housing_rates(there, LIMIT)[1], rates, rtol=1e-9, atol=1e-12 * np.abs(rates).max())
         together = np.sqrt(np.sum((expected / np.sqrt(2.0)) ** 2, axis=1))
         assert np.allclose(found.rms[:, place], together, rtol=1e-8)
         assert np.allclose(sensor_rms(there, LIMIT), together, rtol=1e-8)

@@ -1,0 +1,106 @@
+"""Sound power of varied gearboxes and designs, against the sound of each line solved by itself."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sounding_gearbox import TOP
+
+import gearwhine as gw
+from gearwhine.case import CaseError
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.sound.solution import build_radiation
+
+RPM = 30.0 / np.pi
+SPEEDS = (2500.0, 4000.0)
+ESTIMATE = {"acoustics.method": "erp", "acoustics.mesh_size": "24 mm", "acoustics.highest_frequency": "3 kHz"}
+STUDY: dict[str, Any] = {
+    "variation.vary": {"operation.torque": {"uniform": ["50 N*m", "90 N*m"]}},
+    "variation.analyses": ["sound"],
+    "variation.speed": [f"{speed} rpm" for speed in SPEEDS],
+}
+
+
+@cache
+def _coarse() -> gw.CaseStudy:
+    """The small gearbox in a coarse housing, whose modes take less than a second."""
+    return gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm"})
+
+
+def _weighting(hertz: float) -> float:
+    """Frequency weighting A of IEC 61672-1 [dB]."""
+    f = hertz**2
+    passed = 12194.0**2 * f**2 / ((f + 20.6**2) * np.sqrt((f + 107.7**2) * (f + 737.9**2)) * (f + 12194.0**2))
+    return float(20.0 * np.log10(passed) + 2.0)
+
+
+def _own(study: gw.CaseStudy, changes: dict[str, Any]) -> tuple[list[float], list[float]]:
+    """Sound power levels at the speeds, and A-weighted, of a machine made at each and the sound of each line."""
+    machine, housing, acoustics = study.machine, study.housing, study.settings.acoustics
+    assert housing is not None
+    assert acoustics is not None
+    radiation = build_radiation(acoustics, housing.displacement_field)
+    plain, weighted = [], []
+    for speed in SPEEDS:
+        there = study.changed(changes | {"operation.speed": f"{speed} rpm"}).machine
+        coupled = load_machine(there, there.operating_point()).coupled
+        part = coupled.housing
+        assert part is not None
+        powers = []
+        for line in MeshHarmonicModel(coupled).responses(2.0 * np.pi * 3000.0):
+            hertz = line.frequency / (2.0 * np.pi)
+            rates = 1j * line.frequency * (coupled.rows(part.name, np.eye(part.size)) @ line.motion)
+            powers.append((hertz, radiation.solve(hertz, rates[:, None]).power / 1e-12))
+        plain.append(10.0 * np.log10(sum(power for _, power in powers)))
+        weighted.append(10.0 * np.log10(sum(power * 10.0 ** (0.1 * _weighting(hertz)) for hertz, power in powers)))
+    assert machine is not None
+    return plain, weighted
+
+
+@pytest.mark.parametrize("acoustics", [ESTIMATE, pytest.param(TOP, marks=pytest.mark.slow)])
+def test_each_gearbox_has_the_power_of_its_lines(tmp_path: Path, acoustics: dict[str, Any]) -> None:
+    study = _coarse().changed(acoustics)
+    found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1)
+    assert not found.document["failed"]
+    torque = float(found.solved.values[0, 0])
+    plain, weighted = _own(study, {"operation.torque": f"{torque!r} N*m"})
+    values = {one.name: float(one.values[0]) for one in found.solved.quantities}
+    # A table over frequency is good to a tenth of a decibel.
+    assert found.solved.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
+    assert found.solved.outcomes[0].curves["housing.sound_power_db_a"] == pytest.approx(weighted, abs=0.15)
+    assert values["housing.sound_power_db"] == pytest.approx(max(plain), abs=0.1)
+    assert values["housing.sound_power_db_a_speed_rpm"] == pytest.approx(SPEEDS[int(np.argmax(weighted))])
+
+
+def test_the_quieter_of_two_torques_is_the_best_design(tmp_path: Path) -> None:
+    design = {
+        "optimisation.design": {"operation.torque": {"values": ["50 N*m", "71.77 N*m", "90 N*m"]}},
+        "optimisation.aim": {"housing.sound_power_db_a": {"sense": "least"}},
+        "optimisation.speed": STUDY["variation.speed"],
+        "optimisation.verify": False,
+    }
+    study = _coarse().changed(ESTIMATE)
+    found = study.changed(design).optimise(folder=tmp_path / "out", workers=1)
+    loudest = {
+        torque: max(_own(study, {"operation.torque": torque})[1]) for torque in ("50 N*m", "71.77 N*m", "90 N*m")
+    }
+    (key,) = found.document["keys"]
+    assert key["designs"] == [min(loudest, key=lambda torque: loudest[torque])]
+    assert found.document["aims"][0]["designs"][0] == pytest.approx(min(loudest.values()), abs=0.1)
+
+
+def test_a_case_without_a_housing_of_its_own_has_no_sound(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match=r"housing: expected .*analyses = \['sound'\]"):
+        gw.load("spur-pair", STUDY).vary(1, folder=tmp_path / "out", workers=1)
+
+
+def test_a_gearbox_with_other_walls_has_a_radiation_of_its_own(tmp_path: Path) -> None:
+    walls = {"variation.vary": {"housing.box.wall": {"uniform": ["8 mm", "12 mm"]}}}
+    found = _coarse().changed(ESTIMATE).changed(STUDY | walls).vary(1, folder=tmp_path / "out", workers=1)
+    wall = float(found.solved.values[0, 0])
+    study = _coarse().changed(ESTIMATE | {"housing.box.wall": f"{wall!r} mm"})
+    plain, _ = _own(study, {})
+    assert found.solved.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
