@@ -78,6 +78,13 @@ def pytest_configure(config: pytest.Config) -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not import files without slow tests where these alone are run."""
+    if config.option.markexpr == "slow" and collection_path.suffix == ".py":
+        return b"mark.slow" not in collection_path.read_bytes() or None
+    return None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the folders of long files, so that processes that share the files end together."""
     tests = Path(__file__).parent
