@@ -205,8 +205,14 @@ _POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4
 
 
 @pytest.fixture(scope="module")
-def unrendered() -> Iterator[None]:
-    """Build the figures of a module's results and leave files of one point each: to render them takes long."""
+def unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Build the figures of a module's results and leave files of one point each: to render them takes long.
+
+    A module marked ``rendered`` is of the pictures, and has them as users do.
+    """
+    if request.node.get_closest_marker("rendered"):
+        yield
+        return
     from matplotlib.figure import Figure
 
     from gearwhine import drawing_process
