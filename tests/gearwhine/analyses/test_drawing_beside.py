@@ -22,7 +22,7 @@ def result_of(figures: Callable[[Any], Iterator[tuple[str, Figure]]], files: Cal
     return Result("test", None, None, {"warnings": []}, _figures=figures, _files=files)
 
 
-def test_figures_and_shapes_are_drawn_side_by_side(tmp_path: Path, unrendered: None) -> None:
+def test_figures_and_shapes_are_drawn_side_by_side(tmp_path: Path) -> None:
     """Each waits for the other to have begun."""
     shapes, figures = threading.Event(), threading.Event()
 
@@ -69,7 +69,7 @@ def test_an_error_among_the_figures_stops_the_shapes(tmp_path: Path, error: Base
     assert not (tmp_path / "out").exists()
 
 
-def test_an_error_among_the_shapes_is_told(tmp_path: Path, unrendered: None) -> None:
+def test_an_error_among_the_shapes_is_told(tmp_path: Path) -> None:
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         raise OSError(28, "No space left on device")
 

@@ -18,8 +18,6 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.meshes import Mesh, write_mesh
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, write_ross
 
-pytestmark = pytest.mark.usefixtures("unrendered")
-
 STEEL = {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}
 CHANGED = "the file as it was when the case was read; it has changed since"
 
