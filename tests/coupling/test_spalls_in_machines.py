@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import root
+from scipy.optimize import brentq, root
 
 from gearwhine.coupling import (
     CoupledMachine,
@@ -23,16 +23,24 @@ from gearwhine.coupling import (
     assemble_machine,
     simulate,
 )
+from gearwhine.coupling.connector_forces.bearing_kernels import bearing_force
+from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
 from gearwhine.coupling.machine.components import HousingComponent, rotor_component
+from gearwhine.coupling.machine.connectors import NonlinearConnector
+from gearwhine.coupling.machine.driving_frequencies import element_passes, spall_strikes
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
     RollerRow,
     RollingBearing,
     RollingSpall,
+    SphericalRollerRow,
+    TaperedRollerRow,
     linearised_bearing,
+    paired,
     rolling_equilibrium,
+    rolling_state,
 )
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
@@ -194,3 +202,101 @@ def test_motion_on_a_housing_that_yields(row: BallRow | RollerRow, spalls: list[
     ]
     rms = np.sqrt(np.mean(np.square(accelerations)))
     assert np.sqrt(np.mean((found.acceleration[:, 0] - accelerations) ** 2)) < 0.01 * rms
+
+
+def felt(bearing: RollingBearing, spall: RollingSpall, times: FloatArray) -> FloatArray:
+    """Energy that a spall takes from a bearing whose rings are held in the middle."""
+    state, energies = rolling_state(bearing, np.zeros(5)), []
+    for spalls in ((spall,), ()):
+        law = RollingLaw(state, 0.3, spalls)
+        arrays = bearing_arrays([NonlinearConnector("b", np.eye(5), np.arange(5), law, state.stiffness, SPEED)])
+        force, tangent = np.zeros(5), np.zeros((5, 5))
+        energies.append([bearing_force(arrays, 0, time, np.zeros(5), force, tangent)[0] for time in times.tolist()])
+    return np.asarray(np.subtract(energies[1], energies[0]))
+
+
+SPHERICAL = SphericalRollerRow(14, 10e-3, 11e-3, 70e-3, angle=0.2, clearance=-8e-6)
+PRESSED = {
+    "deep-groove": RollingBearing([replace(BALLS, clearance=-10e-6)]),
+    "angular contact": RollingBearing([replace(BALLS, contact_angle=0.6, clearance=-10e-6)]),
+    "cylindrical": RollingBearing([replace(ROLLERS, clearance=-8e-6)]),
+    "tapered, two rows": paired(TaperedRollerRow(15, 8e-3, 12e-3, 55e-3, 0.25), "face to face", 0.02, preload=3e3),
+    "spherical, two rows": RollingBearing([replace(SPHERICAL, position=7e-3 * one, direction=one) for one in (-1, 1)]),
+}
+
+
+@pytest.mark.parametrize("kind", list(PRESSED))
+@pytest.mark.parametrize("on", ["outer", "inner", "element"])
+def test_a_spall_is_struck_at_the_characteristic_frequency_of_its_part(kind: str, on: str) -> None:
+    """Strikes counted where all elements carry alike, in the last row, against the kinematics of pure rolling."""
+    bearing = PRESSED[kind]
+    row = bearing.rows[-1]
+    tilt = row.contact_angle
+    if isinstance(row, TaperedRollerRow):
+        # Cones of one apex: the roller's axis is half its own angle off the outer raceway's normal.
+        size = row.element_diameter / row.pitch_diameter
+        tilt -= brentq(lambda half: math.tan(half) - size * math.sin(row.contact_angle - half), 0.0, row.contact_angle)
+    across = row.element_diameter * math.cos(tilt) / row.pitch_diameter
+    tones = {
+        "outer": 0.5 * row.count * (1.0 - across) * SPEED,
+        "inner": 0.5 * row.count * (1.0 + across) * SPEED,
+        "element": row.pitch_diameter / row.element_diameter * (1.0 - across**2) * SPEED,
+    }
+    spall = RollingSpall(on, 1e-3, 1e-3, azimuth=1.1, row=len(bearing.rows) - 1)  # type: ignore[arg-type]
+    assert spall.tone(row, SPEED) == pytest.approx(tones[on], rel=1e-9)
+    period = 2.0 * math.pi / spall.tone(row, SPEED)
+    struck = felt(bearing, spall, np.arange(20 * 160) * period / 160.0)
+    assert struck.max() > 0.0
+    begins = np.flatnonzero((struck[1:] > 0.0) & (struck[:-1] <= 0.0))
+    assert abs(len(begins) - 20) <= 1
+    np.testing.assert_allclose(np.diff(begins[::2]), 320.0, atol=1.01)
+    if on != "element":
+        np.testing.assert_allclose(struck[160:], struck[:-160], atol=1e-6 * struck.max())
+
+
+def test_a_bearing_in_a_shaft_that_turns_is_carried_round_with_it() -> None:
+    """Between two turning rings the cage has the mean of the speeds of their rolling surfaces (Harris)."""
+    bearing = PRESSED["deep-groove"]
+    inner, outer = 40.0, -90.0
+    row = bearing.rows[0]
+    gamma = row.element_diameter / row.pitch_diameter
+    cage = 0.5 * ((1.0 - gamma) * inner + (1.0 + gamma) * outer)
+    shafts = {
+        name: Rotor(name, [Segment(0.1, 0.04, bore, STEEL)] * 4) for name, bore in (("inner", 0.0), ("outer", 0.03))
+    }
+    spring = 1e8 * np.eye(2)
+    springs = {name: [Bearing(f"{name} {at}", at, spring, 0.0 * spring) for at in (0.05, 0.35)] for name in shafts}
+    state = rolling_state(bearing, np.zeros(5))
+    between = linearised_bearing(state, "between", 0.2)
+    spall = RollingSpall("outer", 1e-3, 1e-3, azimuth=0.5)
+    mounted = [MountedBearing(one, name, None) for name, several in springs.items() for one in several]
+    parts = assemble_machine(
+        [rotor_component(name, modal_rotor(one, springs[name], count=2), start=0.0) for name, one in shafts.items()],
+        None,
+        speeds={"inner": inner, "outer": outer},
+        bearings=[*mounted, MountedBearing(between, "inner", "outer", RollingLaw(state, 0.3, (spall,)))],
+    )
+    (one,) = parts.system.nonlinear
+    assert element_passes(parts.system)["between"] == pytest.approx((row.count * abs(cage) / (2.0 * math.pi),))
+    (strikes,) = spall_strikes(parts.system)
+    assert strikes.frequency == pytest.approx(0.5 * row.count * (1.0 - gamma) * abs(inner - outer) / (2.0 * math.pi))
+    assert (strikes.turning, strikes.turning_frequency) == (
+        "outer ring of between",
+        pytest.approx(90.0 / (2.0 * math.pi)),
+    )
+    # Pressed aside, the sound bearing has the force of its elements where the cage has carried them, and the spall
+    # stands where the ring has carried it.
+    q, time = np.array([8e-6, 3e-6, 0.0, 0.0, 0.0]), 0.0123
+    sound = replace(one, law=replace(one.law, spalls=()), directions=np.eye(5), axes=np.arange(5), stiffness=np.eye(5))
+    force = np.zeros(5)
+    bearing_force(bearing_arrays([sound]), 0, time, q, force, np.zeros((5, 5)))
+    known = rolling_state(bearing, q, cage_angle=0.3 + cage * time).reaction
+    np.testing.assert_allclose(force, known, rtol=1e-9, atol=1e-6)
+    damaged = replace(sound, law=one.law)
+    standing = replace(spall, azimuth=0.5 + outer * time)
+    held = replace(damaged, law=RollingLaw(state, 0.3 + cage * time, (standing,)), speed=0.0, holder_speed=0.0)
+    energies = [
+        bearing_force(bearing_arrays([law]), 0, at, q, np.zeros(5), np.zeros((5, 5)))[0]
+        for law, at in ((damaged, time), (held, 0.0))
+    ]
+    assert energies[0] == pytest.approx(energies[1], rel=1e-12)
