@@ -487,7 +487,11 @@ def _bearing(
     if mounted.law is not None:
         moving = axes[np.any(relative[axes] != 0.0, axis=1)]
         tangent = stiffness[np.ix_(moving, moving)]
-        nonlinear = NonlinearConnector(bearing.name, relative[moving].T, moving, mounted.law, tangent, speed)
+        # A planet's carrier stands still in its own frame; a hollow shaft turns against the axes.
+        held = 0.0 if around is None else coordinates.speeds[around.name] - frames.of(around.name)
+        nonlinear = NonlinearConnector(
+            bearing.name, relative[moving].T, moving, mounted.law, tangent, speed, holder_speed=held
+        )
     if table is not None:
         parts = (part[:, axes[:, None], axes] for part in (table.stiffness, table.damping))
         table = SpeedTable(table.speed_ratios, *parts)
