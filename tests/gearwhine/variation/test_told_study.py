@@ -12,6 +12,7 @@ import gearwhine as gw
 from gearwhine.case.load import bundled_case
 from gearwhine.case.variation import Limit
 from gearwhine.cli import run_command
+from gearwhine.coupling.linear.lines_over_speed import sensor_rms
 from gearwhine.figures.variation import draw_variation
 from gearwhine.numerics.distributions import Discrete, Normal
 from gearwhine.numerics.sampling import sobol_points, widened_points
@@ -192,7 +193,7 @@ def test_a_tolerance_is_told_as_the_case_gives_it(written: dict[str, object], wo
 def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_opened(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The level is that of the lines which `system` finds of the case as it stands."""
+    """The level is that of the lines of the case as it stands."""
     bundled = bundled_case("small-gearbox")
     assert bundled is not None
     path, out = tmp_path / "case.toml", tmp_path / "out"
@@ -212,9 +213,12 @@ def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_ope
     rows = document["worst"]
     worst = next(row for row in rows if row["quantity"] == LEVEL)
     study = gw.load(out / f"worst-{LEVEL}-1.toml")
-    lines = study.system().document["mesh_lines"]
-    sizes = [line["sensor_acceleration_m_per_s2"]["together"]["top"] for line in lines]
-    level = 20.0 * np.log10(np.sqrt(0.5 * np.sum(np.square(sizes))) / 1e-6)
+    housing = study.machine.housing_component
+    assert housing is not None
+    assert housing.complete_below is not None
+    coupled = study.machine.at_operating_point().assembled
+    rms = sensor_rms(coupled, housing.complete_below)[[*coupled.sensor_rows].index("top")]
+    level = 20.0 * np.log10(rms / 1e-6)
     assert level == pytest.approx(worst["value"], abs=1e-3)
     assert study.case.operation is not None
     assert abs(study.case.operation.speed) * RPM == pytest.approx(worst["speed_rpm"])
