@@ -3,8 +3,8 @@
 #   make demo   runs the main job on the NASA gear noise rig
 #   make test   lint, strict types, import arrows, tests but the slow ones
 #
-# make test-slow runs those, as continuous integration does after make test,
-# and make docs builds the documentation site in build/site.
+# make test-slow runs those, make test-all the tests together, as continuous
+# integration does, and make docs builds the documentation site in build/site.
 #
 # Each makes the virtual environment in .venv and installs into it where that is missing or out of date.
 
@@ -21,7 +21,7 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help demo test test-slow checked-and-compiled lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
+.PHONY: help demo test test-slow test-all checked-and-compiled lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -33,6 +33,7 @@ help:
 	@echo "make install        packages and compiled kernels, into $(VENV)"
 	@echo "make demo           install, then NASA's gear noise rig into $(OUT)"
 	@echo "make test           install, then lint, types and tests; make test-slow: the long ones"
+	@echo "make test-all       the same with the long ones, in one go: what both share is solved once"
 	@echo "make reference      pages of all case keys and command options, in build/reference"
 	@echo "make docs           the documentation as a site, in build/site"
 	@echo "make validation     docs/validation.md anew, from the tests against published values"
@@ -61,6 +62,10 @@ unit: install-dev browser
 # Whole commands, pages and notebooks, published cases on their full meshes, pages in a browser, chains to the sound.
 test-slow: install-dev browser
 	$(PYTEST) -m slow
+
+# All in one go: files with slow and fast tests solve what both share once.
+test-all: lint checked-and-compiled install-dev browser
+	$(PYTEST)
 
 install: $(VENV)/.installed system $(VENV)/.compiled
 install-dev: $(VENV)/.installed-dev system $(VENV)/.compiled

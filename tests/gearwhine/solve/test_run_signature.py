@@ -1,6 +1,7 @@
 """Orders along a run, whatever the tooth numbers: windows need no whole turns of every shaft."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from gearwhine.solve.machine import plan_of, tracking_of
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "transient.tolerance=5e-3", "transient.discard=0")
 
 
+@cache
 def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, SolvedTransient]:
     """The spur pair with other tooth numbers, of the same sum, along a run-up to 4500 rpm."""
     changes = (
