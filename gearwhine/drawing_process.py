@@ -18,6 +18,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar, copy_context
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, NamedTuple, Self, TypeVar
 
@@ -183,6 +184,10 @@ class EarlyPictures:
     def __init__(self, process: _DrawingProcess, folder: Path) -> None:
         self._process, self._folder = process, folder
         self._drawings: list[Future[Any]] = []
+
+    def load_figures(self) -> None:
+        """Import matplotlib and the figures, which takes longer than to draw one, beside work in compiled code."""
+        self._process.beside(import_module, "gearwhine.figures")
 
     def draw(self, draw: Callable[..., Any], *arguments: Any, **named: Any) -> None:
         """Have a function draw into the folder, which takes that as ``place``, and says nothing of its progress."""

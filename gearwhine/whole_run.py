@@ -115,6 +115,8 @@ class WholeRun:
         return rotors_document(self.solution.rotors) if self.solution.rotors else {}
 
     def _solve_housing(self) -> Document:
+        if self._early is not None:
+            self._early.load_figures()
         self.solution = replace(
             self.solution, housing=self.study.solved_housing(self.folder, with_sound=self._has_sound)
         )

@@ -24,7 +24,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import signal as filters
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.numerics.arrays import FloatArray
@@ -246,7 +245,9 @@ def spectral_kurtosis(samples: FloatArray, interval: float, window: int) -> tupl
             f"spectral kurtosis: {len(samples)} samples of {interval:g} s in windows of {window}; expected windows of "
             "8 samples or more, and a signal three times as long"
         )
-    transform = filters.ShortTimeFFT(np.hanning(window), max(window // 4, 1), 1.0 / interval)
+    from scipy.signal import ShortTimeFFT  # which takes longer to import than a short transient
+
+    transform = ShortTimeFFT(np.hanning(window), max(window // 4, 1), 1.0 / interval)
     # Windows that reach beyond the signal are left out.
     inside = slice(transform.lower_border_end[1], transform.upper_border_begin(len(samples))[1])
     power = np.abs(transform.stft(np.asarray(samples, dtype=np.float64))[:, inside]) ** 2
