@@ -4,7 +4,7 @@ The indicators are those of :mod:`gearwhine.coupling.signals.condition_indicator
 values of the residual and of the difference signal, which no ratio hides, and that of the change of the difference
 signal since an earlier record, which takes a tachometer that knows the angle. The spectral kurtosis is the highest one
 over the frequencies of the record, by windows of an eighth of a turn; the envelope is that of the upper half of the
-band, at the turn of the gear's shaft or at a tone of a bearing, over the mean square in the band.
+band, at the turn of the gear's shaft or at a tone of a bearing, over the mean of the squared envelope.
 """
 
 import math
@@ -156,7 +156,7 @@ def _highest_kurtosis(watched: WatchedSignal) -> float:
 
 
 def envelope_at(signal: FloatArray, interval: float, limit_hz: float, tone_hz: float) -> float:
-    """Amplitude of a tone in the squared envelope of the upper half of the band, over the mean square there.
+    """Amplitude of a tone in the squared envelope of the upper half of the band, over its mean.
 
     The last whole periods of the tone are taken.
 
@@ -250,7 +250,7 @@ class ToneCondition:
         Bearing and damaged part.
     frequency_hz : float
     amplitudes : dict of str to float or None
-        Over the mean square in the band, by sensor; None where the record is too short or the speed varies.
+        Over the mean of the squared envelope, by sensor; None where the record is too short or the speed varies.
     """
 
     tone: str

@@ -108,10 +108,8 @@ def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
             if spall.on == "element":
                 turn, carrying = row.cage_speed(connector.speed), "cage"
             else:
-                turn, carrying = (
-                    connector.speed if (spall.on == "outer") == row.outer_turns else 0.0,
-                    f"{spall.on} ring",
-                )
+                turns_with_shaft = (spall.on == "outer") == row.outer_turns
+                turn, carrying = connector.speed if turns_with_shaft else 0.0, f"{spall.on} ring"
             turn = abs(turn + connector.holder_speed) / _TWO_PI
             if turn > 0.0:
                 strikes = replace(strikes, turning=f"{carrying} of {connector.name}", turning_frequency=turn)

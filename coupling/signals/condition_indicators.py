@@ -10,7 +10,9 @@ Decker, NASA TM-105950, 1993). Of the difference signal d with N samples and the
 3, 15 and 105 of Gaussian noise. FM0 is the peak to peak of the average over the sum of the amplitudes of its mesh
 harmonics. NA4 is the fourth moment of the residual signal over the square of its mean square averaged over the records
 up to now, so that it rises with the damage and does not fall again as FM4 does. The energy ratio is the rms of the
-difference signal over that of the regular one, the sideband index the mean amplitude of the first-order sidebands.
+difference signal over that of the regular one, the sideband index the mean amplitude of the first-order sidebands of
+the mesh frequency itself, and the sideband level factor their sum over the rms of the average (Večeř, Kreidl and Šmíd,
+Acta Polytechnica 45(6), 2005).
 
 A healthy gear without any errors has no residual: indicators of it are None.
 
@@ -106,10 +108,6 @@ class SynchronousAverage:
         return self._harmonics_of(self.teeth)
 
     @cached_property
-    def _sideband_orders(self) -> list[int]:
-        return _sidebands(self._mesh_orders)
-
-    @cached_property
     def _left_out(self) -> list[int]:
         """Orders without which the average is the residual signal: of the shaft, and of all meshes on it."""
         of_others = [order for teeth in self.others for order in self._harmonics_of(teeth)]
@@ -189,15 +187,19 @@ class SynchronousAverage:
 
     @property
     def sideband_index(self) -> float:
-        """Mean amplitude of the first-order sidebands of the mesh harmonics."""
-        return float(np.mean([self.amplitude(order) for order in self._sideband_orders]))
+        """Mean amplitude of the first-order sidebands of the mesh frequency."""
+        return 0.5 * self._first_sidebands
+
+    @property
+    def _first_sidebands(self) -> float:
+        """Sum of the amplitudes of the first-order sidebands of the mesh frequency."""
+        return sum(self.amplitude(self.teeth + side) for side in (-1, 1))
 
     @property
     def sideband_level_factor(self) -> float | None:
         """Sum of the amplitudes of the first-order sidebands of the mesh frequency over the average's rms."""
         rms = float(np.std(self.samples))
-        first = [self.amplitude(self.teeth + side) for side in (-1, 1)]
-        return sum(first) / rms if rms > 0.0 else None
+        return self._first_sidebands / rms if rms > 0.0 else None
 
 
 def _sidebands(orders: Sequence[int]) -> list[int]:
@@ -248,8 +250,9 @@ def spectral_kurtosis(samples: FloatArray, interval: float, window: int) -> tupl
     from scipy.signal import ShortTimeFFT  # which takes longer to import than a short transient
 
     transform = ShortTimeFFT(np.hanning(window), max(window // 4, 1), 1.0 / interval)
-    # Windows that reach beyond the signal are left out.
-    inside = slice(transform.lower_border_end[1], transform.upper_border_begin(len(samples))[1])
+    # Windows that reach beyond the signal are left out; the first of all has the number p_min.
+    ends = transform.lower_border_end[1], transform.upper_border_begin(len(samples))[1]
+    inside = slice(*(end - transform.p_min for end in ends))
     power = np.abs(transform.stft(np.asarray(samples, dtype=np.float64))[:, inside]) ** 2
     mean = power.mean(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -262,7 +265,8 @@ def envelope_spectrum(
 ) -> tuple[FloatArray, FloatArray]:
     """Envelope spectrum of a signal in a band: frequencies [Hz], amplitudes of the squared envelope, shape (f,) both.
 
-    The signal is taken as periodic over its record; its mean square in the band is the line at 0.
+    The signal is taken as periodic over its record. The line at 0 is the mean of the squared envelope, twice the mean
+    square of the signal in a band above 0.
 
     Parameters
     ----------
@@ -289,6 +293,8 @@ def envelope_spectrum(
     lines = np.fft.fft(np.asarray(samples, dtype=np.float64))
     frequencies = np.fft.fftfreq(count, interval)
     analytic = np.fft.ifft(np.where((frequencies >= low) & (frequencies <= high), 2.0 * lines, 0.0))
+    if low == 0.0:
+        analytic -= lines[0] / count  # a constant is its own analytic signal
     squared = np.abs(analytic) ** 2
     mean, padded = float(squared.mean()), count
     varying = squared - mean

@@ -148,7 +148,7 @@ def content(document: Document) -> Iterator[str | Table]:
         Column("bearing tone", "tone"),
         Column("Hz", "frequency_hz", ".1f"),
         Column("sensor", "sensor"),
-        Column("envelope line / mean square", lambda row: _text(row["envelope"])),
+        Column("envelope line / mean", lambda row: _text(row["envelope"])),
     )
     tones = [
         {**tone, "sensor": sensor, "envelope": value}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.signals.condition_indicators import (
@@ -143,3 +144,55 @@ def test_the_envelope_under_hanns_window_has_the_height_of_a_tone_between_lines(
     assert frequencies[highest] == pytest.approx(tone, abs=0.6 * rate / 16000)
     assert lines[highest] == pytest.approx(2.0 * depth, rel=0.02)
     assert lines[0] == pytest.approx(1.0 + 0.5 * depth**2, rel=0.02)
+
+
+def _lines(samples: np.ndarray, orders: list[int]) -> np.ndarray:
+    """What a signal has of some orders, by least squares of their cosines and sines."""
+    angles = 2.0 * np.pi * np.arange(len(samples)) / len(samples)
+    columns = np.column_stack([wave(order * angles) for order in orders for wave in (np.cos, np.sin)])
+    return columns @ np.linalg.lstsq(columns, samples)[0]
+
+
+def test_indicators_are_those_of_their_definitions_by_another_way() -> None:
+    """Of random signals, by fits of single orders and moments of scipy: Zakrajsek 1993, Vecer 2005."""
+    rng = np.random.default_rng(8)
+    harmonics, other = [TEETH, 2 * TEETH, 3 * TEETH], [31, 62, 93]
+    records, residuals = [], []
+    for size in (1.0, 1.3, 2.0):
+        samples = 0.4 + 5.0 * np.cos(TEETH * ANGLES) + size * np.convolve(rng.normal(size=N), np.ones(9), "same")
+        records.append(SynchronousAverage(samples, TEETH, 3, (31,)))
+        residuals.append(samples - samples.mean() - _lines(samples, [1, 2, *harmonics, *other]))
+    last, sides = records[-1], [order + side for order in (*harmonics, *other) for side in (-1, 1)]
+    np.testing.assert_allclose(last.residual, residuals[-1], atol=1e-9)
+    difference = residuals[-1] - _lines(residuals[-1], sides)
+    regular = _lines(last.samples, [*harmonics, *other, *sides])
+    assert last.energy_ratio == pytest.approx(np.sqrt(stats.moment(difference, 2) / stats.moment(regular, 2)), rel=1e-9)
+    assert last.fm4 == pytest.approx(stats.kurtosis(difference, fisher=False), rel=1e-9)
+    assert last.m6a == pytest.approx(stats.moment(difference, 6) / stats.moment(difference, 2) ** 3, rel=1e-9)
+    assert last.m8a == pytest.approx(stats.moment(difference, 8) / stats.moment(difference, 2) ** 4, rel=1e-9)
+    mean_square = np.mean([stats.moment(one, 2) for one in residuals])
+    assert na4(records) == pytest.approx(stats.moment(residuals[-1], 4) / mean_square**2, rel=1e-9)
+    first = [np.sqrt(2.0) * np.std(_lines(last.samples, [TEETH + side])) for side in (-1, 1)]
+    assert last.sideband_index == pytest.approx(np.mean(first), rel=1e-9)
+    assert last.sideband_level_factor == pytest.approx(sum(first) / np.std(last.samples), rel=1e-9)
+    meshes = [np.sqrt(2.0) * np.std(_lines(last.samples, [order])) for order in harmonics]
+    assert last.fm0 == pytest.approx((last.samples.max() - last.samples.min()) / sum(meshes), rel=1e-9)
+
+
+def test_spectral_kurtosis_is_that_of_windows_transformed_one_by_one() -> None:
+    """Antoni 2006: windows begin at each fourth of their length, as far as they lie in the signal."""
+    signal, window = np.random.default_rng(9).normal(size=1000) ** 3, 64
+    frequencies, found = spectral_kurtosis(signal, 1e-3, window)
+    hann = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(window) / (window - 1))
+    begins = range(0, 1000 - window + 1, window // 4)
+    power = np.array([np.abs(np.fft.rfft(hann * signal[at : at + window])) ** 2 for at in begins])
+    np.testing.assert_allclose(found, np.mean(power**2, axis=0) / np.mean(power, axis=0) ** 2 - 2.0, rtol=1e-9)
+    np.testing.assert_allclose(frequencies, np.fft.rfftfreq(window, 1e-3))
+
+
+def test_the_envelope_of_a_band_from_zero_has_the_constant_once() -> None:
+    """|c + a e^(iωt)|² has the mean c² + a² and the line 2 c a at ω."""
+    times = np.arange(1000) / 1e3
+    _, lines = envelope_spectrum(0.5 + 2.0 * np.cos(2.0 * np.pi * 40.0 * times), 1e-3, (0.0, 100.0))
+    assert lines[0] == pytest.approx(0.25 + 4.0, rel=1e-12)
+    assert lines[40] == pytest.approx(2.0, rel=1e-12)

@@ -68,7 +68,8 @@ def test_one_pulse_a_turn_is_in_the_average_of_its_shaft_alone(rate: float) -> N
     assert own["fm4"] > 15.0
     # In 59 turns of the other shaft it falls anywhere.
     assert other["difference_rms"] < 0.2 * own["difference_rms"]
-    assert own["sideband_index"] == pytest.approx(4.0 / 8.0, rel=2e-3)
+    # No part of the pulse is beside the mesh frequency itself.
+    assert own["sideband_index"] < 0.01
     shafts = {gear.gear: (gear.shaft, gear.teeth, gear.turns) for gear in record.gears}
     assert shafts["p"] == ("input", 23, 79)
     assert shafts["w"][0] == "output"

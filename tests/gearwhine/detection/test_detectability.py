@@ -129,3 +129,35 @@ def test_the_samples_of_a_study_are_other_gearboxes_with_earlier_records() -> No
     assert len(fleet.points) == 10
     assert {fleet.baseline(number) for number in range(9)} == {0}
     assert set(INDICATORS) >= {"fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_index"}
+
+
+def _spalled(size: float, tone: float = 87.3) -> Evaluation:
+    """A carrier that a bearing's tone modulates wholly, heard by three sensors: A = size, size / 2 and size / 4."""
+    times = np.arange(12 * N) / (N * TURN)
+    struck = size * (1.0 + np.cos(2.0 * np.pi * tone * times)) * np.cos(2.0 * np.pi * 0.75 * LIMIT * times)
+    numbers = {"limit_hz": LIMIT, "interval_s": 1.0 / (N * TURN), "turn_hz": TURN, "teeth": float(TEETH)}
+    gains = {"near": 1.0, "middle": 0.5, "far": 0.25}
+    curves = {f"{SIGNAL}{name}": gain * struck for name, gain in gains.items()}
+    curves |= {f"{AVERAGE}{name}": np.cos(TEETH * ANGLES) for name in gains}
+    return Evaluation(numbers | {"steady": 1.0, "turns": 12.0, "tone_hz": tone}, curves)
+
+
+def test_sensors_see_a_spalled_bearing_in_the_order_in_which_they_hear_it() -> None:
+    """The squared envelope has 2 A² at the tone over a mean of 3/2 A² + σ²: sizes that are seen are as 1, 2 and 4.
+
+    The spectral kurtosis, -1/18 of this modulation alone and lower than that of noise, sees it at none.
+    """
+    sizes = 0.02 * 2.0 ** (0.5 * np.arange(9))
+    shown = {float(size): _spalled(float(size)) for size in (0.0, *sizes)}
+    of_each = [0.0] * 100 + [float(size) for size in sizes for _ in range(6)]
+    monitor = _monitor(
+        sensors=("far", "near", "middle"), indicators=("envelope", "spectral_kurtosis"), has_own_baseline=False
+    )
+    parts = detected_parts(monitor, [Observation(shown[size], shown[0.0], size, n) for n, size in enumerate(of_each)])
+    seen = {one.sensor: one for one in parts if one.indicator == "envelope"}
+    found = {sensor: one.a90 or np.inf for sensor, one in seen.items()}
+    assert found["middle"] / found["near"] == pytest.approx(2.0, rel=0.2)
+    assert found["far"] / found["middle"] == pytest.approx(2.0, rel=0.2)
+    assert all(one.a90 is None for one in parts if one.indicator == "spectral_kurtosis")
+    largest = seen["near"].responses[-6:].mean()
+    assert largest == pytest.approx(2.0 * sizes[-1] ** 2 / (1.5 * sizes[-1] ** 2 + 0.1**2), rel=0.03)
