@@ -54,7 +54,7 @@ def test_pitch_circles_stand_on_their_shafts() -> None:
 
 
 def test_forces_drawn_on_a_carrier_are_in_balance() -> None:
-    """Of unequal planets: pins 90 and 50 mm beyond the end of the shaft turn it by these arms, and its bearings back."""
+    """Of unequal planets: pins 90 and 50 mm beyond the end of the shaft turn it by these arms, its bearings back."""
     drawn = forces_on_shafts(solved())["c"]
     largest = max(abs(part) for one in drawn for part in one.force)
     turned = np.zeros(2)
