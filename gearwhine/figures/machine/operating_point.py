@@ -471,7 +471,7 @@ def _drawn(at: float, force: FloatArray, *, of_gear: bool) -> DrawnForce:
 
 
 def forces_on_shafts(solved: SolvedLoad) -> dict[str, list[DrawnForce]]:
-    """Return what is drawn on each shaft: forces and moments of its bearings, of those that sit in it, and of its gears.
+    """Return what is drawn on each shaft: forces and moments of its bearings, of those that sit in it, of its gears.
 
     They are in balance but for the shaft's weight.
     """
