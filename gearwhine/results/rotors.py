@@ -542,7 +542,7 @@ def report(document: Document) -> Section:
 
 _PICTURES = {
     "shaft": "Shaft to scale with its gears, discs and bearings.",
-    "modes": "Modes at rest by the frequencies of the table, in both planes and along the axis, each to a scale of its own.",
+    "modes": "Modes at rest of the table, in both planes and along the axis, each to a scale of its own.",
     "torsional-response": "Response to torques that vary, over their frequency: peaks are torsional resonances.",
     "torsion": "Torsional modes: angle of twist along the shaft.",
     "whirl": "Whirl at the speed of operation: orbits along the shaft, forward or backward.",
