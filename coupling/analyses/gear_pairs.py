@@ -33,7 +33,11 @@ from gearwhine.coupling.gears.loaded.optimal_relief import (
     ReliefOptimum,
     transmission_error_harmonics,
 )
-from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    MeshStiffnessFigures,
+    mesh_period_phases,
+    mesh_stiffness_figures,
+)
 from gearwhine.coupling.gears.stiffness.models import ring_support_warning
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
@@ -181,6 +185,11 @@ class PairAnalysis:
     def stiffness(self) -> FloatArray:
         """Mesh stiffness of all pairs on the path of contact at the phases of ``solved.static`` [N/m], (n,)."""
         return mesh_stiffness(self.solved.carrying_flanks, self.solved.static.phases)
+
+    @cached_property
+    def stiffness_figures(self) -> MeshStiffnessFigures:
+        """Mean, least and greatest mesh stiffness of all teeth."""
+        return mesh_stiffness_figures(self.solved.carrying_flanks, self.solved.static, self.solved.hunting)
 
     @property
     def flanks(self) -> tuple[FloatArray, FloatArray]:

@@ -9,8 +9,10 @@ import numpy.typing as npt
 from gearwhine.coupling import signals as signature
 from gearwhine.coupling.analyses.recording import Signals
 from gearwhine.coupling.analyses.transient import SolvedTransient
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.linear.carrier_sidebands import forced_sidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.linear.excitation_orders import in_carrier
+from gearwhine.coupling.linear.excitation_orders import excited_shaft_orders, in_carrier
 from gearwhine.coupling.signals.peaks import SpectralPeaks
 from gearwhine.coupling.signals.spectrum import Spectrum, Window, at_time_zero
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -124,9 +126,11 @@ class LineTable:
 
 @dataclass(frozen=True)
 class ShaftSidebands:
-    """Sidebands of a gear mesh by the rotation of a shaft, or of two of equal speed.
+    """Sidebands of a gear mesh by the rotation of a shaft, or of two of equal speed, that modulates it.
 
-    Of a mesh on a turning carrier these are the gears' rotations relative to it, and its own.
+    Of a mesh on a turning carrier these are the gears' rotations relative to it, and its own. A shaft that nothing
+    excites modulates nothing, and a line of a simpler cause, as a harmonic of another mesh, is no sideband: pairs with
+    one are left out.
     """
 
     mesh: str
@@ -393,7 +397,9 @@ def _sidebands(
     solved: SolvedTransient, signal: FloatArray, interval: float, window: Window, *, only: int | None = None
 ) -> tuple[ShaftSidebands, ...]:
     machine, of_shafts = solved.machine, []
-    length = signal.size * interval
+    length, apart = signal.size * interval, 1.0 if window == "uniform" else 2.0
+    modulating = {*excited_shaft_orders(machine)}
+    modulating.update(carrier for one in forced_sidebands(machine) for carrier, _ in one.turns)
     for pair, (mesh, contact) in enumerate(zip(machine.meshes, machine.system.contacts, strict=False)):
         if contact.mesh_frequency == 0.0 or only not in (None, pair):
             continue
@@ -408,11 +414,23 @@ def _sidebands(
         rates = {name: abs(speed - frame) / _TWO_PI for name, speed in turns.items()}
         if frame != 0.0 and mesh.carrier is not None:
             rates[mesh.carrier] = abs(frame) / _TWO_PI
+        rotors = {name: one.rotor for name, one in zip(turns, (mesh.driver, mesh.driven), strict=True)}
         for name, rate in rates.items():
-            together.setdefault(round(rate, 9), []).append(name)
+            if modulating & {name, rotors.get(name, name)}:
+                together.setdefault(round(rate, 9), []).append(name)
         for shafts in together.values():
             turning = rates[shafts[0]]
-            if turning * length >= (1.0 if window == "uniform" else 2.0):
+            if turning * length >= apart:
                 pairs = signature.sidebands(signal, interval, carriers, turning, window=window)
-                of_shafts.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))
+                own = _of_no_simpler_cause(machine, pairs, 0.5 * apart / length)
+                of_shafts.append(ShaftSidebands(contact.name, tuple(shafts), own))
     return tuple(of_shafts)
+
+
+def _of_no_simpler_cause(
+    machine: CoupledMachine, pairs: list[signature.Sideband], within: float
+) -> tuple[signature.Sideband, ...]:
+    """Pairs neither line of which is within a distance [Hz] of a mesh harmonic or another excitation."""
+    at = [pair.carrier + sign * pair.distance for pair in pairs for sign in (-1.0, 1.0)]
+    simpler = [line.kind in ("mesh", "shaft", "load", "bearing") for line in signature.line_names(machine, at, within)]
+    return tuple(pair for pair, *lines in zip(pairs, simpler[::2], simpler[1::2], strict=True) if not any(lines))

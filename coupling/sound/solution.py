@@ -236,12 +236,16 @@ class SolvedSound:
         return sum_of_levels(line.level_db_a for line in self.lines)
 
     @cached_property
-    def bands(self) -> tuple[FloatArray, FloatArray]:
-        """Nominal frequencies of third octaves [Hz] and their sound power levels [dB]."""
-        nominal, powers = third_octave_bands(
-            np.array([line.frequency_hz for line in self.lines]), np.array([line.sound.power for line in self.lines])
-        )
-        return nominal, power_level(powers)
+    def bands(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Nominal frequencies of third octaves [Hz] and their sound power levels [dB] and [dB(A)].
+
+        Each line is weighted at its own frequency, so that the bands sum to `total_db_a`.
+        """
+        frequencies = np.array([line.frequency_hz for line in self.lines])
+        powers = np.array([line.sound.power for line in self.lines])
+        nominal, sums = third_octave_bands(frequencies, powers)
+        _, weighted = third_octave_bands(frequencies, powers * 10.0 ** (0.1 * a_weighting(frequencies)))
+        return nominal, power_level(sums), power_level(weighted)
 
     def microphone_levels(self, *, weighted: bool = False) -> dict[str, float]:
         """Sound pressure level of all lines at each microphone [dB], or A-weighted [dB(A)]."""

@@ -14,7 +14,7 @@ from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, TipRelie
 from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from gearwhine.coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
 from gearwhine.output.files import file_stems
-from gearwhine.output.quantity import Part, Quantity, Rows, document_of, in_file
+from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, percent, table_of
 from gearwhine.results.operating_point import misalignment_words, share_words
 
@@ -238,11 +238,14 @@ HARRIS_MAP = (
 """The transmission error over the mesh period for a range of torques."""
 
 STIFFNESS = (
-    Quantity("mean", "solved.contact.unloaded_mean_mesh_stiffness"),
-    Quantity("min", lambda pair: pair.stiffness.min()),
-    Quantity("max", lambda pair: pair.stiffness.max()),
-    Quantity("loaded_mean", "solved.static.mean_mesh_stiffness"),
+    Quantity("mean"),
+    Quantity("min", "least"),
+    Quantity("max", "greatest"),
+    Quantity("loaded_mean"),
+    Quantity("sound_mean", lambda figures: ABSENT if figures.sound_mean is None else figures.sound_mean),
+    Quantity("over_hunting_period"),
 )
+"""Mesh stiffness of all teeth, over the hunting period where mesh periods differ."""
 TRANSMISSION_ERROR = (
     Quantity("mean", "solved.static.mean_transmission_error"),
     Quantity("peak_to_peak", "solved.static.peak_to_peak_transmission_error"),
@@ -371,7 +374,7 @@ PAIR = (
             in_file("flank_deviation", "side flank_place", "deviation", "material over the involute", "m"),
         ),
     ),
-    Part("stiffness_n_per_m", ".", STIFFNESS),
+    Part("stiffness_n_per_m", "stiffness_figures", STIFFNESS),
     Part("transmission_error_m", ".", TRANSMISSION_ERROR),
     Part("load_sharing", lambda pair: _where(pair.shares, pair), LOAD_SHARING),
     Part("contact_pressure_pa", lambda pair: _where(pair.pressure, pair), PRESSURE),
@@ -522,11 +525,14 @@ def _mesh(pair: Document) -> list[str]:
         seats = _SEATS.get(pair.get("misalignment_seats", ""), "") if origin == "operating point" else ""
         lines.append(words[0].upper() + words[1:] + seats)
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
+    over = ", over the hunting period" if stiffness.get("over_hunting_period") else ""
     lines.append(
-        "Mesh stiffness, with the gears' bodies: without load, of all pairs on the path, "
+        f"Mesh stiffness, with the gears' bodies{over}: without load, of all pairs on the path, "
         f"{_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "
         f"{_MEGA * stiffness['max']:.2f}"
     )
+    if "sound_mean" in stiffness:
+        lines[-1] += f", {_MEGA * stiffness['sound_mean']:.2f} in the mean of sound teeth"
     if pair["mean_force_n"]:
         lines[-1] += f"; under load, of the teeth that touch, {_MEGA * stiffness['loaded_mean']:.2f} in the mean"
     state = "Static transmission error" if pair["mean_force_n"] else "Transmission error without load"

@@ -416,7 +416,28 @@ ROTOR = (
     ),
     Quantity("axial_hz", heading="along the axis [Hz]", shown=".1f"),
     in_file("rotor_place", "place", "places", unit="m"),
-    in_file("rotor_lateral_shape", "lateral_mode place", "lateral_shapes", unit="kg-0.5"),
+    in_file("rest_direction", "rest_direction", lambda _: ["x", "y", "z"], common=True),
+    in_file(
+        "rotor_rest_shape",
+        "rest_mode rest_direction place",
+        "rest_shapes",
+        "shape of the mode at rest of rotor_rest_frequency",
+        "kg-0.5",
+    ),
+    in_file(
+        "rotor_lateral_frequency",
+        "lateral_mode",
+        "lateral.frequencies",
+        "natural frequency in one plane, on bearings with the mean stiffness of both planes",
+        "Hz",
+    ),
+    in_file(
+        "rotor_lateral_shape",
+        "lateral_mode place",
+        "lateral_shapes",
+        "shape of the mode of rotor_lateral_frequency",
+        "kg-0.5",
+    ),
     in_file("rotor_torsional_shape", "torsional_mode place", "torsional_shapes", unit="kg-0.5 m-1"),
     _rest_strain("segment", 0),
     _rest_strain("bearing", 1),
@@ -466,7 +487,7 @@ def _numbers(dimension: str, of: Any, kind: str) -> Quantity:
 
 ROTORS = (
     _numbers("rest_mode", lambda rotor: rotor.rest.frequencies, "lateral mode at rest"),
-    _numbers("lateral_mode", lambda rotor: rotor.lateral.frequencies, "lateral mode"),
+    _numbers("lateral_mode", lambda rotor: rotor.lateral.frequencies, "lateral mode on round bearings"),
     _numbers("torsional_mode", lambda rotor: rotor.torsional.frequencies, "torsional mode"),
     _numbers("whirl_mode", lambda rotor: rotor.whirl_deflection, "whirl mode"),
     Rows("rotors", ".", ROTOR, "rotor"),
@@ -521,7 +542,7 @@ def report(document: Document) -> Section:
 
 _PICTURES = {
     "shaft": "Shaft to scale with its gears, discs and bearings.",
-    "modes": "Bending modes at rest, each to a scale of its own; triangles: bearings.",
+    "modes": "Modes at rest of the table, in both planes and along the axis, each to a scale of its own.",
     "torsional-response": "Response to torques that vary, over their frequency: peaks are torsional resonances.",
     "torsion": "Torsional modes: angle of twist along the shaft.",
     "whirl": "Whirl at the speed of operation: orbits along the shaft, forward or backward.",

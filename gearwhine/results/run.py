@@ -816,8 +816,9 @@ _PICTURES = (
     SPECTRUM,
     Picture(
         "mesh-force",
-        "Mesh force over some mesh periods and its spectrum; flanks part where it falls to zero. Lines beside the mesh "
-        "frequency are sidebands of the shafts.",
+        "Mesh force over some mesh periods and its spectrum; flanks part where it falls to zero. Lines beside a mesh "
+        "harmonic are sidebands where they are whole turns of an imperfect gear's shaft off it, and may else be "
+        "harmonics of another mesh.",
     ),
     Picture("orbits", "Orbits of the gears: from rest to their mean place, and about it."),
     Picture("modal-coordinates", "Modal coordinates over time, and their spectra: the modes that answer most."),

@@ -396,8 +396,8 @@ def _microphones(solved: "SolvedSound") -> list[_Microphone]:
 
 def _bands(solved: "SolvedSound") -> list[dict[str, float]]:
     return [
-        {"frequency_hz": hertz, "sound_power_db": level}
-        for hertz, level in zip(*(values.tolist() for values in solved.bands), strict=True)
+        {"frequency_hz": hertz, "sound_power_db": level, "sound_power_db_a": weighted}
+        for hertz, level, weighted in zip(*(values.tolist() for values in solved.bands), strict=True)
         if np.isfinite(level)
     ]
 

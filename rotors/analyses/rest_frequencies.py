@@ -1,23 +1,25 @@
-"""Natural frequencies of a rotor at rest, in both planes."""
+"""Natural frequencies and mode shapes of a rotor at rest, in both planes."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.certificate import ModeCertificate, combined_certificate
 from gearwhine.rotors.errors import require, require_count, require_finite
 from gearwhine.rotors.model.bearing import Bearing, undamped
 from gearwhine.rotors.model.shaft import Rotor
-from gearwhine.rotors.modes.lateral import require_unbuckled
+from gearwhine.rotors.modes.lateral import LateralModes, lateral_modes, require_unbuckled
 from gearwhine.rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft, discretise_together
 from gearwhine.rotors.transfer_matrix.mode_shapes import limit_above, proved_modes, shaft_with_modes
 from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shafts
 from gearwhine.rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, wittrick_williams_counts
 from gearwhine.rotors.whirl.modal_projection import slowest
 from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT
-from gearwhine.rotors.whirl.whirl_modes import solve_whirl
+from gearwhine.rotors.whirl.whirl_modes import WhirlModes, solve_whirl
 
 # Number of bisections after which roots of both planes that are not separated count as one.
 MOST_HALVINGS = 50
@@ -41,6 +43,17 @@ class RestFrequencies:
     frequencies: FloatArray
     axial_share: FloatArray
     certificate: ModeCertificate
+    _shapes: Callable[[npt.ArrayLike], FloatArray] = field(repr=False)
+
+    def evaluate(self, z: npt.ArrayLike) -> FloatArray:
+        """Motion of every mode along x, y and z at positions z [m], of unit norm in mass, (m, 3, len(z)) [1/√kg].
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        return self._shapes(z)
 
 
 def rest_frequencies(
@@ -72,7 +85,9 @@ def rest_frequencies(
     undamped_bearings = [undamped(bearing.at_speed(slowest(bearing))) for bearing in bearings]
     if not all(_is_planar(bearing) for bearing in undamped_bearings):
         modes = solve_whirl(rotor, undamped_bearings, 0.0, frequency_limit=frequency_limit, count=count)
-        return RestFrequencies(modes.damped_frequencies, modes.axial_share, modes.certificate)
+        return RestFrequencies(
+            modes.damped_frequencies, modes.axial_share, modes.certificate, partial(_coupled_shapes, modes)
+        )
 
     wanted = count
     if frequency_limit is None and count is None:
@@ -109,15 +124,54 @@ def rest_frequencies(
         expected = wittrick_williams_counts(shafts, limit)
         by_plane = [one[:number] for one, number in zip(by_plane, expected, strict=True)]
     solved = [
-        proved_modes(shaft, frequencies, number, limit)
+        proved_modes(shaft, frequencies, number, limit) if number else None
         for shaft, frequencies, number in zip(shafts, by_plane, expected, strict=True)
-        if number
     ]
     if alike:
         solved = solved * 2
-    frequencies = np.sort(np.concatenate([modes.frequencies for modes in solved] or [np.zeros(0)]))
-    certificate = combined_certificate([modes.certificate for modes in solved], limit, "wittrick-williams")
-    return RestFrequencies(frequencies, np.zeros(frequencies.size), certificate)
+    planar = [
+        (direction, lateral_modes(modes.frequencies, modes.fields, modes.mixture, planes[direction], modes.certificate))
+        for direction, modes in enumerate(solved)
+        if modes is not None
+    ]
+    frequencies = np.concatenate([modes.frequencies for _, modes in planar] or [np.zeros(0)])
+    order = np.argsort(frequencies, kind="stable")
+    certificate = combined_certificate([modes.certificate for _, modes in planar], limit, "wittrick-williams")
+    shapes = partial(_planar_shapes, planar, order)
+    return RestFrequencies(frequencies[order], np.zeros(frequencies.size), certificate, shapes)
+
+
+def _planar_shapes(
+    planar: Sequence[tuple[int, LateralModes]], order: npt.NDArray[np.intp], z: npt.ArrayLike
+) -> FloatArray:
+    """Shapes of modes that move in one plane each, x (0) or y (1)."""
+    places = np.atleast_1d(np.asarray(z, dtype=np.float64))
+    shapes = np.zeros((order.size, 3, places.size))
+    first = 0
+    for direction, modes in planar:
+        shapes[first : first + modes.count, direction] = modes.evaluate(places)[0]
+        first += modes.count
+    return shapes[order]
+
+
+def _coupled_shapes(modes: WhirlModes, z: npt.ArrayLike) -> FloatArray:
+    """Shapes of modes in which planes and axis move together: in phase everywhere, as nothing damps or turns.
+
+    Of a double root two circular motions may be found: their real and imaginary parts are its modes.
+    """
+    x, y = modes.evaluate(z)
+    motion = np.stack([x, y, modes.evaluate_axial(z)], axis=1)
+    squares = (motion**2).sum(axis=(1, 2))
+    turned = motion * np.exp(-0.5j * np.angle(squares))[:, None, None]
+    circular = np.abs(squares) < 0.5 * (np.abs(motion) ** 2).sum(axis=(1, 2))
+    shapes = np.array(turned.real)
+    number = 0
+    while number < circular.size:
+        if circular[number]:
+            parts = np.sqrt(2.0) * np.array([turned[number].real, turned[number].imag])
+            shapes[number : number + 2] = parts[: circular.size - number]
+        number += 1 + int(circular[number])
+    return shapes
 
 
 def _is_planar(bearing: Bearing) -> bool:

@@ -509,7 +509,7 @@ class SolvedRotor:
     axial : ndarray, shape (a,)
         Natural frequencies at rest of motions along the axis, ascending [rad/s]; none where no bearing holds it.
     lateral : LateralModes
-        Modes in one plane at averaged support stiffness.
+        Modes in one plane on supports whose stiffness is the mean of both planes'.
     torsional : TorsionalModes
     whirl : tuple of gearwhine.rotors.WhirlModes
         Whirl modes at the speed of operation, then at those of the sweep.
@@ -572,6 +572,11 @@ class SolvedRotor:
     def places(self) -> FloatArray:
         """Distances from the rotor's left end, evenly along the shaft, for shapes [m]."""
         return np.linspace(0.0, self.rotor.length, _PLACES)
+
+    @property
+    def rest_shapes(self) -> FloatArray:
+        """Shapes of the modes at rest along x, y and z at :attr:`places`, of unit norm in mass [1/√kg]."""
+        return self.rest.evaluate(self.places)
 
     @property
     def lateral_shapes(self) -> FloatArray:

@@ -176,7 +176,10 @@ def catalogue_bearing(
     static: float | None = None,
     name: str = "rolling bearing",
 ) -> RollingBearing:
-    """Estimate a whole bearing, its two rows in their places if it has two; parameters as of `catalogue_row`."""
+    """Estimate a whole bearing, its two rows in their places if it has two; parameters as of `catalogue_row`.
+
+    Its lives are by ``dynamic``, the catalogue's C, where it is given, and not by C of the estimated inside.
+    """
     row = catalogue_row(
         kind,
         bore,
@@ -187,7 +190,7 @@ def catalogue_bearing(
         dynamic=dynamic,
         static=static,
     )
-    return RollingBearing(standing_rows(kind, row, width), name=name)
+    return RollingBearing(standing_rows(kind, row, width), name=name, catalogue_rating=dynamic)
 
 
 def standing_rows(kind: CatalogueType, row: Row, width: float) -> tuple[Row, ...]:

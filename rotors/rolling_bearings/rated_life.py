@@ -35,7 +35,7 @@ class BearingLife:
 
     @property
     def rating_from(self) -> str:
-        """Source of the rating: "case" or "geometry"."""
+        """Source of the rating: "case" where it is given, by a case or in Python, else "geometry"."""
         return "geometry" if self.state.bearing.catalogue_rating is None else "case"
 
     @property

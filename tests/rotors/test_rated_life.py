@@ -13,6 +13,7 @@ from gearwhine.rotors.rolling_bearings import (
     RollingState,
     SphericalRollerRow,
     TaperedRollerRow,
+    catalogue_bearing,
     dynamic_rating,
     paired,
     rolling_equilibrium,
@@ -25,6 +26,7 @@ from gearwhine.rotors.rolling_bearings.life import (
     rated_revolutions,
     reference_revolutions,
 )
+from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
 
 BALLS = {"count": 9, "ball_diameter": 12.7e-3, "pitch_diameter": 60e-3}
 
@@ -38,6 +40,15 @@ def test_a_pure_radial_load_is_the_equivalent_one() -> None:
     state = under(BallRow(**BALLS), 3510.0)
     assert equivalent_load(state) == pytest.approx(3510.0)
     assert rated_revolutions(state, 35100.0) == pytest.approx(1e9)
+
+
+def test_a_bearing_of_the_catalogue_lives_by_the_catalogue_s_rating() -> None:
+    """10⁶ (35100 / 3510)³ revolutions at 1000 a minute are 10⁹ / 60000 hours, whatever C the estimated inside has."""
+    elements = catalogue_bearing("deep-groove", 35e-3, 80e-3, 21e-3, dynamic=35.1e3, static=19e3)
+    assert dynamic_rating(elements.rows[0]) != pytest.approx(35.1e3, rel=0.02)
+    life = BearingLife(rolling_equilibrium(elements, [3510.0, 0.0, 0.0, 0.0, 0.0]), 1000.0 * math.pi / 30.0)
+    assert life.life == pytest.approx(1e9 / 60e3)
+    assert life.rating_from == "case"
 
 
 def test_rollers_have_the_exponent_ten_thirds() -> None:

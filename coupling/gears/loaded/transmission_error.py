@@ -219,6 +219,59 @@ def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
     return contact.mesh_stiffness(phases, sound=False)
 
 
+@dataclass(frozen=True)
+class MeshStiffnessFigures:
+    """Figures of the mesh stiffness of all teeth: over a mesh period, or the hunting period where these differ.
+
+    Attributes
+    ----------
+    mean, least, greatest : float
+        Of all pairs on the path of contact, whatever the load [N/m].
+    loaded_mean : float
+        Mean of the pairs that touch under the load [N/m].
+    sound_mean : float or None
+        Mean of all pairs on the path if no tooth were damaged [N/m]; None where none is.
+    over_hunting_period : bool
+        Whether mesh periods differ, by damage or pitch deviations, so that the figures are of the hunting period.
+    """
+
+    mean: float
+    least: float
+    greatest: float
+    loaded_mean: float
+    sound_mean: float | None
+    over_hunting_period: bool
+
+
+def mesh_stiffness_figures(
+    contact: ToothContact, static: LoadedMesh, hunting: LoadedMesh | None = None
+) -> MeshStiffnessFigures:
+    """Mean, least and greatest mesh stiffness of a mesh under its load.
+
+    Parameters
+    ----------
+    contact : ToothContact
+        Contact law of the flanks that carry.
+    static : LoadedMesh
+        Statics over the first mesh period.
+    hunting : LoadedMesh, optional
+        Statics over the hunting period, where mesh periods differ.
+    """
+    mesh, sound = hunting or static, contact.unloaded_mean_mesh_stiffness
+    damaged = hunting is not None and len(contact.variant_curves) > 1
+    # Pitch deviations move teeth against each other, but stiffen none.
+    phases = mesh.phases if damaged else static.phases
+    on_path = mesh_stiffness(contact, phases)
+    return MeshStiffnessFigures(
+        mean=period_mean(phases, on_path) if damaged else sound,
+        least=float(on_path.min()),
+        greatest=float(on_path.max()),
+        loaded_mean=mesh.mean_mesh_stiffness,
+        sound_mean=sound if damaged else None,
+        over_hunting_period=hunting is not None,
+    )
+
+
 def period_mean(phases: FloatArray, values: FloatArray) -> float:
     """Mean of a periodic curve by the trapezoidal rule on ascending phases, over the whole periods they lie in."""
     periods = max(1, math.ceil(phases[-1] - phases[0] - 1e-9))

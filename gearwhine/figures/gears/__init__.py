@@ -45,7 +45,11 @@ def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
     yield (
         "stiffness",
         draw_mesh_stiffness(
-            f"{name}: mesh stiffness", contact, solved.static, shared=loaded and solved.has_single_pairs
+            f"{name}: mesh stiffness",
+            contact,
+            solved.static,
+            shared=loaded and solved.has_single_pairs,
+            figures=pair.stiffness_figures,
         ),
     )
     harmonics = {"unloaded": pair.unloaded_harmonics}

@@ -16,7 +16,11 @@ from matplotlib.ticker import MultipleLocator
 
 from gearwhine.coupling.gears import LoadedMesh, ToothContact, mesh_stiffness
 from gearwhine.coupling.gears.loaded.optimal_relief import HarrisMap
-from gearwhine.coupling.gears.loaded.transmission_error import period_mean
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    MeshStiffnessFigures,
+    mesh_stiffness_figures,
+    period_mean,
+)
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -42,7 +46,14 @@ from gearwhine.numerics.arrays import FloatArray
 _STIFFNESS, _SHARES, _BETWEEN = 66.0, 42.0, 5.0  # heights of the panels and the gap between them [mm of paper]
 
 
-def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: LoadedMesh, *, shared: bool = True) -> Figure:
+def draw_mesh_stiffness(
+    title: str,
+    contact: ToothContact,
+    mesh: LoadedMesh,
+    *,
+    shared: bool = True,
+    figures: MeshStiffnessFigures | None = None,
+) -> Figure:
     """Draw the stiffness of all pairs on the path and of those that touch, and the share of each below.
 
     Parameters
@@ -54,13 +65,19 @@ def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: LoadedMesh, *, 
         Statics over one mesh period.
     shared : bool
         Whether single pairs share the load, rather than the mesh as one spring. Without load none shares.
+    figures : MeshStiffnessFigures, optional
+        Means of the subtitle; by default of this mesh period.
     """
+    figures = figures or mesh_stiffness_figures(contact, mesh)
     loaded = mesh.force > 0.0
     below = _SHARES + _BETWEEN if shared and loaded else 0.0
     note = f"mesh force {mesh.force:.5g} N; " if loaded else "without load; "
-    note += f"mean stiffness of all pairs on the path of contact {MEGA * contact.unloaded_mean_mesh_stiffness:.2f} N/µm"
+    over = " over the hunting period" if figures.over_hunting_period else ""
+    note += f"mean stiffness{over} of all pairs on the path of contact {MEGA * figures.mean:.2f} N/µm"
     if loaded:
-        note += f", of those that touch {MEGA * mesh.mean_mesh_stiffness:.2f} N/µm"
+        note += f", of those that touch {MEGA * figures.loaded_mean:.2f} N/µm"
+    if figures.over_hunting_period:
+        note += "; drawn: the first mesh period"
     figure = sheet(HEAD + _STIFFNESS + below + FOOT, title, note)
     upper = panel(figure, FOOT + below, _STIFFNESS)
     on_path = mesh_stiffness(contact, mesh.phases)

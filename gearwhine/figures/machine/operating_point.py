@@ -470,16 +470,31 @@ def _drawn(at: float, force: FloatArray, *, of_gear: bool) -> DrawnForce:
     return DrawnForce(at, (x, y), of_gear, z, (about_x, about_y))
 
 
-def _forces_on_seats(solved: SolvedLoad) -> dict[tuple[str, float], FloatArray]:
-    """Sum of the forces of the bearings that sit in a shaft, as planets on a carrier, by its name and station [N]."""
-    machine, forces = solved.machine, dict[tuple[str, float], FloatArray]()
+def forces_on_shafts(solved: SolvedLoad) -> dict[str, list[DrawnForce]]:
+    """Return what is drawn on each shaft: forces and moments of its bearings, of those that sit in it, of its gears.
+
+    They are in balance but for the shaft's weight.
+    """
+    machine, acting = solved.machine, {shaft.name: list[DrawnForce]() for shaft in solved.shafts}
+    seated, gears = dict[tuple[str, float], FloatArray](), dict[tuple[str, float], FloatArray]()
     for load in solved.point.bearings:
+        acting[load.mounted.rotor].append(_drawn(load.mounted.bearing.at, -load.force, of_gear=False))
         name = machine.shaft_around(load.mounted)
         if name is not None:
             around, held = machine.shaft(name), machine.shaft(load.mounted.rotor)
-            at = min(max(held.start + load.mounted.bearing.at - around.start, 0.0), around.rotor.length)
-            forces[name, at] = forces.get((name, at), np.zeros(5)) + load.force
-    return forces
+            place = held.start + load.mounted.bearing.at - around.start
+            at = min(max(place, 0.0), around.rotor.length)
+            # A pin is beside the axis, and may be beyond the shaft's end: its force there has a moment about the axis.
+            arm = np.array([*np.subtract(held.axis, around.axis), place - at])
+            force = load.force + np.concatenate([np.zeros(3), np.cross(arm, load.force[:3])[:2]])
+            seated[name, at] = seated.get((name, at), np.zeros(5)) + force
+    for number, pair in enumerate(solved.point.pairs):
+        for gear, force in zip((pair.pair.driver, pair.pair.driven), solved.point.gear_forces(number), strict=True):
+            gears[gear.shaft, gear.at] = gears.get((gear.shaft, gear.at), np.zeros(5)) + force[:5]
+    for together, of_gear in ((seated, False), (gears, True)):
+        for (name, at), force in together.items():
+            acting[name].append(_drawn(at, force, of_gear=of_gear))
+    return acting
 
 
 def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
@@ -496,17 +511,7 @@ def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
         ``load-over-torque``, ``load-planetary-SET`` and ``load-carrier-turn-CARRIER``.
     matplotlib.figure.Figure
     """
-    acting: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
-    for load in solved.point.bearings:
-        acting[load.mounted.rotor].append(_drawn(load.mounted.bearing.at, -load.force, of_gear=False))
-    for (name, at), force in _forces_on_seats(solved).items():
-        acting[name].append(_drawn(at, force, of_gear=False))
-    gears: dict[tuple[str, float], FloatArray] = {}
-    for number, pair in enumerate(solved.point.pairs):
-        for gear, force in zip((pair.pair.driver, pair.pair.driven), solved.point.gear_forces(number), strict=True):
-            gears[gear.shaft, gear.at] = gears.get((gear.shaft, gear.at), np.zeros(5)) + force[:5]
-    for (name, at), force in gears.items():
-        acting[name].append(_drawn(at, force, of_gear=True))
+    acting = forces_on_shafts(solved)
     stems = file_stems([shaft.name for shaft in solved.shafts], "load-shaft-")
     for stem, shaft in zip(stems, solved.shafts, strict=True):
         on_shaft = [load.mounted.bearing for load in solved.point.bearings if load.mounted.rotor == shaft.name]

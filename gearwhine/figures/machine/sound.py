@@ -36,7 +36,7 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
-from gearwhine.housing.acoustics.sound_levels import a_weighting, pressure_level
+from gearwhine.housing.acoustics.sound_levels import pressure_level
 from gearwhine.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -121,11 +121,11 @@ def _draw_power(axes: Axes, solved: "SolvedSound", lines: "Sequence[SoundLine]",
 
 def _draw_bands(axes: Axes, solved: "SolvedSound") -> None:
     """Draw the levels of third octaves as bars, and A-weighted as lines across them."""
-    nominal, levels = solved.bands
+    nominal, levels, weighted = solved.bands
     low, high = _level_limits(levels[levels >= levels.max() - _RANGE])
     first = max(min(int(np.argmax(levels > low)), len(levels) - _FEWEST_BANDS), 0)
-    nominal, levels = nominal[first:], levels[first:]
-    weighted, places, drawn_bands = levels + a_weighting(nominal), np.arange(len(nominal)), levels > low
+    nominal, levels, weighted = nominal[first:], levels[first:], weighted[first:]
+    places, drawn_bands = np.arange(len(nominal)), levels > low
     axes.bar(
         places[drawn_bands], levels[drawn_bands] - low, bottom=low, width=0.8, color=BLUE, alpha=0.85, lw=0.0, zorder=3
     )

@@ -12,7 +12,7 @@ from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAs
 from gearwhine.figures.rotors.campbell import draw_campbell
 from gearwhine.figures.rotors.critical_speed_map import draw_critical_map
 from gearwhine.figures.rotors.mode_shapes import (
-    draw_lateral_modes,
+    draw_rest_modes,
     draw_static_deflection,
     draw_torsional_modes,
     draw_whirl_modes,
@@ -33,7 +33,7 @@ from gearwhine.rotors import Segment as RotorSegment
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 
 _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
-_MODES = 6  # modes drawn of each kind
+_MODES = 6  # modes drawn of each kind, of bending at rest in each plane
 
 
 def draw_rotors(
@@ -120,7 +120,7 @@ def _drawn_gears(gears: Sequence[ShaftGear], rotor: Rotor) -> list[DrawnGear]:
 def _figures(solved: SolvedRotor, assembly: RotorAssembly) -> list[tuple[str, Figure]]:
     figures = [
         ("shaft", draw_shaft(assembly)),
-        ("modes", draw_lateral_modes(assembly, solved.lateral, most=_MODES)),
+        ("modes", draw_rest_modes(assembly, solved.rest, most=2 * _MODES)),
         ("torsion", draw_torsional_modes(assembly, solved.torsional, most=_MODES)),
     ]
     operation = solved.operation

@@ -4,13 +4,14 @@ Planar modes stand on a line each; the static deflection of a rotor under its lo
 Whirl modes are orbits along the shaft in oblique projection.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from gearwhine.figures.rotors.assembly import RotorAssembly
 from gearwhine.figures.rotors.campbell import AXIAL, Sense, legend_lines, sense_of
@@ -34,6 +35,7 @@ from gearwhine.figures.style import (
 )
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors import WhirlModes
+from gearwhine.rotors.analyses.rest_frequencies import RestFrequencies
 from gearwhine.rotors.modes.lateral import LateralModes
 from gearwhine.rotors.modes.torsional_and_axial import TorsionalModes
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL
@@ -55,6 +57,7 @@ _UNSHRUNK_ARROW = {"shrinkA": 0, "shrinkB": 0}  # arrows begin and end at their 
 _HEIGHT = 60.0  # height of the panel [mm of paper]
 _ARROW = 0.26  # arrow of the largest load, over the panel's height
 _WORD, _EDGE = 0.08, 0.03  # height of a load's label, and margin, over the panel's height
+_LEAST_DRAWN_SHAPE = 0.02  # part of a mode's largest displacement below which a direction is not drawn
 _LEAST_DRAWN_DEFLECTION = 1e-6  # part of the deflection in y below which that in x is not drawn
 
 
@@ -75,9 +78,28 @@ def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: in
     note = _note(frequencies.size, modes.count, "each shape over its largest displacement", at_bearings, loaded)
     # Bearings hold no torsion, so they are marked on these lines alone.
     bearings = [bearing.at for bearing in assembly.bearings]
-    return _stacked(
-        assembly, "lateral modes", note, frequencies, z, modes.evaluate(z)[0], at_bearings, loaded, bearings
-    )
+    shapes = {"": modes.evaluate(z)[0]}
+    return _stacked(assembly, "lateral modes", note, frequencies, z, shapes, at_bearings, loaded, bearings)
+
+
+def draw_rest_modes(assembly: RotorAssembly, rest: RestFrequencies, *, most: int | None = None) -> Figure:
+    """Draw the modes at rest on the bearings as they are, with what moves in x, y and along the axis.
+
+    Parameters
+    ----------
+    assembly : RotorAssembly
+        The rotor, drawn above its modes on the same axis.
+    rest : RestFrequencies
+    most : int, optional
+        Largest number of modes drawn; by default all.
+    """
+    z, at_bearings, loaded = _places(assembly)
+    frequencies = rest.frequencies[:most]
+    scale = "each mode over its largest displacement in x, y or along the axis"
+    note = _note(frequencies.size, rest.frequencies.size, scale, at_bearings, loaded)
+    bearings = [bearing.at for bearing in assembly.bearings]
+    shapes = dict(zip(("x", "y", "along the axis"), np.moveaxis(rest.evaluate(z), 1, 0), strict=True))
+    return _stacked(assembly, "modes at rest", note, frequencies, z, shapes, at_bearings, loaded, bearings)
 
 
 def draw_torsional_modes(assembly: RotorAssembly, modes: TorsionalModes, *, most: int | None = None) -> Figure:
@@ -85,7 +107,8 @@ def draw_torsional_modes(assembly: RotorAssembly, modes: TorsionalModes, *, most
     z, _, loaded = _places(assembly)
     frequencies = modes.frequencies[:most]
     note = _note(frequencies.size, modes.count, "each shape over its largest rotation", np.empty(0), loaded)
-    return _stacked(assembly, "torsional modes", note, frequencies, z, modes.evaluate(z), np.empty(0), loaded, ())
+    shapes = {"": modes.evaluate(z)}
+    return _stacked(assembly, "torsional modes", note, frequencies, z, shapes, np.empty(0), loaded, ())
 
 
 def draw_along(axes: Axes, assembly: RotorAssembly, view: ShaftView, bearings: Sequence[float]) -> None:
@@ -120,12 +143,12 @@ def _stacked(
     note: str,
     frequencies: FloatArray,
     z: FloatArray,
-    shapes: FloatArray,
+    shapes: Mapping[str, FloatArray],
     at_bearings: FloatArray,
     loaded: FloatArray,
     bearings: Sequence[float],
 ) -> Figure:
-    """Draw shapes (at least m, len(z)), one below the other, under the shaft."""
+    """Draw shapes by their directions, each (at least m, len(z)), one mode below the other, under the shaft."""
     outline = lay_out(assembly, labelled=False)
     count = frequencies.size
     share = float(np.clip(_TOGETHER / max(count, 1), _LOWEST, _HIGHEST))
@@ -141,14 +164,23 @@ def _stacked(
     axes.set_ylim(-count + 0.5, 0.5)
     levels = -np.arange(count, dtype=np.float64)
     axes.hlines(levels, 0.0, MM * assembly.rotor.length, color=GREY, lw=0.5, zorder=1)
-    for number, (level, shape) in enumerate(zip(levels, shapes, strict=False), start=1):
-        line = level + _SWING * shape / np.abs(shape).max()
-        axes.plot(MM * z, line, color=BLUE, lw=1.2, zorder=2, label=f"mode {number}")
-        for places, marker, face in ((at_bearings, "o", "white"), (loaded, "s", BLUE)):
-            at = np.searchsorted(z, places)
-            axes.plot(
-                MM * places, line[at], ls="", marker=marker, color=BLUE, markerfacecolor=face, ms=3.2, mew=0.8, zorder=3
-            )
+    curves: dict[str, Line2D] = {}
+    for number, level in enumerate(levels.tolist()):
+        largest = max(float(np.abs(shape[number]).max()) for shape in shapes.values()) or 1.0
+        for (direction, shape), color in zip(shapes.items(), (BLUE, SERIES[1], GREY), strict=False):
+            if np.abs(shape[number]).max() < _LEAST_DRAWN_SHAPE * largest:
+                continue
+            line = level + _SWING * shape[number] / largest
+            label = f"mode {number + 1} {direction}".rstrip()
+            (curves[direction],) = axes.plot(MM * z, line, color=color, lw=1.2, zorder=2, label=label)
+            for places, marker, face in ((at_bearings, "o", "white"), (loaded, "s", color)):
+                at = np.searchsorted(z, places)
+                axes.plot(
+                    MM * places, line[at], ls="", marker=marker, color=color, markerfacecolor=face, ms=3.2, mew=0.8,
+                    zorder=3,
+                )  # fmt: skip
+    if len(shapes) > 1:
+        legend(figure, [Line2D([], [], color=curve.get_color(), lw=1.2, label=name) for name, curve in curves.items()])
     names = [f"mode {number}\n{_frequency(value)}" for number, value in enumerate(frequencies / HERTZ, start=1)]
     axes.set_yticks(levels, names)
     axes.tick_params(axis="y", length=0.0, colors=INK)

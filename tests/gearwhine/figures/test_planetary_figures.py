@@ -12,6 +12,7 @@ from planetary_machines import MODULE, machine
 
 from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad, solve_load
+from gearwhine.figures.machine.operating_point import forces_on_shafts
 from gearwhine.figures.machine.planetary_sets import draw_carrier_turn, draw_planetary_set
 
 TEETH = {"s": 24, "r": 84, "p 1": 30, "p 2": 30, "p 3": 30}
@@ -50,6 +51,19 @@ def test_pitch_circles_stand_on_their_shafts() -> None:
     ends = [line.get_xydata() for line in spokes]
     assert all(np.allclose(points[0], carrier) for points in ends)
     np.testing.assert_allclose([points[1] for points in ends], [axis for axis, _ in expected[2:]])
+
+
+def test_forces_drawn_on_a_carrier_are_in_balance() -> None:
+    """Of unequal planets: pins 90 and 50 mm beyond the end of the shaft turn it by these arms, its bearings back."""
+    drawn = forces_on_shafts(solved())["c"]
+    largest = max(abs(part) for one in drawn for part in one.force)
+    turned = np.zeros(2)
+    for one in drawn:
+        # Moments about x and y of all that acts, about the left end.
+        turned += np.array(one.moment) + one.at * np.array([-one.force[1], one.force[0]])
+    assert sum(np.array(one.force) for one in drawn) == pytest.approx(np.zeros(2), abs=1e-9 * largest)
+    assert turned == pytest.approx(np.zeros(2), abs=1e-9 * largest)
+    assert max(abs(part) for one in drawn for part in one.moment) > 0.01 * largest
 
 
 def test_drawn_forces_of_each_planet_are_in_balance() -> None:

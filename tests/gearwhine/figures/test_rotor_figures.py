@@ -18,6 +18,7 @@ from gearwhine import rotors
 from gearwhine.figures import RotorAssembly, draw_lateral_modes, draw_shaft, save
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnProbe, DrawnUnbalance
 from gearwhine.figures.rotors.mode_shapes import (
+    draw_rest_modes,
     draw_static_deflection,
     draw_torsional_modes,
     draw_whirl_modes,
@@ -191,6 +192,24 @@ def test_lateral_modes_hold_the_shapes() -> None:
     # Friswell's printed values to four digits; the exact third pair is below his.
     names = [label.get_text() for label in axes.get_yticklabels()]
     assert [name.splitlines()[1] for name in names[:2]] == [f"{w / (2 * math.pi):.4g} Hz" for w in (86.66, 274.31)]
+
+
+def test_modes_at_rest_are_those_of_the_table() -> None:
+    """On bearings that are stiffer across: each mode in its plane, by its own frequency."""
+    bearings = [rotors.Bearing(one.name, one.at, np.diag([1e6, 4e6]), np.zeros((2, 2))) for one in BEARINGS]
+    rest = rotors.rest_frequencies(ROTOR, bearings, count=4)
+    _, axes = draw_rest_modes(RotorAssembly(ROTOR, bearings), rest).axes
+    names = [label.get_text().splitlines()[1] for label in axes.get_yticklabels()]
+    assert names == [f"{w / (2 * math.pi):.4g} Hz" for w in rest.frequencies]
+    for plane, stiffness in (("x", 1e6), ("y", 4e6)):
+        alone = rotors.solve_lateral_modes(
+            ROTOR, [rotors.RadialSupport(one.at, stiffness) for one in BEARINGS], count=2
+        )
+        for number, frequency in enumerate(alone.frequencies):
+            (place,) = np.flatnonzero(np.isclose(rest.frequencies, frequency, rtol=1e-9)) + 1
+            ((z, drawn),) = lines(axes, f"mode {place} {plane}")
+            shape = alone.evaluate(z / 1e3)[0][number]
+            assert drawn + place - 1 == pytest.approx(0.42 * shape / np.abs(shape).max(), abs=1e-6)
 
 
 def test_forty_modes_of_a_free_shaft_without_anything(tmp_path: Path) -> None:

@@ -333,6 +333,28 @@ def test_damage_shows_over_the_hunting_period() -> None:
     assert over["peak_to_peak"] == pytest.approx(float(np.ptp(error)))
 
 
+def test_mesh_stiffness_of_a_cracked_gear_is_of_all_its_teeth() -> None:
+    """Over even phases of the hunting period, 28 mesh periods; a crack takes as much stiffness from any tooth.
+
+    So the mean falls by the same for tooth 3, which the first mesh period does not have, as for tooth 0, and lies
+    between least and greatest.
+    """
+    sound = document("spur-pair")["stiffness_n_per_m"]
+    for tooth in (3, 0):
+        pair = analysed("spur-pair", f"gear.pinion.fault={{kind='crack',tooth={tooth},depth='3 mm'}}")
+        cracked = gears_document((pair,))["pairs"][0]
+        told, phases = cracked["stiffness_n_per_m"], 28.0 * (np.arange(28000) + 0.5) / 28000
+        values = pair.solved.carrying_flanks.mesh_stiffness(phases, sound=False)
+        assert told["mean"] == pytest.approx(values.mean(), rel=1e-4)
+        assert told["min"] == pytest.approx(values.min(), rel=1e-3)
+        assert told["max"] == pytest.approx(sound["max"], rel=1e-4)
+        assert told["min"] < 0.95 * sound["min"]
+        assert told["sound_mean"] == sound["mean"] > told["mean"] * 1.001
+        assert pair.solved.hunting is not None
+        assert told["loaded_mean"] == pair.solved.hunting.mean_mesh_stiffness < sound["loaded_mean"]
+    assert "sound_mean" not in sound
+
+
 def test_what_the_curves_leave_out_or_no_teeth_bear_is_said() -> None:
     def names(*settings: str) -> list[str]:
         case = case_of("spur-pair", *settings)

@@ -21,10 +21,10 @@ TURNING = 5500.0 / 60.0  # of all shafts [Hz]
 SHAFT = """
 [[rotor]]
 name = "third"
-axis = ["120.65 mm", "0 mm"]
+axis = ["{axis} mm", "0 mm"]
 start = "-100 mm"
 material = "steel"
-segments = [{ length = "200 mm", diameter = "30 mm" }]
+segments = [{{ length = "200 mm", diameter = "30 mm" }}]
 """
 BEARING = """
 [[bearing]]
@@ -39,12 +39,12 @@ GEAR = """
 name = "{name}"
 rotor = "{rotor}"
 at = "60 mm"
-teeth = 24
+teeth = {teeth}
 module = "3.175 mm"
 face_width = "6.35 mm"
 pressure_angle = "20 deg"
 bore = "30 mm"
-errors = {{ runout = "20 um" }}
+errors = {{ runout = "{runout} um" }}
 """
 STAGE = """
 [[gear_pair]]
@@ -64,13 +64,17 @@ BRAKED = [
 ]
 
 
-def two_stages(folder: Path) -> str:
+def two_stages(folder: Path, teeth: int = 24, runout: float = 20.0) -> str:
     """The spur pair with a second stage behind it, of other tooth numbers; all shafts turn at one speed."""
     spur_pair = files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8")
-    gears = GEAR.format(name="second pinion", rotor="output") + GEAR.format(name="second wheel", rotor="third")
+    gears = "".join(
+        GEAR.format(name=name, rotor=rotor, teeth=teeth, runout=runout)
+        for name, rotor in (("second pinion", "output"), ("second wheel", "third"))
+    )
     bearings = BEARING.format(at=20) + BEARING.format(at=180)
     path = folder / "two-stages.toml"
-    path.write_text(spur_pair + SHAFT + bearings + gears + STAGE, encoding="utf-8")
+    third = SHAFT.format(axis=44.45 + 3.175 * teeth)
+    path.write_text(spur_pair + third + bearings + gears + STAGE, encoding="utf-8")
     return str(path)
 
 
@@ -97,6 +101,24 @@ def test_sidebands_are_of_the_pressed_flanks_of_their_own_pair(tmp_path: Path) -
         for key, frequency in (("carrier", teeth), ("lower", teeth - 1), ("upper", teeth + 1)):
             wave = np.exp(-2j * np.pi * frequency * TURNING * times)
             assert first[f"{key}_amplitude_n"] == pytest.approx(2.0 * abs((force * wave).mean()), rel=1e-6)
+
+
+@pytest.mark.parametrize("runout", [20.0, 0.0])
+def test_a_harmonic_of_another_mesh_is_no_sideband(tmp_path: Path, runout: float) -> None:
+    """28 and 27 teeth on shafts of one speed: n × 27 and n × 28 are n turns apart, as sidebands of each other.
+
+    So of the pairs 1, 2 and 3 about the n-th harmonic of either mesh the n-th is none. Where all gears run true, only
+    the unbalance of the input shaft modulates a mesh, the first; the second has the lines of the other mesh beside it.
+    """
+    changes = [f"gear.pinion.errors={{ runout = '{runout} um' }}", "rotor.*.modes=2"]
+    brief = ["transient.revolutions=2", "transient.discard=0", "transient.tolerance=2e-3"]
+    case = load_case(two_stages(tmp_path, 27, runout), [*changes, *brief]).case
+    machine = about_operating_point(case).coupled
+    signature = solve_signature(solve_transient(machine, plan_of(case)), coupled_modes(machine.system), None)
+    for teeth, of_shafts in zip((28, 27), signature.force_sidebands.values(), strict=True):
+        found = {(round(pair.carrier / TURNING), pair.number) for one in of_shafts for pair in one.pairs}
+        expected = {(n * teeth, number) for n in (1, 2, 3) for number in (1, 2, 3) if number != n}
+        assert found == (expected if runout or teeth == 28 else set())
 
 
 @pytest.mark.slow
