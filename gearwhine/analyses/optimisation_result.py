@@ -22,6 +22,7 @@ from gearwhine.case.units import si_amount
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.failures import explain
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
@@ -46,6 +47,7 @@ from gearwhine.optimisation.verification import Motion, Verification, checked_sp
 from gearwhine.output.named_quantities import statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solve.machine import plan_of
+from gearwhine.solve.radiated_power import Radiations
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.cost import cost_of_study, duration
 from gearwhine.variation.inputs import varied_inputs
@@ -182,6 +184,7 @@ def optimise(
     analyses: Sequence[str] | None = None,
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
+    acoustics: Acoustics | None = None,
     method: Method = "search",
     levels: int = 5,
     seed: int = 1,
@@ -208,9 +211,11 @@ def optimise(
     analyses : sequence of str, optional
         What is found of each machine; by default what aims and limits name.
     speeds : sequence of float
-        Signed speeds of "lines" [rad/s]; by default that of each machine.
+        Signed speeds of "lines" and "sound" [rad/s]; by default that of each machine.
     plan : TransientPlan, optional
         Stretch of the motion; with it the transient of the start and of the proposed machines is solved at the end.
+    acoustics : Acoustics, optional
+        Settings of "sound", by default boundary elements in free air; each housing is solved once.
     method : {"search", "grid"}
         "grid" tries every combination of the values, of each range a number of levels.
     levels : int
@@ -258,6 +263,8 @@ def optimise(
     if set(first) != set(laws):
         raise CouplingError(f"optimise: a start with {', '.join(first)}; expected a value of each of {', '.join(laws)}")
 
+    radiations = Radiations(acoustics, progress)
+
     def made(values: Mapping[str, float]) -> Machine | Mapping[str, float]:
         try:
             return make(values)
@@ -267,7 +274,7 @@ def optimise(
     def found(values: Mapping[str, float]) -> Evaluation:
         machine = made(values)
         if isinstance(machine, Machine):
-            return evaluate(machine, wanted)
+            return evaluate(machine, wanted, radiations.of(machine) if wanted.has_sound else None)
         if not isinstance(machine, Mapping):
             raise CouplingError(
                 f"optimise: {make!r} returned {machine!r}; expected a gearwhine.Machine or numbers by name"
