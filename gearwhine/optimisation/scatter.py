@@ -76,7 +76,6 @@ class Scatter:
         return {name: float(law.quantile(np.array([0.5]))[0]) for name, law in self.laws.items()}
 
     def about(self, values: Mapping[str, float]) -> Iterator[dict[str, float]]:
-        """Yield the values of each machine about a design."""
-        middle = self.medians | dict(values)
+        """Yield the values of each machine about a design, of which those that it has not are the :attr:`medians`."""
         for draw in self._draws.tolist():
-            yield middle | {name: middle[name] + by for name, by in zip(self.laws, draw, strict=True)}
+            yield dict(values) | {name: values[name] + by for name, by in zip(self.laws, draw, strict=True)}
