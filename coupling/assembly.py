@@ -9,7 +9,7 @@ come from :mod:`gearwhine.coupling.statics`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -285,22 +285,7 @@ def assemble_machine(
     ]
     pins = [pin_component(rotor.name, rotor.pin) for rotor in rotors if rotor.pin is not None]
     components: tuple[Component, ...] = (*rotors, *(() if housing is None else (housing,)), *pedestals, *pins)
-    if len({component.name for component in components}) < len(components):
-        raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
-    # Linearised about a load it has an offset, and may be without stiffness: an unloaded one.
-    loose = [
-        mounted.bearing.name
-        for mounted in bearings
-        if mounted.needs_load and mounted.offset is None and mounted.law is None
-    ]
-    if loose:
-        raise CouplingError(
-            f"no stiffness yet for {', '.join(loose)}: it follows from the bearing's load; expected a machine at its "
-            "operating point (Machine.at_operating_point)"
-        )
-    without = [rotor.name for rotor in rotors if rotor.name not in speeds]
-    if without:
-        raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
+    _require_assemblable(components, rotors, bearings, speeds)
     frames = Frames(components, frame_speeds(rotors, bearings, meshes, speeds, bolted_rotors(torque_supports)))
     components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
@@ -316,19 +301,7 @@ def assemble_machine(
         _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range, frames) for mounted in bearings
     ]
     within = [_torque_support(coordinates, housing, support) for support in torque_supports]
-    within += [
-        centrifugal_stiffness(coordinates, rotor, bearings, frames, speed_range)
-        for rotor in rotors
-        if rotor.carrier is not None and frames.of(rotor.name) != 0.0
-    ]
-    for dashpot in dashpots:
-        # In the frame of a carrier a shaft turns by so much less.
-        relative = speeds[dashpot.rotor] - frames.of(dashpot.rotor)
-        rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), relative, speed_range)
-        within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
-    for rotor in rotors:
-        within += _transports(coordinates, rotor, speeds[rotor.name], frames.of(rotor.name), speed_range)
-    within += [pin_in_walls(coordinates, rotor) for rotor in rotors if rotor.pin is not None]
+    within += _connectors_of_shafts(coordinates, rotors, bearings, dashpots, frames, speed_range)
 
     senses = _senses(meshes, speeds, speed_ratios)
     phases = mesh_phases(
@@ -366,19 +339,7 @@ def assemble_machine(
     with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, mean_faces)
     system = with_balanced_friction(with_faces)
     if frames.turn:
-        of_contacts = [mesh_frame(coordinates, mesh) for mesh, _ in flanks]
-        of_linear = [bearing_frame(mounted, coordinates, frames) for mounted in bearings]
-        for connector in system.linear[len(bearings) :]:
-            tilted = connector.of_contact
-            of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
-        system = frames.turned(system, of_linear, of_contacts)
-        rims = [
-            tuple(turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)
-        ]
-        contacts_on_rims = zip(system.contacts, rims, strict=True)
-        system = replace(
-            system, contacts=tuple(replace(one, turning=(*one.turning, *parts)) for one, parts in contacts_on_rims)
-        )
+        system = _in_turning_frames(system, coordinates, bearings, flanks, frames)
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -392,6 +353,72 @@ def assemble_machine(
         mean_faces,
         speed_ratios=speed_ratios,
     )
+
+
+def _require_assemblable(
+    components: Sequence[Component],
+    rotors: Sequence[RotorComponent],
+    bearings: Sequence[MountedBearing],
+    speeds: Mapping[str, float],
+) -> None:
+    """Refuse two components of one name, bearings without a stiffness yet, and rotors without a speed."""
+    if len({component.name for component in components}) < len(components):
+        raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
+    # Linearised about a load it has an offset, and may be without stiffness: an unloaded one.
+    loose = [
+        mounted.bearing.name
+        for mounted in bearings
+        if mounted.needs_load and mounted.offset is None and mounted.law is None
+    ]
+    if loose:
+        raise CouplingError(
+            f"no stiffness yet for {', '.join(loose)}: it follows from the bearing's load; expected a machine at its "
+            "operating point (Machine.at_operating_point)"
+        )
+    without = [rotor.name for rotor in rotors if rotor.name not in speeds]
+    if without:
+        raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
+
+
+def _connectors_of_shafts(
+    coordinates: MachineCoordinates,
+    rotors: Sequence[RotorComponent],
+    bearings: Sequence[MountedBearing],
+    dashpots: Sequence[ShaftDashpots],
+    frames: Frames,
+    speed_range: tuple[float, float],
+) -> Iterator[LinearConnector]:
+    """Yield what acts within shafts: centrifugal stiffness, dashpots, transports of their frames, pins in walls."""
+    for rotor in rotors:
+        if rotor.carrier is not None and frames.of(rotor.name) != 0.0:
+            yield centrifugal_stiffness(coordinates, rotor, bearings, frames, speed_range)
+    for dashpot in dashpots:
+        # In the frame of a carrier a shaft turns by so much less.
+        relative = coordinates.speeds[dashpot.rotor] - frames.of(dashpot.rotor)
+        rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), relative, speed_range)
+        yield replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T)
+    for rotor in rotors:
+        yield from _transports(coordinates, rotor, coordinates.speeds[rotor.name], frames.of(rotor.name), speed_range)
+    yield from (pin_in_walls(coordinates, rotor) for rotor in rotors if rotor.pin is not None)
+
+
+def _in_turning_frames(
+    system: CoupledSystem,
+    coordinates: MachineCoordinates,
+    bearings: Sequence[MountedBearing],
+    flanks: Sequence[tuple[GearMesh, int]],
+    frames: Frames,
+) -> CoupledSystem:
+    """Turn the directions of all connectors with the carriers, and the rims of gears that circle."""
+    of_contacts = [mesh_frame(coordinates, mesh) for mesh, _ in flanks]
+    of_linear = [bearing_frame(mounted, coordinates, frames) for mounted in bearings]
+    for connector in system.linear[len(bearings) :]:
+        tilted = connector.of_contact
+        of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
+    system = frames.turned(system, of_linear, of_contacts)
+    rims = [tuple(turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)]
+    contacts = zip(system.contacts, rims, strict=True)
+    return replace(system, contacts=tuple(replace(one, turning=(*one.turning, *of_rims)) for one, of_rims in contacts))
 
 
 def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float], ratios: Mapping[str, Fraction]) -> list[int]:
@@ -460,7 +487,11 @@ def _bearing(
     if mounted.law is not None:
         moving = axes[np.any(relative[axes] != 0.0, axis=1)]
         tangent = stiffness[np.ix_(moving, moving)]
-        nonlinear = NonlinearConnector(bearing.name, relative[moving].T, moving, mounted.law, tangent, speed)
+        # A planet's carrier stands still in its own frame; a hollow shaft turns against the axes.
+        held = 0.0 if around is None else coordinates.speeds[around.name] - frames.of(around.name)
+        nonlinear = NonlinearConnector(
+            bearing.name, relative[moving].T, moving, mounted.law, tangent, speed, holder_speed=held
+        )
     if table is not None:
         parts = (part[:, axes[:, None], axes] for part in (table.stiffness, table.damping))
         table = SpeedTable(table.speed_ratios, *parts)

@@ -2,28 +2,35 @@
 
 The process reads the names of folders, one a line, and in each folder plain data: a file of arrays (``.npz``, without
 pickled objects) and a file of JSON. It answers in lines of JSON: its progress, and at last the names of the files, or
-the error.
+the error. A command that is to draw at its end may start it at its beginning, and have it draw while other work goes on
+(:meth:`_DrawingProcess.beside`).
 """
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
+from contextvars import ContextVar, copy_context
+from functools import partial
 from pathlib import Path
-from typing import IO, Any, NamedTuple, Self
+from typing import IO, Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
 import gearwhine
 from gearwhine.housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
+from gearwhine.housing.pictures.scene import load_pyvista
 from gearwhine.interruption import cleared_at_the_end
-from gearwhine.numerics.progress import Progress
+from gearwhine.numerics.progress import Progress, silent
+
+T = TypeVar("T")
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
 _CAPTIONS = ("name", "title", "note", "quantity", "largest")
@@ -56,10 +63,12 @@ def draw_in_process(
     *,
     sheet: str | None = None,
     beside: str | None = None,
+    drawn: Collection[str] = (),
 ) -> list[str]:
     """Draw shapes into a folder, and with a name for it also the ``sheet`` of all; the files' names.
 
     With a view ``beside`` each picture shows both sides, see :func:`gearwhine.housing.pictures.images.render_shapes`.
+    Of shapes whose names are among those ``drawn`` already only the sheet has a picture.
 
     Raises
     ------
@@ -76,6 +85,7 @@ def draw_in_process(
         "view": view,
         "beside": beside,
         "sheet": sheet,
+        "drawn": list(drawn),
         "shapes": [{key: getattr(shape, key) for key in _CAPTIONS} for shape in shapes],
     }
     with one_process() as process, tempfile.TemporaryDirectory() as task_folder:
@@ -99,6 +109,7 @@ class _DrawingProcess:
     def __init__(self) -> None:
         self._running: _Running | None = None
         self._is_stopped = False
+        self._thread = ThreadPoolExecutor(1)
 
     def __enter__(self) -> Self:
         """Return the process itself, which need not run yet."""
@@ -106,7 +117,19 @@ class _DrawingProcess:
 
     def __exit__(self, *_: object) -> None:
         """End the process: its pictures are on file, or no longer wanted."""
+        self.stop()
+        self._thread.shutdown(cancel_futures=True)
         self._end()
+
+    def start(self) -> "_Running":
+        """Start the process where it does not run, which loads its libraries before it is asked."""
+        if self._running is None:
+            self._running = _start()
+        return self._running
+
+    def beside(self, draw: Callable[..., T], *arguments: Any, **named: Any) -> Future[T]:
+        """Call a function that draws on a thread, which waits for the process most of the time; one after the other."""
+        return self._thread.submit(copy_context().run, partial(draw, *arguments, **named))
 
     def stop(self) -> None:
         """Kill the process, whatever it draws, and start no other; from any thread."""
@@ -124,9 +147,7 @@ class _DrawingProcess:
         """
         if self._is_stopped:
             raise RendererUnavailableError("the renderer was stopped")
-        if self._running is None:
-            self._running = _start()
-        running = self._running
+        running = self.start()
         with suppress(BrokenPipeError):  # of one that has died: it has no answer, and its last words are told
             running.tasks.write(json.dumps(folder) + "\n")
             running.tasks.flush()
@@ -148,6 +169,48 @@ class _DrawingProcess:
             for pipe in (running.tasks, running.answers, running.troubles):
                 with suppress(BrokenPipeError):
                     pipe.close()
+
+
+class EarlyPictures:
+    """Pictures that are drawn beside other work, in a folder of their own until the results are written.
+
+    Parameters
+    ----------
+    process : _DrawingProcess
+    folder : path
+    """
+
+    def __init__(self, process: _DrawingProcess, folder: Path) -> None:
+        self._process, self._folder = process, folder
+        self._drawings: list[Future[Any]] = []
+
+    def draw(self, draw: Callable[..., Any], *arguments: Any, **named: Any) -> None:
+        """Have a function draw into the folder, which takes that as ``place``, and says nothing of its progress."""
+        drawing = self._process.beside(draw, *arguments, place=self._folder, progress=silent, **named)
+        self._drawings.append(drawing)
+
+    def move_to(self, place: Path) -> set[str]:
+        """Wait for the pictures, and move them into a folder; their names without ending.
+
+        Raises
+        ------
+        RendererUnavailableError, OSError
+            As :func:`draw_in_process`.
+        """
+        for drawing in self._drawings:
+            drawing.result()
+        files = list(self._folder.glob("*"))
+        for file in files:
+            shutil.move(file, place / file.name)
+        return {file.stem for file in files}
+
+
+@contextmanager
+def early_pictures() -> Iterator[EarlyPictures]:
+    """Start the drawing process of this block, and draw beside its other work."""
+    with tempfile.TemporaryDirectory() as folder, one_process() as process:
+        process.start()
+        yield EarlyPictures(process, Path(folder))
 
 
 class _Running(NamedTuple):
@@ -233,7 +296,8 @@ def _draw(desk: Path) -> list[str]:
         _tell({"progress": message})
 
     if task["format"] == "png":
-        files = render_shapes(housing, shapes, folder, view=view, beside=task["beside"], progress=progress)
+        new = [shape for shape in shapes if shape.name not in task["drawn"]]
+        files = render_shapes(housing, new, folder, view=view, beside=task["beside"], progress=progress) if new else []
         if task["sheet"] is not None:
             progress("drawing all on one sheet")
             files.append(render_sheet(housing, shapes, folder / task["sheet"], view=view))
@@ -245,6 +309,8 @@ def _draw(desk: Path) -> list[str]:
 def _main() -> None:
     # An interruption of the command ends this process by the command's own hand.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(RendererUnavailableError):  # the answer to the first task says that
+        load_pyvista()
     for line in sys.stdin:
         try:
             _tell({"files": _draw(Path(json.loads(line)))})

@@ -1,6 +1,6 @@
 """Mode pictures: the selection of mode shapes, and their drawing as pictures, films or animated models."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -96,6 +96,9 @@ def draw_modes(
     place: Path,
     progress: Progress,
     besides: Iterable[int] = (),
+    *,
+    with_sheet: bool = True,
+    drawn: Collection[str] = (),
 ) -> list[str]:
     """Draw modes into a folder and name the files.
 
@@ -114,6 +117,10 @@ def draw_modes(
     progress : callable
     besides : iterable of int
         Numbers of further modes.
+    with_sheet : bool
+        Whether pictures of several modes have a sheet of all.
+    drawn : collection of str
+        Names of pictures that are drawn already, without ending.
     """
     notes = {}
     if comparison is not None:
@@ -139,8 +146,8 @@ def draw_modes(
 
     surface = drawn_housing(housing.mesh, housing.up)
     shapes = drawn_modes(surface, housing.modes, numbers, notes)
-    sheet = "modes.png" if len(numbers) > 1 and mode_format == "png" else None
-    return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet)
+    sheet = "modes.png" if with_sheet and len(numbers) > 1 and mode_format == "png" else None
+    return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet, drawn=drawn)
 
 
 def draw_lines(

@@ -174,7 +174,10 @@ class Study(StudiedMachine):
             aligned_by_default=self.aligned_by_default,
         )
         if ranked:
-            solved = replace(solved, sensitivity=self.ranked_parts(machine, solved.point, line))
+            ranking = self.ranked_parts(machine, solved.point, line)
+            solved = replace(solved, sensitivity=ranking)
+            if housing is not None and ranking.lines is not None:
+                housing = housing.with_responses(ranking.lines.responses)
         return load_result(solved, replace(self.origin, housing=housing), self.progress)
 
     def system(

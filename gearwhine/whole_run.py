@@ -15,6 +15,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling.analyses.condition_record import bearing_tones
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.drawing_process import EarlyPictures, early_pictures, one_process
 from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.numerics.progress import Progress
@@ -52,7 +53,8 @@ class WholeRun:
     until_written : ExitStack, optional
         Closed by the caller when the results are written; the blocks are stored until then.
     pictures : bool
-        Whether modes are to be drawn: a missing renderer then raises before the work.
+        Whether modes are to be drawn: a missing renderer then raises before the work, and the drawing process starts
+        beside it.
     """
 
     def __init__(
@@ -68,6 +70,9 @@ class WholeRun:
         if pictures and study.has_housing:
             _require_renderer()
         self.study, self.plan, self.folder, self.until_written = study, plan, folder, until_written
+        self._early: EarlyPictures | None = None
+        if pictures and study.has_housing and until_written is not None:
+            self._early = until_written.enter_context(early_pictures())
         self.document: Document = {"title": study.origin.title}
         self.solution = RunSolution()
         self.machine: MachineUnderLoad | None = None
@@ -88,6 +93,7 @@ class WholeRun:
             ("load", self._load),
             ("rotors_and_gears", self._gears),
             ("housing", self._housing),
+            ("pictures", self._draw_early),
             ("system", self._system),
             ("transient", self._motion),
             ("sound", self._sound),
@@ -101,7 +107,7 @@ class WholeRun:
         if self.solution.transient is not None:
             self._seconds["time_stepping"] = self.solution.transient.result.seconds
         self.document["seconds"] = self._seconds | {"total": time.perf_counter() - self._started}
-        files = partial(_write_files, self.solution, self.document, self.study.progress)
+        files = partial(_write_files, self.solution, self.document, self.study.progress, self._early)
         return self.solution.result("run", self.study.origin, self.document, _files=files, _started=self._started)
 
     def _rotors(self) -> Document:
@@ -136,6 +142,14 @@ class WholeRun:
             document["compare"] = comparison_document(compared.comparison, housing)
             add_warnings(document, comparison_warnings(compared.comparison, housing.modes, compared.test.modes))
         return document
+
+    def _draw_early(self) -> None:
+        """Have the modes that are shown in any case, and the housing under load, drawn beside the rest of the work."""
+        housing, comparison, load = self.solution.housing, self.solution.comparison, self.solution.load
+        if self._early is not None and housing is not None:
+            self._early.draw(draw_modes, housing, comparison, "dominant", "auto", "png", with_sheet=False)
+            if load is not None:
+                self._early.draw(draw_load_pictures, housing, load)
 
     def _system(self) -> Document | None:
         if self.machine is None:
@@ -203,25 +217,40 @@ class WholeRun:
 
 
 def _write_files(
-    solved: RunSolution, document: Document, progress: Progress, place: Path, *, pictures: bool
+    solved: RunSolution,
+    document: Document,
+    progress: Progress,
+    early: EarlyPictures | None,
+    place: Path,
+    *,
+    pictures: bool,
 ) -> dict[str, Any]:
     """Write the mode shapes and the comparison of a run, and draw its pictures."""
     housing, comparison = solved.housing, solved.comparison
     if housing is None:
         return {}
-    write_shapes(place / "modes.vtu", housing)
     if comparison is not None:
         write_comparison(place, comparison)
-    if not pictures:
-        return {}
-    from gearwhine.drawing_process import one_process
+    if pictures:
+        _draw_pictures(solved, document, progress, early, place)
+    write_shapes(place / "modes.vtu", housing)
+    return {}
 
+
+def _draw_pictures(
+    solved: RunSolution, document: Document, progress: Progress, early: EarlyPictures | None, place: Path
+) -> None:
+    """Draw the pictures of a run that were not drawn early."""
+    housing, comparison = solved.housing, solved.comparison
+    if housing is None:
+        return
+    drawn = set() if early is None else early.move_to(place)
     with one_process():
         # The tables of lines name modes, and the report links their pictures.
         lines_told = leading_lines(document.get("sensors", ()), "peaks")
         named = {row["by_mode"] for row in lines_told if row["by_mode"] is not None}
-        draw_modes(housing, comparison, "dominant", "auto", "png", place, progress, named)
-        if solved.load is not None:
+        draw_modes(housing, comparison, "dominant", "auto", "png", place, progress, named, drawn=drawn)
+        if solved.load is not None and "load-housing" not in drawn:
             draw_load_pictures(housing, solved.load, place, progress)
         if solved.sound is not None:
             draw_sound_pictures(solved.sound, place, progress, housing.up)
@@ -229,7 +258,6 @@ def _write_files(
             lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
             if lines:
                 draw_operating_shapes(housing, lines, "auto", "png", place, progress)
-    return {}
 
 
 def _require_renderer() -> None:

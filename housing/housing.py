@@ -7,6 +7,7 @@ seats and sensors, damping), what a measurement is compared with, and what sound
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -103,6 +104,7 @@ _TWO_PI = 2.0 * np.pi
 _PART: Part = ("housing", "")
 _UPWARDS = (0.0, 1.0, 0.0)
 _DAMPING = "modal_damping"  # name of the damping matrix in a mode-set file
+_RESPONSES = "responses_"  # begin of the names of further responses in that file
 _COORDINATES = ("coordinate", "other_coordinate")
 _SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the selection of modes
 
@@ -463,20 +465,19 @@ class Housing:
             refuse([finding], HousingError)
             raise
         damping = modal_damping(modes, whole) if whole.damping.nnz else None
-        progress("estimating the error by the mesh")
+        progress("checking the housing against its geometry, and estimating the error by the mesh")
         begin = time.perf_counter()
-        modes = self.with_discretisation_errors(free, whole, modes)
-        estimated = time.perf_counter() - begin
-        progress("checking the housing against its geometry")
-        begin = time.perf_counter()
-        health = self.health(free, whole, modes)
+        with ThreadPoolExecutor(1) as beside:
+            estimate = beside.submit(self.with_discretisation_errors, free, whole, modes)
+            health, masses = self.health(free, whole, modes), effective_mass(whole, self.mesh.points, modes)
+        modes = estimate.result()
+        health = health.with_discretisation(modes)
         health.require()
-        masses = effective_mass(whole, self.mesh.points, modes)
         checked = time.perf_counter() - begin
         warnings = defect_warnings(defects) + discretisation_warnings(
             self.mesh, self.material, modes, mesh_size=self.mesh_size, below_limit=below_hz is not None
         )
-        seconds = {"assembly": assembled, **modes.seconds, "error_estimate": estimated, "checks": checked}
+        seconds = {"assembly": assembled, **modes.seconds, "checks": checked}
         record = ModeRecord(
             self.mesh,
             modes,
@@ -791,6 +792,27 @@ class HousingModes:
         if damping_matrix is not None:
             extras[_DAMPING] = _damping_array(damping_matrix)
         return replace(self, record=replace(self.record, modes=modes, extras=extras))
+
+    @property
+    def responses(self) -> dict[str, FloatArray]:
+        """Responses that an extension of the modes has found before, see :class:`ModeSetExtension`."""
+        return {
+            name.removeprefix(_RESPONSES): array.values
+            for name, array in self.record.extras.items()
+            if name.startswith(_RESPONSES)
+        }
+
+    def with_responses(self, responses: Mapping[str, FloatArray]) -> "HousingModes":
+        """Return the housing that keeps responses in place of earlier ones, in its file of modes too."""
+        # An empty dimension has another meaning in NetCDF.
+        responses = {key: values for key, values in responses.items() if len(values)}
+        if responses.keys() == self.responses.keys():
+            return self
+        extras = {name: array for name, array in self.record.extras.items() if not name.startswith(_RESPONSES)}
+        for key, values in responses.items():
+            axes, long_name = (f"response_{key}", "node", "component"), "displacements beside the residual modes"
+            extras[f"{_RESPONSES}{key}"] = LabelledArray(axes, values, "m", long_name)
+        return replace(self, record=replace(self.record, extras=extras), source_holds=False)
 
     @cached_property
     def with_a_response_less(self) -> "tuple[HousingModes, FloatArray] | None":

@@ -1,5 +1,6 @@
 """Trust-region Newton method: the minimum of a convex function with its exact Hessian, from any start."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -82,7 +83,7 @@ def minimise(function: Callable[[FloatArray], Local], start: FloatArray, radius:
         # Within rounding the decrease is meaningless, and the ratio tends to one.
         noise = 10.0 * _EPSILON * max(local.noise, trial.noise)
         ratio = (local.value - trial.value + noise) / (predicted + noise)
-        length = float(np.linalg.norm(step))
+        length = _norm(step)
         if ratio < 0.25:
             radius = 0.25 * length
         elif ratio > 0.75:
@@ -103,7 +104,7 @@ def _residual(local: Local) -> float:
 
 def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
     """Minimiser of the local quadratic within the radius, and the decrease of the quadratic."""
-    values, vectors = linalg.eigh(local.hessian)
+    values, vectors = linalg.eigh(local.hessian, check_finite=False)
     values = np.maximum(values, 0.0)
     slope = vectors.T @ local.gradient
     flat = (values <= _FLAT_DIRECTION_SHARE * values[-1]) & (np.abs(slope) <= 100.0 * _EPSILON * local.force)
@@ -112,7 +113,7 @@ def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
         return np.zeros_like(slope), 0.0
     values = np.where(flat, max(float(values[-1]), 1.0), values)
     # |step| falls with the shift; a shift of |slope| / radius is always enough, as values are not negative.
-    low, high = 0.0, float(np.linalg.norm(slope)) / radius
+    low, high = 0.0, _norm(slope) / radius
     shift = 0.0
     if values.min() <= _EPSILON * high or _length(slope, values, 0.0) > radius:
         shift = high
@@ -131,4 +132,8 @@ def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
 
 
 def _length(slope: FloatArray, values: FloatArray, shift: float) -> float:
-    return float(np.linalg.norm(slope / (values + shift)))
+    return _norm(slope / (values + shift))
+
+
+def _norm(vector: FloatArray) -> float:
+    return math.sqrt(vector @ vector)  # a tenth of the time of numpy's on a few numbers

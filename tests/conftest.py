@@ -67,8 +67,21 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
-# Folders with files that take long, the longest first.
-_LONG = ("validation", "end_to_end", "property", "housing")
+# Files and folders that take long, the longest first.
+_LONG = (
+    "end_to_end/test_pages_with_commands.py",
+    "validation/test_nasa_rig.py",
+    "end_to_end/test_sweep_command.py",
+    "gearwhine/solve/sound/test_sound.py",
+    "gearwhine/solve/sensitivity",
+    "end_to_end/test_interruption_in_phases.py",
+    "gearwhine/detection",
+    "validation",
+    "end_to_end",
+    "examples",
+    "property",
+    "housing",
+)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -78,15 +91,23 @@ def pytest_configure(config: pytest.Config) -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not import files without slow tests where these alone are run."""
+    if config.option.markexpr == "slow" and collection_path.suffix == ".py":
+        return b"mark.slow" not in collection_path.read_bytes() or None
+    return None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the folders of long files, so that processes that share the files end together."""
+    """Begin with long files, so that processes that share the files end together."""
     tests = Path(__file__).parent
 
-    def turn(item: pytest.Item) -> int:
-        folder = item.path.relative_to(tests).parts[0] if item.path.is_relative_to(tests) else ""
-        return _LONG.index(folder) if folder in _LONG else len(_LONG)
+    @cache
+    def turn(file: Path) -> int:
+        name = file.relative_to(tests).as_posix() if file.is_relative_to(tests) else ""
+        return next((place for place, long in enumerate(_LONG) if name.startswith(long)), len(_LONG))
 
-    items.sort(key=turn)
+    items.sort(key=lambda item: turn(item.path))
 
 
 def pytest_collection_finish() -> None:
@@ -198,16 +219,23 @@ _POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4
 
 
 @pytest.fixture(scope="module")
-def unrendered() -> Iterator[None]:
-    """Build the figures of a module's results and leave files of one point each: to render them takes long."""
+def unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Build the figures of a module's results and leave files of one point each: to render them takes long.
+
+    A module marked ``rendered`` is of the pictures, and has them as users do.
+    """
+    if request.node.get_closest_marker("rendered"):
+        yield
+        return
     from matplotlib.figure import Figure
 
     from gearwhine import drawing_process
 
     def shapes_unrendered(
-        housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None, beside: str | None = None
+        housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None, drawn: Any = (), **__: Any
     ) -> list[str]:
-        names = [f"{shape.name}.png" for shape in shapes] + ([] if sheet is None else [sheet])
+        names = [f"{shape.name}.png" for shape in shapes if shape.name not in drawn]
+        names += [] if sheet is None else [sheet]
         for name in names:
             (folder / name).write_bytes(_POINT)
         return names

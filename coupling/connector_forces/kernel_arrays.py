@@ -10,7 +10,7 @@ Rolling-bearing and gap laws are plain arrays too.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -278,7 +278,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         if isinstance(connector.law, RollingLaw):
             preload[number] = connector.law.state.bearing.axial_preload
             floating[number] = connector.law.state.bearing.floating
-        rows += _rows(connector.law, connector.speed)
+        rows += _rows(connector.law, connector.speed, connector.holder_speed)
         first.append(first[-1] + d)
         first_row.append(len(rows))
     shape, slices = (
@@ -307,7 +307,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
     )
 
 
-def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
+def _rows(law: BearingLaw, speed: float, holder_speed: float) -> Iterator[Row]:
     """Kind, count, numbers, cage, slices and spalls of every row of a law."""
     none = np.zeros((0, 2))
     if isinstance(law, GapLaw):
@@ -315,9 +315,12 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
         return
     bearing = law.state.bearing
     for number, row in enumerate(bearing.rows):
-        cage = law.cage_angle, row.cage_speed(speed)
+        cage = law.cage_angle, row.cage_speed(speed) + holder_speed
         of_row = [spall for spall in law.spalls if spall.row == number]
-        spalls = [tuple(map(float, astuple(one))) for spall in of_row for one in spall_contacts(spall, bearing, speed)]
+        contacts = [one for spall in of_row for one in spall_contacts(spall, bearing, speed)]
+        # Raceways turn with what holds their ring; an element spins by the speed between the rings.
+        carried = [one if one.element >= 0 else replace(one, rate=one.rate + holder_speed) for one in contacts]
+        spalls = [tuple(map(float, astuple(one))) for one in carried]
         if isinstance(row, BallRow):
             yield BALLS, row.count, _ball_shape(row), cage, none, spalls
         else:

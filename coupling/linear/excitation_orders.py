@@ -23,6 +23,8 @@ from gearwhine.coupling.machine.mounted_parts import GearMesh
 
 _TWO_PI = 2.0 * math.pi
 _STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line
+_Steps = Sequence[tuple[str, float, float]]
+"""Causes of a sideband: name, order of its frequency, signed number of the sideband."""
 
 
 @dataclass(frozen=True)
@@ -114,26 +116,12 @@ def excitation_lines(
     leading = abs(speeds[machine.leading_rotor])
     if leading == 0.0:
         raise CouplingError(f"rotor {machine.leading_rotor!r} stands still; expected a machine that turns")
-    turning = speeds if excited is None else rotations(machine)
-    ratios = {name: abs(speed) / leading for name, speed in turning.items() if speed != 0.0}
-    together: dict[float, list[str]] = {}
-    for name, ratio in ratios.items():
-        together.setdefault(round(ratio, 12), []).append(name)
-    lines = []
-    for together_names in together.values():
-        for multiple in shaft_orders:
-            names = [name for name in together_names if excited is None or _holds(excited, name, multiple)]
-            if names:
-                lines.append(ExcitationLine(f"{multiple:g}× {', '.join(names)}", "shaft", multiple * ratios[names[0]]))
     by_turning: list[_Steps] = [
         [(carrier, abs(speeds[carrier]) / leading, number) for carrier, number in one.turns]
         for one in by_carriers or ()
     ]
-    for parts in by_turning:
-        order = sum(number * ratio for _, ratio, number in parts)
-        if order > _STANDSTILL:
-            lines.append(ExcitationLine(_in_words(parts).removeprefix("+ "), "shaft", order))
     loads = tuple(_harmonic_loads(machine, leading)) if load_multiples else ()
+    lines = [*_shaft_lines(machine, leading, shaft_orders, excited), *_carrier_lines(by_turning)]
     lines += [
         ExcitationLine(f"{multiple}× {name}", "load", multiple * order)
         for name, order in loads
@@ -142,53 +130,89 @@ def excitation_lines(
     for mesh in machine.meshes:
         frame = 0.0 if mesh.carrier is None else speeds[mesh.carrier]
         turns = {gear.rotor: abs(speeds[gear.rotor] - frame) / leading for gear in (mesh.driven, mesh.driver)}
-        teeth = abs(mesh.geometry.driver.teeth) * turns[mesh.driver.rotor]
-        name = mesh.name
         # A modulation of the mesh mixes with itself: every number of sidebands comes from the first order alone.
         shafts = {
             round(ratio, 12): (in_carrier(rotor, mesh, frame), ratio)
             for rotor, ratio in turns.items()
             if ratio > 0.0 and (excited is None or rotor in excited or in_carrier(rotor, mesh, frame) in excited)
         }
-        modulations = [*shafts.values(), *loads]
-        steps: list[_Steps] = [
-            [(source, ratio, number)] for source, ratio in modulations for number in _signed(sidebands)
+        of_gears: list[_Steps] = [
+            [(source, ratio, number)] for source, ratio in [*shafts.values(), *loads] for number in _signed(sidebands)
         ]
         # A mesh that circles modulates what stands still, whatever the quality of its teeth.
         passing = by_turning
         if by_carriers is None and frame != 0.0 and mesh.carrier is not None:
             passing = [[(mesh.carrier, abs(frame) / leading, number)] for number in _signed(sidebands)]
-        both = [] if excited is None else [[*of_gear, *by] for of_gear in steps for by in passing]
+        both = [] if excited is None else [[*of_gear, *by] for of_gear in of_gears for by in passing]
         farthest = max([sidebands, *(_count(by) for by in by_turning)])
-        steps = [*passing, *steps, *(of for of in both if _count(of) <= farthest)]
-        for harmonic in mesh_harmonics:
-            lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
-            for parts in steps:
-                # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
-                order = abs(harmonic * teeth + sum(number * ratio for _, ratio, number in parts))
-                if order > _STANDSTILL * teeth:
-                    text = f"{harmonic}× {name} {_in_words(parts)}"
-                    lines.append(ExcitationLine(text, "sideband", order, _count(parts)))
+        steps = [*passing, *of_gears, *(of for of in both if _count(of) <= farthest)]
+        teeth = abs(mesh.geometry.driver.teeth) * turns[mesh.driver.rotor]
+        lines += _mesh_lines(mesh.name, teeth, mesh_harmonics, steps)
+    lines += _bearing_lines(machine, leading, element_passes, sidebands)
+    return tuple(lines)
+
+
+def _shaft_lines(
+    machine: CoupledMachine, leading: float, orders: Sequence[float], excited: Mapping[str, ExcitedOrders] | None
+) -> Iterator[ExcitationLine]:
+    """Yield the orders of rotations that are excited; those of equal speed share a line."""
+    turning = machine.speeds if excited is None else rotations(machine)
+    ratios = {name: abs(speed) / leading for name, speed in turning.items() if speed != 0.0}
+    together: dict[float, list[str]] = {}
+    for name, ratio in ratios.items():
+        together.setdefault(round(ratio, 12), []).append(name)
+    for together_names in together.values():
+        for multiple in orders:
+            names = [name for name in together_names if excited is None or _holds(excited, name, multiple)]
+            if names:
+                yield ExcitationLine(f"{multiple:g}× {', '.join(names)}", "shaft", multiple * ratios[names[0]])
+
+
+def _carrier_lines(by_turning: Sequence[_Steps]) -> Iterator[ExcitationLine]:
+    """Yield the orders of carriers under the mean load."""
+    for steps in by_turning:
+        order = sum(number * ratio for _, ratio, number in steps)
+        if order > _STANDSTILL:
+            yield ExcitationLine(_in_words(steps).removeprefix("+ "), "shaft", order)
+
+
+def _mesh_lines(
+    name: str, teeth: float, harmonics: Sequence[int], sidebands: Sequence[_Steps]
+) -> Iterator[ExcitationLine]:
+    """Yield the harmonics of a mesh, ``teeth`` of which pass in a turn of the leading rotor, with their sidebands."""
+    for harmonic in harmonics:
+        yield ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth)
+        for steps in sidebands:
+            # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
+            order = abs(harmonic * teeth + sum(number * ratio for _, ratio, number in steps))
+            if order > _STANDSTILL * teeth:
+                yield ExcitationLine(f"{harmonic}× {name} {_in_words(steps)}", "sideband", order, _count(steps))
+
+
+def _bearing_lines(
+    machine: CoupledMachine, leading: float, element_passes: Sequence[int], sidebands: int
+) -> Iterator[ExcitationLine]:
+    """Yield the passing of rolling elements, and the strikes of spalls with the sidebands of what turns them."""
     struck = spall_strikes(machine.system)
-    lines += [
-        ExcitationLine(f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading)
-        for name, frequencies in passing_frequencies(machine.system).items()
-        for frequency in frequencies
-        # Elements pass a spall of the ring at rest as often as any place of it.
-        if not any(one.bearing == name and math.isclose(one.frequency, frequency) for one in struck)
-        for multiple in element_passes
-    ]
+    for name, frequencies in passing_frequencies(machine.system).items():
+        for frequency in frequencies:
+            # Elements pass a spall of the ring at rest as often as any place of it.
+            if any(one.bearing == name and math.isclose(one.frequency, frequency) for one in struck):
+                continue
+            for multiple in element_passes:
+                yield ExcitationLine(
+                    f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading
+                )
     for strikes in struck:
         steps_beside = [0, *_signed(sidebands)] if strikes.turning else [0]
         for multiple, number in product(element_passes, steps_beside):
             order = abs(multiple * strikes.frequency + number * strikes.turning_frequency) * _TWO_PI / leading
             text = f"{multiple}× {strikes.name}"
             if number == 0:
-                lines.append(ExcitationLine(text, "bearing", order))
+                yield ExcitationLine(text, "bearing", order)
             elif order > _STANDSTILL:
                 beside = _in_words([(strikes.turning, strikes.turning_frequency, number)])
-                lines.append(ExcitationLine(f"{text} {beside}", "sideband", order, abs(number)))
-    return tuple(lines)
+                yield ExcitationLine(f"{text} {beside}", "sideband", order, abs(number))
 
 
 def meshes_of_planets(machine: CoupledMachine, carrier: str) -> str:
@@ -209,10 +233,6 @@ def joined_causes(machine: CoupledMachine, names: Sequence[str]) -> str:
                 left[left.index(name)] = f"{before}{meshes_of_planets(machine, carrier)}{after}"
                 left = [one for one in left if one not in alike]
     return ", ".join(left)
-
-
-_Steps = Sequence[tuple[str, float, float]]
-"""Causes of a sideband: name, order of its frequency, signed number of the sideband."""
 
 
 def _signed(sidebands: int) -> list[int]:

@@ -6,25 +6,23 @@ the nominal speed the motion of the harmonic of frequency s ω_n is
 
     (K(s) + i s ω_n C(s) - s² ω_n² I) q_n = f_n,      C(s) = C + (s - 1) G,
 
-f_n as of :mod:`gearwhine.coupling.linear.mesh_harmonics`: one assembled machine gives all speeds. Between them lie the
-lines of pitch deviations, runout and damage, :mod:`gearwhine.coupling.linear.unequal_teeth`.
+f_n as of :mod:`gearwhine.coupling.linear.mesh_harmonics`: one assembled machine gives all speeds. The mesh stiffness
+that varies changes these lines (:mod:`gearwhine.coupling.linear.parametric_stiffness`), and between them lie those of
+pitch deviations, runout and damage, :mod:`gearwhine.coupling.linear.unequal_teeth`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
-from scipy import linalg
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.linear.unequal_teeth import unequal_teeth, unequal_teeth_rms
+from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
-from gearwhine.numerics.arrays import FloatArray
-
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,27 +123,40 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
     if not ratios or min(ratios) <= 0.0:
         raise CouplingError(f"lines over speed: speeds of {list(speeds)} rad/s beside {nominal:g}; expected one sense")
     model = MeshHarmonicModel(machine)
-    loads, teeth = model.loads(limit / min(ratios)), unequal_teeth(model, limit / min(ratios))
+    highest = limit / min(ratios)
+    meshes = varying_meshes(model, highest)
+    further = model.loads(highest + max((mesh.rate * mesh.reach for mesh in meshes), default=0.0))
+    loads = [load for load in further if load.frequency <= highest * (1.0 + 1e-9)]
     stiffness, damping = linear_matrices(system, model.contact)
     here = system.connector_matrices()
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, system.size)
     amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
     between, moves = np.zeros(amplitudes.shape[:2]), _housing_rows(machine)
-    rates = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128)
+    rates, outputs = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128), np.vstack([rows, moves])
     for place, ratio in enumerate(ratios):
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
         resisted = damping + (ratio - 1.0) * system.gyroscopic + (there[1] - here[1])
-        between[:, place] = unequal_teeth_rms(model, teeth, rows, ratio, held, resisted, limit)
-        for number, load in enumerate(loads):
+        linear = DampedMachine(held, resisted)
+        motions = [linear.motion(ratio * load.frequency, load.load) for load in further]
+        harmonics = {cause: motion for load, motion in zip(further, motions, strict=True) for cause in load.causes}
+        lines = lines_of_meshes(
+            [mesh.up_to(limit, ratio) for mesh in meshes],
+            model.contact,
+            system.contact_directions,
+            outputs,
+            linear,
+            harmonics,
+            ratio=ratio,
+            limit=limit,
+        )
+        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(lines.between[: len(rows)]) ** 2, axis=1))
+        for number, (load, motion) in enumerate(zip(loads, motions, strict=False)):
             w = ratio * load.frequency
-            if w > limit * (1.0 + 1e-9):
-                continue
-            dynamic = held + 1j * w * resisted
-            dynamic[np.diag_indices(system.size)] -= w**2
-            moved = linalg.solve(dynamic, load.load, overwrite_a=True, check_finite=False)
-            amplitudes[:, place, number] = w**2 * np.abs(rows @ moved)
-            rates[place, number] = 1j * w * (moves @ moved)
+            if w <= limit * (1.0 + 1e-9):
+                moved = sum((lines.by_stiffness[cause] for cause in load.causes), -(w**2) * (outputs @ motion))
+                amplitudes[:, place, number] = np.abs(moved[: len(rows)])
+                rates[place, number] = moved[len(rows) :] / (1j * w)
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
     given = np.array(speeds, dtype=np.float64)
     return LinesOverSpeed(given, orders, tuple(machine.sensor_rows), amplitudes, between, rates)

@@ -1,175 +1,203 @@
-r"""Lines between the mesh harmonics, of what differs between teeth: pitch deviations, runout and damage.
+r"""Lines of meshes in a machine about its mean load: mesh harmonics, and between them what differs between teeth.
 
-The transmission error of a mesh whose teeth differ repeats after H mesh periods, the hunting period, with amplitudes
-e_k at k / H times the mesh frequency; between mesh harmonics, k no multiple of H, they are of what differs. Runout has
-harmonics of its own, at the turns of its gear. The machine linear about its mean load answers k e d, to runout
-(k + i omega c) e d. The lines are many, 1674 of each mesh harmonic with 27 and 62 teeth, so that their motion is that
-of the modes of the damped machine,
+The transmission error of a mesh whose teeth differ, by pitch deviations or damage, repeats after H mesh periods, the
+hunting period, with amplitudes e_k at k/H times the mesh frequency; runout has harmonics of its own, at the turns of
+its gear. The machine answers (k + i ω c) e d, the second term to runout alone, less the changes of the mesh force by
+the stiffness that varies (:mod:`gearwhine.coupling.linear.parametric_stiffness`). The lines are many, 1674 of each mesh
+harmonic with 27 and 62 teeth, so that their motion is that of the modes of the damped machine,
 
-    q(omega) = sum_m r_m l_m / (i omega - lambda_m),
+    q(ω) = Σ_m r_m l_m / (i ω − λ_m),
 
-lambda, r the eigenvalues and right eigenvectors of the state matrix and l what they have of d. The highest line is
-solved directly, too; where the two differ, as with eigenvectors that are nearly one, all lines are solved so.
+λ, r the eigenvalues and right eigenvectors of the state matrix and l what they have of d. The highest answer is solved
+directly, too; where the two differ, as with eigenvectors that are nearly one, all are solved so.
 """
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
-from gearwhine.coupling.gears.loaded.transmission_error import phasors_between
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.numerics.arrays import FloatArray
+from gearwhine.coupling.linear.mesh_harmonics import Cause
+from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh, harmonic_compressions
+from gearwhine.coupling.statics.mean_mesh import ContactState
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
-ComplexArray = npt.NDArray[np.complex128]
-
-_ALIKE_DIGITS = 9  # digits of the order of lines that are one
+_ALIKE_DIGITS = 9  # digits of the frequency of lines that are one
+_FEW = 25  # frequencies below which a solution at each is less work than the modes
 _AT_ONCE = 2000  # frequencies whose motions are summed together
-_AGREES = 1e-6  # of the highest line by modes and directly
+_AGREES = 1e-6  # of the highest answer by modes and directly
+_WITHIN = 1e-9  # part of a limit
 
 
 @dataclass(frozen=True, eq=False)
-class UnequalTeeth:
-    """Excitation of a machine by what differs between the teeth of its meshes, at nominal speed.
+class DampedMachine:
+    """A linear machine of unit modal masses at one speed.
 
     Attributes
     ----------
-    frequency : ndarray, shape (l,)
-        Ascending [rad/s].
-    contact : ndarray of int, shape (l,)
-        Number of the contact in the system.
-    error : ndarray of complex, shape (l,)
-        Amplitude e at t = 0 [m].
-    damped : ndarray of bool, shape (l,)
-        Whether the damping of the mesh passes it on, too, as of runout.
-    """
-
-    frequency: FloatArray
-    contact: npt.NDArray[np.int64]
-    error: ComplexArray
-    damped: npt.NDArray[np.bool_]
-
-
-def unequal_teeth(model: MeshHarmonicModel, limit: float) -> UnequalTeeth:
-    """Return the lines between mesh harmonics up to a limit at nominal speed [rad/s]."""
-    found = [part for number in model.loaded for part in _of_contact(model, number, limit)]
-    if not found:
-        none = np.empty(0)
-        return UnequalTeeth(none, none.astype(np.int64), none.astype(np.complex128), none.astype(np.bool_))
-    frequency = np.concatenate([part[0] for part in found])
-    order = np.argsort(frequency, kind="stable")
-    contact = np.concatenate([np.full(part[0].size, part[1]) for part in found])
-    damped = np.concatenate([np.full(part[0].size, part[3]) for part in found])
-    return UnequalTeeth(
-        frequency[order], contact[order], np.concatenate([part[2] for part in found])[order], damped[order]
-    )
-
-
-def _of_contact(
-    model: MeshHarmonicModel, number: int, limit: float
-) -> Iterator[tuple[FloatArray, int, ComplexArray, bool]]:
-    contact, mesh = model.machine.system.contacts[number], model.meshes[number]
-    periods, rate = contact.contact.hunting_period, 2.0 * np.pi * abs(contact.mesh_frequency)
-    sense = np.sign(contact.mesh_frequency)
-    if periods > 1:
-        orders = np.arange(1, int(limit / rate * periods * (1.0 + 1e-9)) + 1)
-        orders = orders[orders % periods != 0]
-        error = phasors_between(mesh.phases, mesh.transmission_error, orders)
-        error = error if sense > 0.0 else error.conj()
-        yield (
-            orders / periods * rate,
-            number,
-            error * np.exp(2j * np.pi * sense * orders / periods * contact.phase),
-            False,
-        )
-    rows = contact.errors[(contact.errors[:, 0] != 0.0) & (np.abs(contact.errors[:, 1]) <= limit * (1.0 + 1e-9))]
-    rows = rows[rows[:, 1] != 0.0]
-    if rows.size:
-        yield np.abs(rows[:, 1]), number, rows[:, 0] * np.exp(1j * rows[:, 2] * np.sign(rows[:, 1])), True
-
-
-def unequal_teeth_rms(
-    model: MeshHarmonicModel,
-    teeth: UnequalTeeth,
-    rows: FloatArray,
-    ratio: float,
-    stiffness: FloatArray,
-    damping: FloatArray,
-    limit: float,
-) -> FloatArray:
-    """Root mean square of the accelerations along rows by these lines together, shape (o,) [m/s²].
-
-    Parameters
-    ----------
-    model : MeshHarmonicModel
-    teeth : UnequalTeeth
-    rows : ndarray, shape (o, n)
-        Rows of the motions at sensors.
-    ratio : float
-        Speed over the nominal one.
     stiffness, damping : ndarray, shape (n, n)
-        Of the machine linear about its mean load at that speed.
-    limit : float
-        Highest frequency [rad/s].
     """
-    within = ratio * teeth.frequency <= limit * (1.0 + 1e-9)
-    if not np.any(within):
-        return np.zeros(len(rows))
-    frequency, contact, error = ratio * teeth.frequency[within], teeth.contact[within], teeth.error[within]
-    state = model.contact
-    law = state.stiffness[contact] + 1j * np.where(teeth.damped[within], frequency * state.damping[contact], 0.0)
-    _, line = np.unique(np.round(frequency / abs(ratio * model.machine.speed), _ALIKE_DIGITS), return_inverse=True)
-    directions = {number: model.machine.system.contacts[number].direction for number in np.unique(contact).tolist()}
-    loads: ComplexArray = law * error
-    size, count = stiffness.shape[0], int(line.max()) + 1
 
-    def directly(place: int) -> ComplexArray:
-        """Accelerations of one line along the rows, of all contacts that have it."""
-        of_line = np.flatnonzero(line == place).tolist()
-        w = float(frequency[of_line[0]])
-        load = sum(loads[at] * directions[int(contact[at])] for at in of_line)
-        dynamic = stiffness + 1j * w * damping - w**2 * np.eye(size)
-        return np.asarray(-(w**2) * (rows @ linalg.solve(dynamic, load)))
+    stiffness: FloatArray
+    damping: FloatArray
 
-    try:
-        lines = _by_modes(rows, stiffness, damping, frequency, contact, loads, line, directions)
-        highest = int(np.argmax(np.sum(np.abs(lines) ** 2, axis=0)))
-        known = directly(highest)
-        agrees = bool(np.linalg.norm(lines[:, highest] - known) <= _AGREES * np.linalg.norm(known))
-    except np.linalg.LinAlgError:
-        agrees = False
-    if not agrees:
-        lines = np.stack([directly(place) for place in range(count)], axis=1)
-    return np.asarray(np.sqrt(0.5 * np.sum(np.abs(lines) ** 2, axis=1)))
+    def motion(self, w: float, load: FloatArray | ComplexArray) -> ComplexArray:
+        """Motion by a harmonic load (n,) at a frequency [rad/s]."""
+        key = round(w, 6)
+        if key not in self._factors:
+            if len(self._factors) >= _FEW:
+                self._factors.clear()
+            dynamic = self.stiffness + 1j * w * self.damping
+            dynamic[np.diag_indices_from(dynamic)] -= w**2
+            self._factors[key] = linalg.lu_factor(dynamic, overwrite_a=True, check_finite=False)
+        return np.asarray(linalg.lu_solve(self._factors[key], load, check_finite=False))
 
+    def answers(self, outputs: FloatArray, direction: FloatArray, frequency: FloatArray) -> ComplexArray:
+        """Motions along rows (o, n) by a unit load along a direction (n,), shape (o, *frequency.shape).
 
-def _by_modes(
-    rows: FloatArray,
-    stiffness: FloatArray,
-    damping: FloatArray,
-    frequency: FloatArray,
-    contact: npt.NDArray[np.int64],
-    loads: ComplexArray,
-    line: npt.NDArray[np.int64],
-    directions: Mapping[int, FloatArray],
-) -> ComplexArray:
-    """Accelerations along rows by the modes of the damped machine, shape (o, lines)."""
-    size = stiffness.shape[0]
-    first = np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness, -damping]])
-    values, vectors = linalg.eig(first)
-    motions = rows @ vectors[:size]
-    lines = np.zeros((len(rows), int(line.max()) + 1), dtype=np.complex128)
-    for number, direction in directions.items():
-        # An ill-conditioned solution is found out by the line that is solved directly.
+        Those at frequencies of 0 are 0 [rad/s].
+        """
+        frequencies, places = np.unique(frequency, return_inverse=True)
+        found = np.zeros((len(outputs), frequencies.size), dtype=np.complex128)
+        first = int(np.searchsorted(frequencies, 0.0, side="right"))
+        found[:, first:] = self._answers(outputs, direction, frequencies[first:])
+        return np.asarray(found[:, places.ravel()].reshape(-1, *frequency.shape))
+
+    def _answers(self, outputs: FloatArray, direction: FloatArray, frequencies: FloatArray) -> ComplexArray:
+        if frequencies.size > _FEW:
+            with suppress(np.linalg.LinAlgError):
+                found = self._by_modes(outputs, direction, frequencies)
+                highest = int(np.argmax(np.max(np.abs(found), axis=0)))
+                known = outputs @ self.motion(float(frequencies[highest]), direction)
+                if np.max(np.abs(found[:, highest] - known)) <= _AGREES * np.max(np.abs(known)):
+                    return found
+        directly = [outputs @ self.motion(w, direction) for w in frequencies.tolist()]
+        return np.reshape(np.array(directly, dtype=np.complex128), (-1, len(outputs))).T
+
+    def _by_modes(self, outputs: FloatArray, direction: FloatArray, frequencies: FloatArray) -> ComplexArray:
+        values, vectors = self._modes
+        size = len(self.stiffness)
+        # An ill-conditioned solution is found out by the answer that is solved directly.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", linalg.LinAlgWarning)
             share = linalg.solve(vectors, np.concatenate([np.zeros(size), direction]))
-        of_it = np.flatnonzero(contact == number)
-        for begin in range(0, of_it.size, _AT_ONCE):
-            some = of_it[begin : begin + _AT_ONCE]
-            answer = (motions * share) @ (1.0 / (1j * frequency[some] - values[:, None]))
-            np.add.at(lines.T, line[some], (-(frequency[some] ** 2) * loads[some] * answer).T)
-    return lines
+        motions = (outputs @ vectors[:size]) * share
+        parts = np.array_split(frequencies, -(-frequencies.size // _AT_ONCE))
+        return np.concatenate([motions @ (1.0 / (1j * part - values[:, None])) for part in parts], axis=1)
+
+    @cached_property
+    def _modes(self) -> tuple[ComplexArray, ComplexArray]:
+        """Eigenvalues (2 n,) and right eigenvectors (2 n, 2 n) of the state matrix."""
+        size = len(self.stiffness)
+        state = np.block([[np.zeros((size, size)), np.eye(size)], [-self.stiffness, -self.damping]])
+        values, vectors = linalg.eig(state)
+        return np.asarray(values), np.asarray(vectors)
+
+    @cached_property
+    def _factors(self) -> dict[float, Any]:
+        """LU factors of the dynamic stiffness at the last frequencies."""
+        return {}
+
+
+@dataclass(frozen=True, eq=False)
+class LinesOfMeshes:
+    """Accelerations along some rows by all that varies with the phase of the meshes, at one speed.
+
+    Attributes
+    ----------
+    by_stiffness : dict of (int, int) to ndarray of complex, shape (o,)
+        Part of a mesh harmonic by the stiffness that varies, by contact and harmonic [m/s²].
+    frequency : ndarray, shape (l,)
+        Of the lines between the mesh harmonics, ascending [rad/s].
+    between : ndarray of complex, shape (o, l)
+        Their accelerations at t = 0 [m/s²].
+    """
+
+    by_stiffness: dict[Cause, ComplexArray]
+    frequency: FloatArray
+    between: ComplexArray
+
+
+def lines_of_meshes(
+    meshes: Sequence[VaryingMesh],
+    state: ContactState,
+    directions: FloatArray,
+    rows: FloatArray,
+    machine: DampedMachine,
+    harmonics: Mapping[Cause, ComplexArray],
+    *,
+    ratio: float = 1.0,
+    limit: float = np.inf,
+) -> LinesOfMeshes:
+    """Solve the lines of meshes along rows.
+
+    Parameters
+    ----------
+    meshes : sequence of VaryingMesh
+    state : ContactState
+        About the mean load.
+    directions : ndarray, shape (n, c)
+        Of all contacts of the system.
+    rows : ndarray, shape (o, n)
+        Rows of the motions at sensors.
+    machine : DampedMachine
+        Linear about its mean load, at this speed.
+    harmonics : mapping of (int, int) to ndarray of complex, shape (n,)
+        Motion at mesh harmonics with the mean stiffness, by all that drives it, by contact and harmonic.
+    ratio : float
+        Speed over the nominal one.
+    limit : float
+        Highest frequency of the lines between mesh harmonics [rad/s].
+    """
+    along = directions[:, [mesh.number for mesh in meshes]]
+    outputs, sensors = np.vstack([rows, along.T]), len(rows)
+    answers, compressions, loads = list[ComplexArray](), list[ComplexArray](), list[ComplexArray]()
+    for place, mesh in enumerate(meshes):
+        w, k = ratio * mesh.rate * mesh.orders, float(state.stiffness[mesh.number])
+        answer = machine.answers(outputs, along[:, place], np.abs(w))
+        answer = np.where(w < 0.0, answer.conj(), answer)
+        # A free train turns until its mesh carries the mean force again.
+        answer[:, 0, mesh.reach] = 0.0
+        answer[sensors + place, 0, mesh.reach] = 1.0 / k
+        load = mesh.loads(k, float(state.damping[mesh.number]), ratio)
+        moved = answer[sensors + place, 0] * load[0]
+        for (number, harmonic), motion in harmonics.items():
+            if number == mesh.number and harmonic <= mesh.reach:
+                moved[mesh.reach + harmonic] = 0.5 * (along[:, place] @ motion)
+                moved[mesh.reach - harmonic] = moved[mesh.reach + harmonic].conj()
+        answers.append(answer)
+        loads.append(load)
+        compressions.append(moved - mesh.error[0])
+    by_stiffness = dict[Cause, ComplexArray]()
+    frequencies, between = list[FloatArray](), list[ComplexArray]()
+    rates = np.array([mesh.rate for mesh in meshes])
+    for rate in np.unique(np.round(rates, 6)).tolist():
+        group = np.flatnonzero(np.round(rates, 6) == rate).tolist()
+        receptance = [[answers[column][sensors + row, 0] for column in group] for row in group]
+        pressed = harmonic_compressions([meshes[n] for n in group], [compressions[n] for n in group], receptance)
+        for number, compression in zip(group, pressed, strict=True):
+            mesh, answer = meshes[number], answers[number]
+            w, force = ratio * mesh.rate * mesh.orders, mesh.coupling[0] @ compression
+            for harmonic in range(1, mesh.reach + 1):
+                at = mesh.reach + harmonic
+                by_stiffness[mesh.number, harmonic] = 2.0 * w[0, at] ** 2 * answer[:sensors, 0, at] * force[at]
+            further = mesh.forces_between(compression, loads[number], answer[sensors + number])
+            lines = -2.0 * w[1:] ** 2 * answer[:sensors, 1:] * further
+            # At half a mesh frequency a set holds each line and its conjugate.
+            kept = (np.abs(w[1:]) <= limit * (1.0 + _WITHIN)) & ((w[1:] > 0.0) | (mesh.fractions[1:, None] < 0.5))
+            frequencies.append(np.abs(w[1:])[kept])
+            between.append(np.where(w[1:] < 0.0, lines.conj(), lines)[:, kept])
+    every, parts = (
+        np.concatenate([np.empty(0), *frequencies]),
+        np.concatenate([np.empty((sensors, 0)), *between], axis=1),
+    )
+    alike = np.round(every / rates.max(initial=1.0), _ALIKE_DIGITS)
+    _, first, line = np.unique(alike, return_index=True, return_inverse=True)
+    together = np.zeros((len(first), sensors), dtype=np.complex128)
+    np.add.at(together, line, parts.T)
+    return LinesOfMeshes(by_stiffness, every[first], together.T)

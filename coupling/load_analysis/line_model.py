@@ -8,8 +8,8 @@ and the lines are solved again. The adjoint load of a sensor is one on a point, 
 skin.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,6 +61,8 @@ class SolvedLines:
     sidebands : tuple of SidebandSound
         Sound of mesh harmonics and their sidebands, where directions turn with planet carriers; `model` and all other
         lines freeze these.
+    responses : mapping of str to ndarray
+        Responses by which the housing's modes were extended, for a next solution.
     """
 
     model: LineModel
@@ -68,6 +70,7 @@ class SolvedLines:
     sound: "tuple[HarmonicSound, ...]"
     housing: HousingModes
     sidebands: "tuple[SidebandSound, ...]" = ()
+    responses: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -104,7 +107,12 @@ class SolvedLines:
         displacement = self.housing.modes.displacement
         return np.asarray(displacement(housing_motion.real, every) + 1j * displacement(housing_motion.imag, every))
 
-    def rates(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> HousingRates:
+    def rates(
+        self,
+        fields: StaticSensitivity,
+        changes: Sequence[HousingChange],
+        report: Callable[[float], None] = lambda fraction: None,
+    ) -> HousingRates:
         """Project derivatives of the housing by the coordinates of parameters on its modes and residual modes.
 
         Parameters
@@ -112,6 +120,8 @@ class SolvedLines:
         fields : StaticSensitivity
             Fields with the housing's material and its displacement at the operating point.
         changes : sequence of HousingChange
+        report : callable
+            Called with the completed fraction.
         """
         modes, ratios = self.housing.modes, self.housing.damping_ratios
         shapes, omega = modes.shapes, modes.frequencies
@@ -122,7 +132,7 @@ class SolvedLines:
         omega = np.concatenate([omega, modes.residual_modes.frequencies])
         ratios = np.concatenate([ratios, np.full(extra, ratios.max(initial=0.0))])
         rates = [change.rate for change in changes]
-        sensitivities = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates)
+        sensitivities = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates, report)
         motions = [self.field(harmonic.line.motion) for harmonic in self.sound]
         powers = [
             {}
@@ -195,9 +205,9 @@ def solve_lines(
     if not loaded or not (housing.sensors or acoustics):
         return None
     work = "residual modes of the sensors"
-    progress(f"{work}: factorisation at the limit of the modes")
+    progress(work)
     matrices = housing.housing.matrices()
-    extension = ModeSetExtension(matrices, housing.modes)
+    extension = ModeSetExtension(matrices, housing.modes, known=housing.responses)
     modes = housing.modes
     if housing.sensors:
         ports = [sensor.matrix for sensor in housing.sensors.values()]
@@ -237,6 +247,7 @@ def solve_lines(
         modes, _housing_loads(first, loaded), lambda step: progress(f"responses of the housing at the lines: {step}")
     )
     lines = solved(exact, [sound.line.frequency for sound in first.sound])
+    lines = replace(lines, responses=extension.responses)
     return replace(lines, sidebands=_sidebands(acoustics, lines, radiation, progress))
 
 

@@ -7,7 +7,7 @@ given as changes of its model, :mod:`gearwhine.housing.updating.housing_change`.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -139,7 +139,9 @@ class Ranking:
             [self.model.stepped_bearing_position(line, bearing, -step.size) for line in self.lines],
         )
 
-    def by_housing(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> list[Influence]:
+    def by_housing(
+        self, fields: StaticSensitivity, changes: Sequence[HousingChange], progress: Progress
+    ) -> list[Influence]:
         """Influences of parameters of the housing.
 
         Parameters
@@ -147,15 +149,18 @@ class Ranking:
         fields : StaticSensitivity
             Displacements of the housing at the operating point and in all adjoint states.
         changes : sequence of HousingChange
+        progress : callable
         """
         slopes = slopes_of(changes)
         by_equilibrium = by_changes(fields, changes)
-        rates = None if self.solved is None else self.solved.rates(fields, changes)
+        report = partial(progress, "gradients of the housing's modes by its walls")
+        rates = None if self.solved is None else self.solved.rates(fields, changes, report)
         by_response = np.zeros((len(self.lines), len(changes)))
         if rates is not None:
             by_response = np.array([self.model.by_housing(line, rates) for line in self.lines]) / slopes
         influences = []
         for number, change in enumerate(changes):
+            progress("lines at a step of each wall", number / len(changes))
             step = _Step(change.reference, change.thickness)
             # Derivatives of the housing are by the parameter's coordinate.
             in_coordinate = step.size / change.slope
@@ -318,7 +323,7 @@ def solve_load_sensitivity(
         progress("gradients by the housing")
         fields = housing_fields(housing, point, ranking.adjoints)
         density, line_density, sound_density = ranking.densities(fields, sensor_line, sound_line)
-        influences += ranking.by_housing(fields, changes)
+        influences += ranking.by_housing(fields, changes, progress)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
     if housing is not None:

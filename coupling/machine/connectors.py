@@ -151,9 +151,12 @@ class NonlinearConnector:
     stiffness : ndarray, shape (d, d)
         K [N/m], symmetric.
     speed : float
-        Signed speed of the shaft [rad/s], which carries the rolling elements round.
+        Signed speed of the shaft against what holds the other ring [rad/s], which carries the rolling elements round.
     turning : tuple of TurningPart
         Parts of the directions that turn; ``directions`` are those at the nominal time 0.
+    holder_speed : float
+        Signed speed of what holds the other ring, as of a hollow shaft, against the directions [rad/s]: it carries
+        the rolling elements round, too.
     """
 
     name: str
@@ -163,6 +166,7 @@ class NonlinearConnector:
     stiffness: FloatArray
     speed: float
     turning: tuple[TurningPart, ...] = ()
+    holder_speed: float = 0.0
 
     def __post_init__(self) -> None:
         """Require an axis for each direction, and a stiffness of shape (d, d)."""

@@ -46,15 +46,16 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
 
 
 def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
-    """Return the frequencies at which elements pass the ring at rest [Hz], of bearings whose law follows the elements.
+    """Return the frequencies at which elements pass a place at rest [Hz], of bearings whose law follows the elements.
 
     Each frequency of a bearing once, ascending: its rows are mostly alike.
     """
     passes = {}
     for connector in system.nonlinear:
-        if isinstance(connector.law, RollingLaw) and connector.speed != 0.0:
+        if isinstance(connector.law, RollingLaw) and (connector.speed != 0.0 or connector.holder_speed != 0.0):
             rows = connector.law.state.bearing.rows
-            frequencies = [row.count * abs(row.cage_speed(connector.speed)) / _TWO_PI for row in rows]
+            cages = [row.cage_speed(connector.speed) + connector.holder_speed for row in rows]
+            frequencies = [row.count * abs(cage) / _TWO_PI for row, cage in zip(rows, cages, strict=True)]
             passes[connector.name] = tuple(
                 sorted({round(frequency, _ALIKE_FREQUENCY_DIGITS) for frequency in frequencies})
             )
@@ -105,11 +106,15 @@ def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
             part = "rolling element" if spall.on == "element" else f"{spall.on} raceway"
             strikes = SpallStrikes(part, connector.name, frequency)
             if spall.on == "element":
-                cage = abs(row.cage_speed(connector.speed)) / _TWO_PI
-                strikes = replace(strikes, turning=f"cage of {connector.name}", turning_frequency=cage)
-            elif (spall.on == "outer") == row.outer_turns:
-                turn = abs(connector.speed) / _TWO_PI
-                strikes = replace(strikes, turning=f"{spall.on} ring of {connector.name}", turning_frequency=turn)
+                turn, carrying = row.cage_speed(connector.speed), "cage"
+            else:
+                turn, carrying = (
+                    connector.speed if (spall.on == "outer") == row.outer_turns else 0.0,
+                    f"{spall.on} ring",
+                )
+            turn = abs(turn + connector.holder_speed) / _TWO_PI
+            if turn > 0.0:
+                strikes = replace(strikes, turning=f"{carrying} of {connector.name}", turning_frequency=turn)
             found.append(strikes)
     return tuple(dict.fromkeys(one for one in found if one.frequency > 0.0))
 

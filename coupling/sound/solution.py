@@ -5,6 +5,7 @@ The bearings' forces move the housing at each line (:mod:`gearwhine.coupling.sou
 :class:`gearwhine.housing.acoustics.radiation.HousingRadiation` its sound.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -61,6 +62,8 @@ from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+
+Span = Callable[[HousingRadiation, FloatArray, tuple[float, float], Progress], HousingRadiation]
 
 _TWO_PI = 2.0 * np.pi
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
@@ -378,6 +381,11 @@ def build_radiation(acoustics: Acoustics, housing: HousingField, progress: Progr
         raise
 
 
+def _mode_frequencies(housing: HousingField, limit_hz: float) -> list[float]:
+    """Natural frequencies up to a limit of the modes that are no motion as a rigid body [Hz]."""
+    return [hz for hz in housing.modes.frequencies_hz.tolist() if 1.0 < hz <= limit_hz]
+
+
 def sound_of_modes(
     radiation: HousingRadiation, housing: HousingField, limit_hz: float, progress: Progress = silent
 ) -> SoundOfModes:
@@ -399,7 +407,8 @@ def sound_of_modes(
         proofs = power_balance_db(sound), interior_pressure(sound), known_source(sound)
         return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares, *proofs), sound
 
-    numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit_hz]
+    sounding = _mode_frequencies(housing, limit_hz)
+    numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz.tolist()) if hz in sounding]
     modes, warnings = [], []
     for mode, sound in in_order(of_mode, numbers, "sound of the housing's modes", progress):
         modes.append(mode)
@@ -415,6 +424,7 @@ def solve_sound(
     progress: Progress = silent,
     *,
     of_modes: SoundOfModes | None = None,
+    span: Span = HousingRadiation.spanned,
 ) -> SolvedSound:
     """Solve for the sound of a housing's modes and of the lines of a motion that matter.
 
@@ -430,6 +440,8 @@ def solve_sound(
     progress : callable
     of_modes : SoundOfModes, optional
         Sound of the housing's modes where that is solved already.
+    span : callable
+        :meth:`gearwhine.housing.acoustics.radiation.HousingRadiation.spanned`, or what keeps its solutions.
 
     Raises
     ------
@@ -445,20 +457,27 @@ def solve_sound(
     # Before the work; all of them.
     refuse(microphone_findings(acoustics, positions, radiation.require_in_air), AcousticsError)
     warnings = acoustics_warnings(acoustics, housing.mesh.bounds, housing.complete_below_hz)
+    if motion is not None:
+        motion = motion.between(AUDIBLE, np.inf)
+    moves = motion is not None and machine is not None and len(motion.frequencies) > 0
+    wanted = [] if of_modes is not None else _mode_frequencies(housing, limit)
+    if motion is not None and machine is not None and moves:
+        paths = motion.paths(machine)
+        rates = motion.rates(paths)
+        estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
+            motion.frequencies, radiation.area, radiation.medium.speed_of_sound
+        )
+        chosen = loud_lines(motion.frequencies, estimate, limit, acoustics.lines)
+        wanted = [*wanted, *motion.frequencies[chosen].tolist()]
+    radiation = span(radiation, np.array(wanted), (AUDIBLE, limit), progress)
     if of_modes is None:
         of_modes = sound_of_modes(radiation, housing, limit, progress)
     solved = SolvedSound(
         radiation, of_modes, (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(warnings)
     )
-    if motion is None or machine is None or not len((motion := motion.between(AUDIBLE, np.inf)).frequencies):
+    if motion is None or machine is None or not moves:
         return solved
 
-    paths = motion.paths(machine)
-    rates = motion.rates(paths)
-    estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
-        motion.frequencies, radiation.area, radiation.medium.speed_of_sound
-    )
-    chosen = loud_lines(motion.frequencies, estimate, limit, acoustics.lines)
     names = line_names(machine, motion.frequencies[chosen].tolist(), motion.tolerance, None)
     mechanisms = LineMechanisms(machine)
 

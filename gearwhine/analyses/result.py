@@ -6,8 +6,7 @@ import copy
 import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextvars import copy_context
+from concurrent.futures import wait
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -228,10 +227,13 @@ class Result(Generic[Solved]):
 
         def write(place: Path) -> None:
             progress("writing results")
-            self._write_data(place, kept.variables)
             for file in kept.files:
                 shutil.copyfile(file, place / file.name)
-            added = self._draw(place, progress) if pictures else dict(self._files(place, pictures=False))
+            if pictures:
+                added = self._write_and_draw(place, kept.variables, progress)
+            else:
+                self._write_data(place, kept.variables)
+                added = dict(self._files(place, pictures=False))
             add_warnings(document, added.pop("warnings", ()))
             document.update(added)
             if self._started is not None:
@@ -255,21 +257,26 @@ class Result(Generic[Solved]):
             document.update(folder=str(folder), files=files)
         return replace(self, document=document)
 
-    def _draw(self, place: Path, progress: Progress) -> dict[str, Any]:
-        """Draw the figures, while a process of its own draws the shapes among the further files; what these add."""
+    def _write_and_draw(self, place: Path, kept_arrays: Variables, progress: Progress) -> dict[str, Any]:
+        """Write the data and draw the figures, while a process of its own draws the shapes among the further files.
+
+        Returns what these add to the document.
+        """
         if self._files is no_files:
+            self._write_data(place, kept_arrays)
             self._draw_figures(place, progress)
             return {}
         from gearwhine.drawing_process import one_process
 
-        with one_process() as drawing, ThreadPoolExecutor(1) as beside:
-            # The thread waits for that process most of the time.
-            files = beside.submit(copy_context().run, partial(self._files, place, pictures=True))
+        with one_process() as drawing:
+            files = drawing.beside(self._files, place, pictures=True)
             try:
+                self._write_data(place, kept_arrays)
                 self._draw_figures(place, progress)
                 return dict(files.result())
             except BaseException:
                 drawing.stop()
+                wait([files])
                 raise
 
     def _draw_figures(self, place: Path, progress: Progress) -> None:

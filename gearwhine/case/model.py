@@ -134,7 +134,7 @@ class Case(Table):
     @property
     def input_files(self) -> InputFiles:
         """The files that the case names, as they were when it was read."""
-        return self._files.among(paths_in(self))
+        return self._files
 
     def rotor_named(self, name: str) -> Rotor:
         """Return the rotor of this name; KeyError where there is none."""
@@ -167,6 +167,7 @@ class Case(Table):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Case:
         """Return a copy with other values of some tables, whose parts are made anew."""
         copied = super().model_copy(update=update, deep=deep)
+        copied._files = self._files.among(paths_in(copied))
         copied.__dict__.pop("parts", None)
         return copied
 

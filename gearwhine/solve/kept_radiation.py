@@ -6,6 +6,8 @@ from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.coupling.sound.motion_lines import MotionLines
@@ -14,6 +16,7 @@ from gearwhine.housing import HousingModes
 from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
+from gearwhine.housing.acoustics.reduced_elements import SpanningSolutions
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, in_order, silent
@@ -21,6 +24,7 @@ from gearwhine.numerics.source_digest import source_digest
 
 _NOTE = "radiation"
 _NOTE_OF_MODES = "sound of the modes"
+_NOTE_OF_SPAN = "solutions that span the sound"
 _CODE = (
     "gearwhine.housing.acoustics",
     "gearwhine.housing.storage",
@@ -65,6 +69,9 @@ def kept_radiation(
     record = housing.record
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
+    spans = KeptSpan(acoustics, housing)
+    radiation = spans.spanned(radiation, np.linspace(*between, POINTS), between, progress)
+    housing, record = spans.housing, spans.housing.record
     solved = ModalRadiation.solve(radiation, places, *between, points=POINTS, each=partial(_each, progress=progress))
     # All arrays of an earlier table are removed: its microphones must not stay where there are none now.
     other_extras = {name: array for name, array in record.extras.items() if name not in ARRAYS}
@@ -97,16 +104,62 @@ def sound_of_housing(
     HousingModes
         The housing, whose record holds the sound of the modes.
     """
-    field, record = housing.displacement_field, housing.record
-    key = _key(acoustics, housing.widest_bore, limit_hz=acoustics.limit_hz(field))
-    kept = record.notes.get(_NOTE_OF_MODES, {})
-    if kept.get("key") == key:
+    key = _key(acoustics, housing.widest_bore, limit_hz=acoustics.limit_hz(housing.displacement_field))
+    kept = housing.record.notes.get(_NOTE_OF_MODES, {})
+    of_modes = _of_text(kept["sound"]) if kept.get("key") == key else None
+    if of_modes is not None:
         progress("sound of the housing's modes read from the mode cache")
-        return solve_sound(acoustics, field, motion, machine, progress, of_modes=_of_text(kept["sound"])), housing
-    solved = solve_sound(acoustics, field, motion, machine, progress)
-    # As text, since the errors of known sources may be infinite.
-    notes = {**record.notes, _NOTE_OF_MODES: {"key": key, "sound": json.dumps(asdict(solved.of_modes))}}
-    return solved, replace(housing, record=replace(record, notes=notes), source_holds=False)
+    spans = KeptSpan(acoustics, housing)
+    solved = solve_sound(
+        acoustics, housing.displacement_field, motion, machine, progress, of_modes=of_modes, span=spans.spanned
+    )
+    if of_modes is None:
+        # As text, since the errors of known sources may be infinite.
+        note = {"key": key, "sound": json.dumps(asdict(solved.of_modes))}
+        record = spans.housing.record
+        record = replace(record, notes={**record.notes, _NOTE_OF_MODES: note})
+        return solved, replace(housing, record=record, source_holds=False)
+    return solved, spans.housing
+
+
+class KeptSpan:
+    """Solutions that span the sound of a housing's modes at all frequencies, kept beside the modes.
+
+    Parameters
+    ----------
+    acoustics : Acoustics
+    housing : HousingModes
+
+    Attributes
+    ----------
+    housing : HousingModes
+        The housing, whose record holds them once they are solved.
+    """
+
+    def __init__(self, acoustics: Acoustics, housing: HousingModes) -> None:
+        self.acoustics, self.housing = acoustics, housing
+
+    def spanned(
+        self,
+        radiation: HousingRadiation,
+        wanted: FloatArray,
+        between: tuple[float, float],
+        progress: Progress = silent,
+    ) -> HousingRadiation:
+        """Return the radiation with kept solutions, or with solutions that it then keeps.
+
+        See :meth:`gearwhine.housing.acoustics.radiation.HousingRadiation.spanned`.
+        """
+        key = _key(self.acoustics, self.housing.widest_bore)
+        record, known = self.housing.record, None
+        if record.notes.get(_NOTE_OF_SPAN) == key:
+            known = SpanningSolutions.of_arrays(record.extras)
+        spanned = radiation.spanned(wanted, between, progress, known)
+        if spanned.reduced is not None and spanned.reduced.solutions is not known:
+            extras = {**record.extras, **spanned.reduced.solutions.arrays()}
+            updated = replace(record, extras=extras, notes={**record.notes, _NOTE_OF_SPAN: key})
+            self.housing = replace(self.housing, record=updated, source_holds=False)
+        return spanned
 
 
 def _of_text(text: str) -> SoundOfModes:

@@ -81,7 +81,7 @@ def add_sound(
     from gearwhine.coupling.sound.motion_lines import AUDIBLE, pulsating_efficiency
     from gearwhine.coupling.sound.solution import build_radiation
     from gearwhine.solve.acoustics import acoustics_of, refused_by_key
-    from gearwhine.solve.kept_radiation import kept_radiation
+    from gearwhine.solve.kept_radiation import KeptSpan, kept_radiation
 
     # Keys that name no part of the housing change its modes too, such as the place of a bearing or a material.
     if len({swept_point.point.modes_key for swept_point in swept}) > 1 or any(
@@ -111,9 +111,11 @@ def add_sound(
         for place in np.flatnonzero(estimate > _FAINT_LINE_RATIO * estimate.max()).tolist():
             jobs.append((number, place, float(frequencies[place]), rates[place][:, None]))
 
-    table = None
+    table, between = None, (AUDIBLE, acoustics.limit_hz(field))
+    spans = KeptSpan(acoustics, housing)
+    radiation = spans.spanned(radiation, np.array([hertz for *_, hertz, _ in jobs]), between, progress)
+    housing = spans.housing
     if radiation.method != "erp" and len(jobs) > POINTS:
-        between = AUDIBLE, acoustics.limit_hz(field)
         table, housing = kept_radiation(acoustics, housing, radiation, places, between, progress)
 
     def solve(job: tuple[int, int, float, Any]) -> LineSound:

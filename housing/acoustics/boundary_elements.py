@@ -30,6 +30,7 @@ Every solution of a closed surface includes the field of known sources inside, w
 :mod:`gearwhine.housing.acoustics.known_source`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -38,9 +39,11 @@ import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.acoustics.boundary_integrals import (
+    RealParts,
     SourcePoints,
     SurfaceIntegrals,
     far_field_amplitudes,
+    point_flux,
     solid_angles,
     surface_integrals,
 )
@@ -55,6 +58,7 @@ _TWO_PI = 2.0 * np.pi
 _INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
 _CHECK_POINTS = 12
 _FEWEST_INNER = 30
+_ROWS = 256  # equations that are assembled at once
 _VAIN_ROUNDS = 50  # rounds of 64 trials without a point inside after which the search ends
 # Longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001.
 _NEAREST_DISTANCE = 0.01
@@ -70,6 +74,22 @@ _MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # linear shape functions' mass mat
 
 MOST_TRIANGLES = 16_000
 """Largest number of triangles: their matrix takes 1.4 GB, and their factorisation minutes."""
+
+
+@dataclass(frozen=True)
+class FarSphere:
+    """Far field over all directions into the air.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n_directions,)
+        Solid angle that each direction stands for [sr].
+    amplitudes : ndarray of complex, shape (n_directions, n)
+        Amplitude F of the far field F exp(−i k r) / r [Pa m].
+    """
+
+    weights: FloatArray
+    amplitudes: ComplexArray
 
 
 @dataclass(frozen=True)
@@ -92,6 +112,8 @@ class SoundField:
         which has no inside, and where no point inside is far enough from the surface, as in a thin plate.
     known : KnownField or None
         Solution for known sources inside by the same equations. None for a baffled face, and where no source can stand.
+    far : FarSphere or None
+        The far field, where it is known already.
     """
 
     surface: RadiatingSurface
@@ -102,6 +124,7 @@ class SoundField:
     pressure: ComplexArray
     inside: ComplexArray
     known: KnownField | None = None
+    far: FarSphere | None = None
 
     @property
     def wavenumber(self) -> float:
@@ -172,13 +195,12 @@ class SoundField:
         positive semidefinite by construction; an error ε of the pressure that is out of phase with the velocity, which
         spoils the surface's power of a weak radiator, changes it by ε² only.
         """
-        directions, weights = _directions(self._degree)
-        far = self.far_field(directions)
-        share = 1.0 if self.plane is None else 0.5  # the field and its mirror image hold each direction twice
-        return np.asarray(share / self.medium.impedance * ((far.conj().T * weights) @ far).real)
+        far = self.over_sphere(self.degree) if self.far is None else self.far
+        return np.asarray(((far.amplitudes.conj().T * far.weights) @ far.amplitudes).real / self.medium.impedance)
 
     @property
-    def _degree(self) -> int:
+    def degree(self) -> int:
+        """Degree of spherical harmonics up to which the field's squares are integrated over the directions."""
         center = self.surface.points.mean(axis=0)
         reach = np.linalg.norm(self.surface.points - center, axis=1).max()
         if self.plane is not None:
@@ -193,16 +215,29 @@ class SoundField:
         directions : ndarray, shape (n_directions, 3)
             Unit vectors. Distances r are from the centre of the surface's vertices, or its foot on the hard plane.
         """
+        far = self._without_image(directions)
+        if self.plane is not None:
+            images = directions - 2.0 * np.outer(directions @ self.plane.normal, self.plane.normal)
+            far = far + self._without_image(images)
+        return far
+
+    def over_sphere(self, degree: int) -> FarSphere:
+        """Far field in the directions into the air that integrate products of spherical harmonics of a degree."""
+        if self.plane is None:
+            directions, weights = _directions(degree, np.array([0.0, 1.0, 0.0]))
+            return FarSphere(weights, self.far_field(directions))
+        directions, weights = _directions(degree, self.plane.normal)
+        of_circles = self._without_image(directions).reshape(-1, 2 * degree + 2, self.pressure.shape[1])
+        upper = (of_circles + of_circles[::-1])[len(of_circles) // 2 :]
+        return FarSphere(weights[len(weights) // 2 :], upper.reshape(-1, self.pressure.shape[1]))
+
+    def _without_image(self, directions: FloatArray) -> ComplexArray:
+        """Amplitude of the far field of the surface alone."""
         center = self.surface.points.mean(axis=0)
         if self.plane is not None:
             center = center - self.plane.height(center[None])[0] * self.plane.normal
         sources = SourcePoints.of(self.surface)
-        flux = self.flux
-        far = far_field_amplitudes(sources, directions, center, self.wavenumber, self.pressure, flux)
-        if self.plane is not None:
-            images = directions - 2.0 * np.outer(directions @ self.plane.normal, self.plane.normal)
-            far = far + far_field_amplitudes(sources, images, center, self.wavenumber, self.pressure, flux)
-        return far
+        return far_field_amplitudes(sources, directions, center, self.wavenumber, self.pressure, self.flux)
 
     def pressure_at(self, points: FloatArray) -> ComplexArray:
         """Sound pressure at points in the air [Pa], shape (n_points, n).
@@ -363,7 +398,7 @@ class BoundaryElements:
         return min(_CHECK_POINTS, (len(self._inner_points) + 1) // 2)
 
     @cached_property
-    def _correction(self) -> sparse.coo_array:
+    def _correction(self) -> sparse.csr_array:
         return _curvature_correction(self.surface)
 
     def _inner_count(self, wavenumber: float) -> int:
@@ -371,7 +406,12 @@ class BoundaryElements:
         expected = 0.2 * self._volume * wavenumber**3 / (2.0 * np.pi**2)
         return min(_FEWEST_INNER + int(expected), len(self._inner_points) - self._checks)
 
-    def solve(self, frequency_hz: float, velocity: npt.ArrayLike) -> SoundField:
+    def solve(
+        self,
+        frequency_hz: float,
+        velocity: npt.ArrayLike,
+        progress: Callable[[float], None] = lambda fraction: None,
+    ) -> SoundField:
         """Solve for the sound field of some distributions of normal velocity.
 
         Parameters
@@ -379,6 +419,8 @@ class BoundaryElements:
         frequency_hz : float
         velocity : array_like, shape (3 n_triangles, n)
             Outward normal velocity at the corners of each triangle that radiates [m/s].
+        progress : callable
+            Called with the fraction of the equations that is assembled.
 
         Raises
         ------
@@ -398,59 +440,105 @@ class BoundaryElements:
             )
         velocities = np.ascontiguousarray(velocities.reshape(len(velocities), -1))
         wavenumber, flux = self.medium.wavenumber(frequency_hz), self.medium.flux(frequency_hz, velocities)
-        inside = np.zeros((0, velocities.shape[1]), dtype=np.complex128)
         if self.baffled:
             assert self.plane is not None
             vertices = self.surface.points
             vertex_numbers = np.arange(len(vertices))
-            pressure = -2.0 * surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, flux).single
+            pressure = (
+                -2.0 * surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, point_flux(flux)).single
+            )
+            inside = np.zeros((0, velocities.shape[1]), dtype=np.complex128)
             return SoundField(self.surface, self.medium, self.plane, frequency_hz, velocities, pressure, inside)
-        sources, columns = self.known_sources, velocities.shape[1]
-        every = self._solve_closed(wavenumber, np.hstack([flux, sources.flux(self.surface, wavenumber)]))
-        pressure = every[:, :columns].copy()
-        known_field = None
-        if len(sources.places):
-            known_field = KnownField(self.surface, sources, wavenumber, every[:, columns:].copy())
+        every = self._solve_closed(wavenumber, self.with_known_sources(wavenumber, flux), progress)
+        return self.field(frequency_hz, velocities, every)
+
+    def with_known_sources(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
+        """Return the flux of distributions with that of the known sources behind it."""
+        return np.hstack([flux, self.known_sources.flux(self.surface, wavenumber)])
+
+    def field(self, frequency_hz: float, velocity: ComplexArray, every: ComplexArray) -> SoundField:
+        """Return the field of a closed surface whose pressure is found, with what proves it.
+
+        Parameters
+        ----------
+        frequency_hz : float
+        velocity : ndarray, shape (3 n_triangles, n)
+            Normal velocity at the corners of the triangles [m/s].
+        every : ndarray, shape (n_points, n + n_sources)
+            Pressure at the vertices, of these distributions and of the known sources [Pa].
+        """
+        wavenumber, columns = self.medium.wavenumber(frequency_hz), velocity.shape[1]
+        pressure, known_field = every[:, :columns].copy(), None
+        if len(self.known_sources.places):
+            known_field = KnownField(self.surface, self.known_sources, wavenumber, every[:, columns:].copy())
+        inside = np.zeros((0, columns), dtype=np.complex128)
         if self._checks:
             checks = self._inner_points[: self._checks]
+            flux = self.medium.flux(frequency_hz, velocity)
             inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
-        return SoundField(
-            self.surface, self.medium, self.plane, frequency_hz, velocities, pressure, inside, known_field
-        )
+        return SoundField(self.surface, self.medium, self.plane, frequency_hz, velocity, pressure, inside, known_field)
 
-    def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
-        """Solve ``c p − ∫ p ∂G/∂n dS = −∫ q G dS`` for the pressure at the vertices, q = ∂p/∂n.
-
-        At a point inside c is 0. At a vertex the double layer leaves its jump, so that c is the part of the directions
-        that leads into the air.
-        """
-        vertices = self.surface.points
-        count, inner = len(vertices), self._inner_points[self._checks :][: self._inner_count(wavenumber)]
-        rows, vertex_numbers = count + len(inner), np.arange(len(vertices))
-        weights = np.ones(rows)
-        weights[count:] = _INNER_WEIGHT
-        if self.plane is not None:
-            # A vertex in the plane is its own image: of the body with its image all others have two equations.
-            weights[:count][np.abs(self.plane.height(vertices)) <= self.surface.rounding] = np.sqrt(0.5)
-        # LAPACK works in place on arrays in Fortran order.
-        matrix = np.empty((rows, count), dtype=np.complex128, order="F")
-        right = np.empty((rows, flux.shape[1]), dtype=np.complex128)
-        for points, own, part in ((vertices, vertex_numbers, slice(count)), (inner, None, slice(count, None))):
-            integrals = _integrals(self.surface, self.plane, points, own, wavenumber, flux)
-            np.multiply(integrals.double, -weights[part, None], out=matrix[part])
-            np.multiply(integrals.single, -weights[part, None], out=right[part])
-            if own is not None:
-                free = weights[part] * (1.0 + integrals.static)
-        matrix[vertex_numbers, vertex_numbers] += free
-        correction = self._correction
-        matrix[correction.row, correction.col] -= free[correction.row] * correction.data
+    def _solve_closed(self, wavenumber: float, flux: ComplexArray, progress: Callable[[float], None]) -> ComplexArray:
+        """Solve for the pressure at the vertices, q = ∂p/∂n."""
+        matrix, right = self.equations(wavenumber, flux, np.arange(len(self.surface.points)), progress)
         try:
             return solve_least_squares(matrix, right)
         except np.linalg.LinAlgError as error:
             raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m") from error
 
+    def equations(
+        self,
+        wavenumber: float,
+        flux: ComplexArray,
+        vertices: IntArray,
+        progress: Callable[[float], None] = lambda fraction: None,
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """Assemble the equations ``c p − ∫ p ∂G/∂n dS = −∫ q G dS`` of some vertices, and those of the points inside.
 
-def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
+        At a point inside c is 0. At a vertex the double layer leaves its jump, so that c is the part of the directions
+        that leads into the air.
+
+        Parameters
+        ----------
+        wavenumber : float
+            k [rad/m].
+        flux : ndarray, shape (3 n_triangles, n)
+            q at the corners of the triangles.
+        vertices : ndarray of int, shape (n_rows,)
+        progress : callable
+            Called with the assembled fraction.
+
+        Returns
+        -------
+        matrix : ndarray, shape (n_rows + n_inner, n_points)
+            In Fortran order, as LAPACK works in place.
+        right : ndarray, shape (n_rows + n_inner, n)
+        """
+        inner = self._inner_points[self._checks :][: self._inner_count(wavenumber)]
+        points = np.concatenate([self.surface.points[vertices], inner])
+        own = np.concatenate([vertices, np.full(len(inner), -1)])
+        count, rows = len(vertices), len(points)
+        weights = np.where(own >= 0, 1.0, _INNER_WEIGHT)
+        if self.plane is not None:
+            # A vertex in the plane is its own image: of the body with its image all others have two equations.
+            weights[:count][np.abs(self.plane.height(points[:count])) <= self.surface.rounding] = np.sqrt(0.5)
+        matrix = np.empty((rows, len(self.surface.points)), dtype=np.complex128, order="F")
+        right = np.empty((rows, flux.shape[1]), dtype=np.complex128)
+        free, at_points = np.empty(rows), point_flux(flux)
+        for start in range(0, rows, _ROWS):
+            part = slice(start, start + _ROWS)
+            integrals = _integrals(self.surface, self.plane, points[part], own[part], wavenumber, at_points)
+            np.multiply(integrals.double, -weights[part, None], out=matrix[part])
+            np.multiply(integrals.single, -weights[part, None], out=right[part])
+            free[part] = weights[part] * (1.0 + integrals.static)
+            progress(min(start + _ROWS, rows) / rows)
+        matrix[np.arange(count), vertices] += free[:count]
+        correction = self._correction[vertices].tocoo()
+        matrix[correction.row, correction.col] -= free[correction.row] * correction.data
+        return matrix, right
+
+
+def _curvature_correction(surface: RadiatingSurface) -> sparse.csr_array:
     """Matrix B of the difference between averaging linear functions p and the curved pressure p − B p, at n vertices.
 
     On the average over the triangles around a vertex the second derivatives count as isotropic, ``Σ eᵀ H e = ½ Σ e²
@@ -476,7 +564,7 @@ def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
     # Where the whole of a spike at a vertex is taken for curvature, p − B p no longer sees it.
     part = correction.diagonal()
     factor = np.where(part > _MOST_CURVATURE, _MOST_CURVATURE / np.where(part > _MOST_CURVATURE, part, 1.0), 1.0)
-    return sparse.coo_array(sparse.diags_array(factor) @ correction)
+    return sparse.csr_array(sparse.diags_array(factor) @ correction)
 
 
 def _integrals(
@@ -485,7 +573,7 @@ def _integrals(
     points: FloatArray,
     own: IntArray | None,
     wavenumber: float,
-    flux: ComplexArray,
+    flux: RealParts,
 ) -> SurfaceIntegrals:
     """Integrals over a surface and its image in a hard plane; points in the plane are vertices of both."""
     integrals = surface_integrals(surface, points, own, wavenumber, flux)
@@ -508,7 +596,7 @@ def _represent(
     flux: ComplexArray,
 ) -> ComplexArray:
     """∫ (p ∂G/∂n − q G) dS at points off the surface, with the images in a hard plane."""
-    integrals = _integrals(surface, plane, points, None, wavenumber, flux)
+    integrals = _integrals(surface, plane, points, None, wavenumber, point_flux(flux))
     return np.asarray(integrals.double @ pressure - integrals.single)
 
 
@@ -574,18 +662,18 @@ def surface_load(surface: RadiatingSurface, field: FloatArray | ComplexArray) ->
     return np.asarray(weighted.reshape(3 * len(surface.areas), -1))
 
 
-def _directions(degree: int) -> tuple[FloatArray, FloatArray]:
+def _directions(degree: int, axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return unit vectors and weights that integrate products of two spherical harmonics of a degree.
 
-    Gauss's points along the axis y, which is the height of the cases, times even steps around it; upper and lower
-    directions mirror each other.
+    Gauss's points along an axis, an even number of them, times even steps around it: circles, the lowest first, of
+    2 degree + 2 directions each. Upper and lower ones mirror each other.
     """
-    heights, weights = np.polynomial.legendre.leggauss(degree + 1)
+    heights, weights = np.polynomial.legendre.leggauss(degree + 1 + (degree + 1) % 2)
     angles = np.pi * np.arange(2 * degree + 2) / (degree + 1)
-    level = np.sqrt(1.0 - heights**2)
-    directions = np.stack(
-        [np.outer(level, np.cos(angles)), np.outer(heights, np.ones(len(angles))), np.outer(level, np.sin(angles))], -1
-    )
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    around = np.outer(np.cos(angles), first) + np.outer(np.sin(angles), np.cross(axis, first))
+    directions = heights[:, None, None] * axis + np.sqrt(1.0 - heights**2)[:, None, None] * around
     return directions.reshape(-1, 3), np.repeat(weights, len(angles)) * np.pi / (degree + 1)
 
 

@@ -203,16 +203,6 @@ def _far_points(x, places, normals, weights, far, k, g, dg, dg0):  # type: ignor
 
 
 @_summed
-def _product(g, flux):  # type: ignore[no-untyped-def]
-    """Sum of G q, both with real and imaginary parts apart, shape (2, n)."""
-    real, imaginary = 0.0, 0.0
-    for e in range(g.shape[1]):
-        real += g[0, e] * flux[0, e] - g[1, e] * flux[1, e]
-        imaginary += g[0, e] * flux[1, e] + g[1, e] * flux[0, e]
-    return complex(real, imaginary)
-
-
-@_summed
 def _sum(values):  # type: ignore[no-untyped-def]
     total = 0.0
     for e in range(values.size):
@@ -243,12 +233,12 @@ def _in_blocks(values: FloatArray) -> FloatArray:
 @_compiled
 def _integrate_rows(  # type: ignore[no-untyped-def]
     targets, vertex, corners, triangles, normals, areas, reaches, centers, k, places, point_normals, weights,
-    point_flux, flux, near_rule, duffy, duffy_weights, single, double, static,
+    near_rule, duffy, duffy_weights, layer, double, static,
 ):  # fmt: skip
     """Integrals over all triangles for some points; `vertex` is the vertex at a point, or -1.
 
     With the three points of degree 2 the shape function of a corner is 2/3 at its own and 1/6 at the others.
-    `centers` to `point_flux` are in blocks, see :func:`_in_blocks`.
+    `centers` to `weights` are in blocks, see :func:`_in_blocks`; `layer` is set, `double` and `static` are added to.
     """
     count, blocks = triangles.shape[0], weights.shape[0]
     far, near = np.empty((blocks, _BLOCK)), np.empty(count, np.int64)
@@ -272,8 +262,8 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                     far_g, far_dg[q], far_dg0,
                 )  # fmt: skip
                 total += _sum(far_dg0)
-                for column in range(flux.shape[1]):
-                    single[t, column] += _product(far_g, point_flux[block, column, q])
+                for part in range(2):
+                    layer[t, part, q, start : start + length] = far_g[part, :length]
             for e in range(length):
                 real = (far_dg[0, 0, e] + far_dg[1, 0, e] + far_dg[2, 0, e]) / 6.0
                 imaginary = (far_dg[0, 1, e] + far_dg[1, 1, e] + far_dg[2, 1, e]) / 6.0
@@ -292,15 +282,18 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                 _corner_triangle(corners[e], areas[e], k, corner, duffy, duffy_weights, g)
             else:
                 _near_triangle(x, corners[e], normals[e], areas[e], k, near_rule, g, dg, dg0, stack)
+            mean = (g[0] + g[1] + g[2]) / 3.0
             for i in range(3):
-                for column in range(flux.shape[1]):
-                    single[t, column] += g[i] * flux[3 * e + i, column]
+                # Values at the three points are S q of those at the corners, and S⁻¹ = 2 − 1/3.
+                layer[t, 0, i, e] = 2.0 * g[i].real - mean.real
+                layer[t, 1, i, e] = 2.0 * g[i].imag - mean.imag
                 double[t, triangles[e, i]] += dg[i]
                 total += dg0[i]
         static[t] += total
 
 
-_ROWS = 16  # directions whose phases are held at once: 8 MB with 10,000 triangles
+_LAYER = 4_000_000  # values of Green's function that are held at once: 32 MB
+_ROWS = 64  # directions whose phases are held at once: 32 MB with 10,000 triangles
 
 
 @dataclass(frozen=True)
@@ -348,6 +341,40 @@ def linear_projection(surface: RadiatingSurface, field: Callable[[FloatArray], C
 
 
 @dataclass(frozen=True)
+class RealParts:
+    """Complex columns as real ones, for products of real numbers: a velocity in phase has an imaginary flux alone.
+
+    Attributes
+    ----------
+    parts : tuple of (complex, ndarray)
+        Factor 1 or i and its real columns, shape (m, n); none of a part that is zero.
+    columns : int
+    """
+
+    parts: tuple[tuple[complex, FloatArray], ...]
+    columns: int
+
+    @classmethod
+    def of(cls, values: ComplexArray) -> "RealParts":
+        """Columns of shape (m, n)."""
+        both = ((1.0 + 0.0j, values.real), (1.0j, values.imag))
+        return cls(tuple((by, np.ascontiguousarray(part)) for by, part in both if part.any()), values.shape[1])
+
+    def times(self, real: FloatArray, imaginary: FloatArray) -> ComplexArray:
+        """Return (real + i imaginary) x, matrices of shape (k, m)."""
+        total = np.zeros((len(real), self.columns), dtype=np.complex128)
+        for factor, part in self.parts:
+            total += factor * (real @ part + 1j * (imaginary @ part))
+        return total
+
+
+def point_flux(flux: ComplexArray) -> RealParts:
+    """Flux at the quadrature points of degree 2 from that at the corners of the triangles, shape (3 n_triangles, n)."""
+    columns = flux.shape[1]
+    return RealParts.of(np.einsum("qa,ean->qen", _DEGREE_2[:, :3], flux.reshape(-1, 3, columns)).reshape(-1, columns))
+
+
+@dataclass(frozen=True)
 class SurfaceIntegrals:
     """Integrals over a surface for some points x.
 
@@ -367,7 +394,11 @@ class SurfaceIntegrals:
 
 
 def surface_integrals(
-    surface: RadiatingSurface, points: FloatArray, own: IntArray | None, wavenumber: float, flux: ComplexArray
+    surface: RadiatingSurface,
+    points: FloatArray,
+    own: IntArray | None,
+    wavenumber: float,
+    flux: RealParts,
 ) -> SurfaceIntegrals:
     """Integrate Green's function and its normal derivative over a surface.
 
@@ -380,28 +411,46 @@ def surface_integrals(
         Vertex that each point is, or -1; None where no point is a vertex.
     wavenumber : float
         k [rad/m].
-    flux : ndarray, shape (3 n_triangles, n)
-        q at the corners of the triangles.
+    flux : RealParts
+        q, see :func:`point_flux`.
     """
     vertex = np.full(len(points), -1) if own is None else own
+    count = len(surface.triangles)
     double = np.zeros((len(points), len(surface.points)), dtype=np.complex128)
     static = np.zeros(len(points))
-    single = np.zeros((len(points), flux.shape[1]), dtype=np.complex128)
+    single = np.zeros((len(points), flux.columns), dtype=np.complex128)
     shares = _DEGREE_2[:, :3]
-    at_points = np.einsum("qa,ean->nqe", shares, flux.reshape(-1, 3, flux.shape[1]))
-    _integrate_rows(
-        np.ascontiguousarray(points), vertex, surface.corners, surface.triangles, surface.normals, surface.areas,
-        _in_blocks(9.0 * surface.lengths**2), _in_blocks(surface.corners.mean(axis=1).T), wavenumber,
-        _in_blocks(np.einsum("qa,eaj->qje", shares, surface.corners)), _in_blocks(surface.normals.T),
-        _in_blocks(surface.areas / (12.0 * math.pi)), _in_blocks(np.stack([at_points.real, at_points.imag], axis=2)),
-        flux, _DEGREE_4, _POINTS, _WEIGHTS, single, double, static,
-    )  # fmt: skip
+    reaches, centers, quadrature, normals, weights = (
+        _in_blocks(values)
+        for values in (
+            9.0 * surface.lengths**2,
+            surface.corners.mean(axis=1).T,
+            np.einsum("qa,eaj->qje", shares, surface.corners),
+            surface.normals.T,
+            surface.areas / (12.0 * math.pi),
+        )
+    )
+    places = np.ascontiguousarray(points)
+    rows = max(_LAYER // (6 * count), 1)
+    layer = np.empty((min(rows, len(points)), 2, 3, count))
+    for start in range(0, len(points), rows):
+        some = slice(start, min(start + rows, len(points)))
+        part = layer[: some.stop - start]
+        _integrate_rows(
+            places[some], vertex[some], surface.corners, surface.triangles, surface.normals, surface.areas,
+            reaches, centers, wavenumber, quadrature, normals, weights,
+            _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
+        )  # fmt: skip
+        real, imaginary = np.moveaxis(part.reshape(-1, 2, 3 * count), 1, 0)
+        single[some] = flux.times(real, imaginary)
     return SurfaceIntegrals(single, double, static)
 
 
 @_compiled
-def _phases(directions, places, k, cosines, sines):  # type: ignore[no-untyped-def]
-    """Set cosine and sine of k d . y."""
+def _direction_rows(  # type: ignore[no-untyped-def]
+    directions, places, normals, weights, triangles, k, cosines, sines, double
+):
+    """Set cosine and sine of k d . y; add the weighted (d . n) exp(i k d . y) of each vertex's shape function."""
     for d in range(directions.shape[0]):
         d0, d1, d2 = directions[d, 0], directions[d, 1], directions[d, 2]
         for q in range(places.shape[1]):
@@ -409,6 +458,14 @@ def _phases(directions, places, k, cosines, sines):  # type: ignore[no-untyped-d
             sine, cosine = _sine_and_cosine(math.fabs(k * along))
             cosines[d, q] = cosine
             sines[d, q] = math.copysign(1.0, along) * sine
+        for e in range(triangles.shape[0]):
+            at = 3 * e
+            scale = weights[at] * (d0 * normals[0, at] + d1 * normals[1, at] + d2 * normals[2, at])
+            real = (cosines[d, at] + cosines[d, at + 1] + cosines[d, at + 2]) / 6.0
+            imaginary = (sines[d, at] + sines[d, at + 1] + sines[d, at + 2]) / 6.0
+            for i in range(3):
+                value = complex(real + 0.5 * cosines[d, at + i], imaginary + 0.5 * sines[d, at + i])
+                double[d, triangles[e, i]] += scale * value
 
 
 @_compiled
@@ -440,23 +497,20 @@ def far_field_amplitudes(
 
     ``F(d) = (1 / 4 pi) integral of (i k (d . n) p - q) exp(i k d . (y - center)) dS``
     """
-    shares = _DEGREE_2[:, :3]
     columns = pressure.shape[1]
-    at_points = np.einsum("qa,ean->eqn", shares, pressure[source.triangles]).reshape(-1, columns)
-    rate = np.einsum("qa,ean->eqn", shares, flux.reshape(-1, 3, columns)).reshape(-1, columns)
-    weight = source.weights[:, None] / (4.0 * math.pi)
-    layers = np.hstack([weight * rate, *(weight * source.normals[j][:, None] * at_points for j in range(3))])
-    layers = np.hstack([layers.real, layers.imag])  # phases and layers with their parts apart have the real products
+    at_points = np.einsum("qa,ean->eqn", _DEGREE_2[:, :3], flux.reshape(-1, 3, columns)).reshape(-1, columns)
+    rate = RealParts.of(source.weights[:, None] * at_points)
     far = np.empty((len(directions), columns), dtype=np.complex128)
     places = np.ascontiguousarray(source.places - center[:, None])
     for start in range(0, len(directions), _ROWS):
         some = np.ascontiguousarray(directions[start : start + _ROWS])
         phases = np.empty((2, len(some), places.shape[1]))
-        _phases(some, places, wavenumber, phases[0], phases[1])
-        (cc, cs), (sc, ss) = np.moveaxis((phases @ layers).reshape(2, len(some), 2, 4, columns), 2, 1)
-        moments = cc - ss + 1j * (cs + sc)
-        far[start : start + _ROWS] = 1j * wavenumber * np.einsum("dj,djn->dn", some, moments[:, 1:]) - moments[:, 0]
-    return far
+        double = np.zeros((len(some), len(pressure)), dtype=np.complex128)
+        _direction_rows(
+            some, places, source.normals, source.weights, source.triangles, wavenumber, phases[0], phases[1], double
+        )
+        far[start : start + _ROWS] = 1j * wavenumber * (double @ pressure) - rate.times(*phases)
+    return far / (4.0 * math.pi)
 
 
 def solid_angles(surface: RadiatingSurface, points: FloatArray) -> FloatArray:

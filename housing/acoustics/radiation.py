@@ -20,6 +20,7 @@ from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, Soun
 from gearwhine.housing.acoustics.known_source import NOTHING_TO_PROVE, SourceError
 from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.reduced_elements import ReducedElements, SpanningSolutions, spanning_frequencies
 from gearwhine.housing.acoustics.skin_points import SkinPoints
 from gearwhine.housing.acoustics.surface_velocity import face_surface, surface_velocity, transfer_error
 from gearwhine.housing.acoustics.wrapping import wrap
@@ -27,6 +28,7 @@ from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.surface import FlatFace
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
+from gearwhine.numerics.progress import Progress, in_order, silent
 
 Method = Literal["boundary-elements", "rayleigh", "erp"]
 
@@ -388,6 +390,7 @@ def set_down(surface: RadiatingSurface, floor: HardPlane, edge: float) -> Radiat
     return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
 
 
+_ASSEMBLY = 0.4  # part of a solution's time in which its equations are assembled
 _TRIANGLES_ALONG = 3.0
 """Triangles along the shortest side of a housing that a wrap has at least, so that it has its shape."""
 
@@ -447,6 +450,8 @@ class HousingRadiation:
     transfer_error : float
         Root mean square over the natural modes of the relative difference of ∫ v² dS on the radiating surface and on
         the skin.
+    reduced : ReducedElements or None
+        Boundary elements in the span of solutions at some frequencies, see :meth:`spanned`.
     """
 
     method: Method
@@ -456,6 +461,7 @@ class HousingRadiation:
     skins: tuple[SkinPoints, ...]
     cap_area: float = 0.0
     transfer_error: float = 0.0
+    reduced: ReducedElements | None = None
 
     @classmethod
     def of_surface(
@@ -580,6 +586,53 @@ class HousingRadiation:
             return float("inf")
         return min(elements.highest_frequency() for elements in self.elements)
 
+    def spanned(
+        self,
+        frequencies: npt.ArrayLike,
+        between: tuple[float, float],
+        progress: Progress = silent,
+        known: SpanningSolutions | None = None,
+    ) -> "HousingRadiation":
+        """Solve for all modes at a few frequencies, whose solutions span those at all frequencies between.
+
+        The radiation that is returned solves far fewer equations there. It is this one where that is no matter: by
+        another method than boundary elements, or where sound is wanted at few frequencies.
+
+        Parameters
+        ----------
+        frequencies : array_like, shape (n,)
+            Frequencies at which sound is wanted [Hz].
+        between : tuple of float
+            Lowest and highest frequency of any sound [Hz].
+        progress : callable
+        known : SpanningSolutions, optional
+            Solutions for the same modes and surface, which are taken where they reach all these frequencies.
+        """
+        wanted = np.unique(np.asarray(frequencies, dtype=np.float64))
+        if self.method != "boundary-elements" or self.reduced is not None or not len(wanted):
+            return self
+        (elements,), (modal,) = self.elements, self.modal
+        if known is not None and known.hold(wanted):
+            return replace(self, reduced=ReducedElements(elements, modal, known))
+        between = min(between[0], float(wanted[0])), max(between[1], float(wanted[-1]))
+        if (chosen := spanning_frequencies(wanted, between, elements)) is None:
+            return self
+        message, done = f"sound of all modes at {len(chosen)} frequencies", dict.fromkeys(chosen.tolist(), 0.0)
+
+        def pressure(hertz: float) -> npt.NDArray[np.complex64]:
+            def say(fraction: float) -> None:
+                done[hertz] = fraction
+                progress(message, sum(done.values()) / len(done))
+
+            field = elements.solve(hertz, modal, lambda assembled: say(_ASSEMBLY * assembled))
+            say(1.0)
+            every = [field.pressure] if field.known is None else [field.pressure, field.known.pressure]
+            return np.hstack(every).astype(np.complex64)
+
+        progress(message, 0.0)
+        solutions = SpanningSolutions(chosen, np.stack(in_order(pressure, chosen.tolist(), message)))
+        return replace(self, reduced=ReducedElements(elements, modal, solutions))
+
     def solve(self, frequency_hz: float, coordinates: npt.ArrayLike) -> RadiatedSound:
         """Solve for the sound of some motions of the housing.
 
@@ -597,11 +650,11 @@ class HousingRadiation:
         rates = np.asarray(coordinates, dtype=np.complex128).reshape(self.modal[0].shape[1], -1)
         fields: list[Field] = []
         for elements, modal in zip(self.elements, self.modal, strict=True):
-            velocity = modal @ rates
             if self.method == "erp":
-                fields.append(EquivalentField(elements.surface, elements.medium, velocity))
-            else:
-                fields.append(elements.solve(frequency_hz, velocity))
+                fields.append(EquivalentField(elements.surface, elements.medium, modal @ rates))
+                continue
+            field = None if self.reduced is None else self.reduced.solve(frequency_hz, rates)
+            fields.append(field or elements.solve(frequency_hz, modal @ rates))
         return RadiatedSound(frequency_hz, self.medium, tuple(fields), self.modal, rates, self.faces)
 
     def equivalent_power(self, coordinates: npt.ArrayLike) -> FloatArray:
@@ -621,7 +674,7 @@ class HousingRadiation:
 
     def with_shapes(self, shapes: FloatArray) -> "HousingRadiation":
         """Take other modes of the same housing, shape (n_modes, n_nodes, 3)."""
-        return replace(self, modal=tuple(_modal(points, shapes) for points in self.skins))
+        return replace(self, modal=tuple(_modal(points, shapes) for points in self.skins), reduced=None)
 
 
 def _modal(points: SkinPoints, shapes: FloatArray) -> FloatArray:

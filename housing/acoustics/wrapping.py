@@ -497,8 +497,9 @@ def _collapse(
         trial = points[old]
         trial[(old == a) | (old == b)] = place
         after, turned = _shapes(trial)
-        cosine = (turned * normal).sum(axis=1) / np.linalg.norm(turned, axis=1) / np.linalg.norm(normal, axis=1)
-        sound = (cosine > 0.5) | (before < 0.5 * _POOR)
+        # A triangle without area has no normal: the cosine times both lengths, which are then zero, needs none.
+        along = 0.5 * np.linalg.norm(turned, axis=1) * np.linalg.norm(normal, axis=1)
+        sound = ((turned * normal).sum(axis=1) > along) | (before < 0.5 * _POOR)
         is_held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _LARGEST_MENDING_MOVE * cell
         if is_held and sound.all() and (best is None or after.min() > best[0]):
             best = float(after.min()), place.copy()

@@ -6,7 +6,7 @@ supports leave it free to move.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
@@ -80,6 +80,16 @@ class HealthReport:
         """Whether every line keeps its bound."""
         return all(line.ok for line in self.lines)
 
+    def with_discretisation(self, modes: ModeSet) -> "HealthReport":
+        """Add the check of the modes' errors by the mesh, where these are estimated."""
+        errors = modes.discretisation_errors
+        if errors is None:
+            return self
+        worst = int(np.argmax(errors))
+        why = f"estimate of a frequency's relative error by the mesh, the largest: mode {worst + 1}"
+        line = HealthLine("discretisation", float(errors[worst]), DISCRETISATION_BOUND, why, essential=False)
+        return replace(self, lines=(*self.lines, line))
+
     def require(self) -> None:
         """Raise where a check fails that makes results wrong.
 
@@ -127,10 +137,9 @@ def health_report(
         *_matrix_lines(mesh, unsupported, supported, body),
         *_grounding_lines(ground, modes),
         *_mode_lines(supported, modes),
-        *_discretisation_lines(modes),
         *_port_lines(modes),
     ]
-    return HealthReport(tuple(lines), body, ground)
+    return HealthReport(tuple(lines), body, ground).with_discretisation(modes)
 
 
 def _mass_lines(
@@ -236,15 +245,6 @@ def _mode_lines(supported: Matrices, modes: ModeSet) -> list[HealthLine]:
             "|φᵀ K φ - diag ω²| over ω² + limit², attachments included",
         ),
     ]
-
-
-def _discretisation_lines(modes: ModeSet) -> list[HealthLine]:
-    errors = modes.discretisation_errors
-    if errors is None:
-        return []
-    worst = int(np.argmax(errors))
-    why = f"estimate of a frequency's relative error by the mesh, the largest: mode {worst + 1}"
-    return [HealthLine("discretisation", float(errors[worst]), DISCRETISATION_BOUND, why, essential=False)]
 
 
 def _port_lines(modes: ModeSet) -> list[HealthLine]:

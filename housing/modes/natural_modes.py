@@ -3,17 +3,19 @@
 Residual attachment modes can be added to an existing mode set, read from a file or solved for with other ports.
 """
 
+import hashlib
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import get_args
+from functools import cached_property
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
-from gearwhine.housing.fem.factorization import Backend, Factorizer
+from gearwhine.housing.fem.factorization import Backend, Factorization, Factorizer
 from gearwhine.housing.fem.linear_algebra import Precision
 from gearwhine.housing.fem.matrices import FreeSystem, Matrices
 from gearwhine.housing.fem.slepc import SlepcRanks
@@ -202,6 +204,7 @@ def solve_modes(
             free=system.free,
             n_nodes=system.n_nodes,
             orders=port_orders,
+            threads=threads,
             progress=lambda step: progress(f"{work}: {step}"),
         )
         search.seconds["reduction"] = time.perf_counter() - start
@@ -230,7 +233,7 @@ def _oriented(vectors: FloatArray) -> FloatArray:
 class ModeSetExtension:
     """Extension of a mode set by further residual modes; its span keeps all that it has.
 
-    One factor of K - σM, σ at the limit of the modes, serves all of them.
+    One factor of K - σM, σ at the limit of the modes, serves all of them; none is made where all responses are known.
 
     Parameters
     ----------
@@ -238,15 +241,36 @@ class ModeSetExtension:
         The matrices of the modes, supports included.
     modes : ModeSet
         Complete up to its limit.
+    known : mapping of str to ndarray, optional
+        Responses of an earlier extension of the same modes.
     backend, threads
         See :class:`gearwhine.housing.fem.factorization.Factorizer`.
+
+    Attributes
+    ----------
+    responses : dict of str to ndarray, shape (k, n_nodes, 3)
+        Displacements that were added to the residual modes, by a digest of what they respond to.
     """
 
-    def __init__(self, matrices: Matrices, modes: ModeSet, *, backend: Backend | None = None, threads: int = 2) -> None:
+    def __init__(
+        self,
+        matrices: Matrices,
+        modes: ModeSet,
+        *,
+        known: Mapping[str, FloatArray] | None = None,
+        backend: Backend | None = None,
+        threads: int = 2,
+    ) -> None:
         self._system = FreeSystem(matrices, threads=threads)
         self._shift = modes.certificate.limit**2
-        self._factor = Factorizer(backend=backend, threads=threads).factor(self._system.shifted(self._shift))
+        self._factorizer = Factorizer(backend=backend, threads=threads)
         self._vectors = modes.shapes.reshape(len(modes.shapes), -1).T[self._system.free]
+        self._known = known or {}
+        self.responses: dict[str, FloatArray] = {}
+
+    @cached_property
+    def _factor(self) -> Factorization:
+        return self._factorizer.factor(self._system.shifted(self._shift))
 
     def with_ports(
         self,
@@ -273,24 +297,30 @@ class ModeSetExtension:
         HousingError, ReductionError
             See :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
         """
-        system = self._system
-        further, _ = residual_attachment_modes(
-            system.stiffness,
-            system.mass,
-            self._factor.solve,
-            modes.frequencies**2,
-            self._vectors,
-            stacked(ports)[:, system.free],
-            shift=self._shift,
-            floor=system.floor(modes.certificate.limit),
-            free=system.free,
-            n_nodes=system.n_nodes,
-            orders=orders,
-            progress=progress,
-        )
+        system, port = self._system, stacked(ports)
+
+        def solved() -> ResidualModes:
+            progress("factorisation at the limit of the modes")
+            return residual_attachment_modes(
+                system.stiffness,
+                system.mass,
+                self._factor.solve,
+                modes.frequencies**2,
+                self._vectors,
+                port[:, system.free],
+                shift=self._shift,
+                floor=system.floor(modes.certificate.limit),
+                free=system.free,
+                n_nodes=system.n_nodes,
+                orders=orders,
+                threads=system.threads,
+                progress=progress,
+            )[0]
+
         if modes.residual_modes is None:
-            return replace(modes, residual_modes=further)
-        return self._joined(modes, further.shapes.reshape(len(further.shapes), -1).T[system.free])
+            return replace(modes, residual_modes=solved())
+        key = _digest(np.array(orders), port.data, port.indices, port.indptr)
+        return self._joined(modes, key, lambda: solved().shapes)
 
     def with_harmonic_responses(
         self,
@@ -324,26 +354,49 @@ class ModeSetExtension:
         if not loads:
             return modes
         system, residual = self._system, modes.residual_modes
-        missing = missing_harmonic_responses(
+
+        def missing() -> FloatArray:
+            found = missing_harmonic_responses(
+                system.stiffness,
+                system.mass,
+                self._factor.solve,
+                [(frequency, load[system.free]) for frequency, load in loads],
+                self._vectors,
+                np.asarray(system.mass @ self._vectors),
+                residual.shapes.reshape(len(residual.shapes), -1).T[system.free],
+                residual.frequencies,
+                system.threads,
+                progress,
+            )
+            return system.expand(np.hstack(found))
+
+        parts = [part for frequency, load in loads for part in (np.array(frequency), load)]
+        return self._joined(modes, _digest(residual.frequencies, *parts), missing)
+
+    def _joined(self, modes: ModeSet, key: str, solve: Callable[[], FloatArray]) -> ModeSet:
+        """Add displacements to the residual modes: known ones, or those that are solved for."""
+        assert modes.residual_modes is not None
+        system, known = self._system, self._known.get(key)
+        self.responses[key] = response = solve() if known is None else known
+        joined = extended_residual_modes(
             system.stiffness,
             system.mass,
-            self._factor.solve,
-            [(frequency, load[system.free]) for frequency, load in loads],
+            modes.residual_modes,
+            response.reshape(len(response), -1).T[system.free],
             self._vectors,
-            np.asarray(system.mass @ self._vectors),
-            residual.shapes.reshape(len(residual.shapes), -1).T[system.free],
-            residual.frequencies,
-            progress,
-        )
-        return self._joined(modes, np.hstack(missing))
-
-    def _joined(self, modes: ModeSet, columns: FloatArray) -> ModeSet:
-        assert modes.residual_modes is not None
-        system = self._system
-        joined = extended_residual_modes(
-            system.stiffness, system.mass, modes.residual_modes, columns, self._vectors, system.free
+            system.free,
+            system.threads,
         )
         return replace(modes, residual_modes=joined)
+
+
+def _digest(*arrays: npt.NDArray[Any]) -> str:
+    """SHA-256 of arrays, shortened to 16 digits."""
+    total = hashlib.sha256()
+    for array in arrays:
+        total.update(f"{array.shape}{array.dtype.str}".encode())
+        total.update(np.ascontiguousarray(array).tobytes())
+    return total.hexdigest()[:16]
 
 
 def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_array:

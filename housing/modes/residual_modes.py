@@ -32,7 +32,8 @@ of A with σ at the limit gives the response there and its derivatives by ω²,
     X_1 = A⁻¹ F,    X_j = A⁻¹ M X_{j-1},        A = K - σM on the complement.                             (5)
 
 With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
-(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The residual modes of the lowest frequencies
+(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). They take no solutions of their own: since
+A⁻¹ K = I + σ A⁻¹ M, the directions of the first j sweeps span X_1 to X_j. The residual modes of the lowest frequencies
 then come close to the modes just above the limit, as far as the ports drive them.
 
 Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
@@ -71,7 +72,7 @@ import numpy as np
 from scipy import linalg, sparse
 
 from gearwhine.housing.errors import HousingError, ReductionError
-from gearwhine.housing.fem.linear_algebra import Operator
+from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
 from gearwhine.housing.modes.certificate import RESIDUAL_BOUND
 from gearwhine.numerics.arrays import FloatArray, IntArray
 
@@ -167,6 +168,7 @@ def residual_attachment_modes(
     free: IntArray,
     n_nodes: int,
     orders: int = 1,
+    threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[ResidualModes, FloatArray]:
     """Compute residual attachment modes, and prove that they make the static compliance at the ports exact.
@@ -194,6 +196,8 @@ def residual_attachment_modes(
     orders : int
         Responses for each port motion: 1, the static one; 2, that at ω² = shift beside it; more, its derivatives by ω²
         there too, see Eq. (5).
+    threads : int
+        Threads of the products of block vectors; the numbers are the same for any.
     progress : callable
         Called with a line of text before each step after the static response.
 
@@ -218,27 +222,26 @@ def residual_attachment_modes(
         )
     if not (shift < 0.0 or shift > values.max(initial=0.0)):
         raise HousingError(f"a shift of {shift:g} rad²/s²; expected it below zero or above every kept mode")
+    algebra = BlockAlgebra(n, threads)
     inertia = np.asarray(mass @ vectors)
     loads = np.asarray(ports.T.toarray(), dtype=np.float64)
     motions = vectors.T @ loads
     elastic = values > floor
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
 
-    static = _ConjugateGradients(loads - inertia @ motions, 0.0, _SETTLED_RESPONSE_SHARE, modal.diagonal())
-    sweeps = _sweep_until_settled(stiffness, mass, solve, [static], vectors, inertia, progress)
-    residual = static.x - vectors @ (inertia.T @ static.x)
-    span = _independent(np.asarray(stiffness @ residual), residual, modal.diagonal())
-    response = loads
-    for order in range(1, orders):
-        progress(f"response {order} of {orders - 1} at the limit")
-        response = _complement_solve(solve, response, vectors, inertia)
-        span = _extended(stiffness, span, response)
-        response = np.asarray(mass @ response)
+    beyond = loads - inertia @ motions
+    static = _ConjugateGradients(beyond, 0.0, _SETTLED_RESPONSE_SHARE, modal.diagonal(), algebra, orders - 1)
+    sweeps = _sweep_until_settled(stiffness, mass, solve, [static], vectors, inertia, algebra, progress)
+    residual = static.x
+    algebra.subtract(residual, vectors, algebra.products(inertia, residual))
+    span = _independent(np.asarray(stiffness @ residual), residual, modal.diagonal(), algebra)
+    for directions, products in static.first:
+        span = _extended(stiffness, span, directions, products, algebra)
     progress("orthonormal shapes")
-    squared, shapes = _orthonormal(stiffness, mass, span, vectors, inertia)
-    turn = _turn(stiffness, squared, shapes, values, vectors)
-    inertia += np.asarray(mass @ shapes) @ turn
-    vectors, shapes = vectors + shapes @ turn, shapes - vectors @ turn.T
+    squared, shapes, products, weights = _orthonormal(stiffness, mass, span, vectors, inertia, algebra)
+    turn = _turn(algebra.products(products, vectors), squared, values)
+    inertia += algebra.combined(weights, turn)
+    vectors, shapes = vectors + algebra.combined(shapes, turn), shapes - algebra.combined(vectors, turn.T)
     motions = vectors.T @ loads
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
     port_motions_of_modes = (ports @ shapes).T
@@ -275,6 +278,7 @@ def extended_residual_modes(
     further: FloatArray,
     vectors: FloatArray,
     free: IntArray,
+    threads: int = 2,
 ) -> ResidualModes:
     """Extend residual modes so that they span further displacements of the discarded modes too.
 
@@ -288,6 +292,8 @@ def extended_residual_modes(
         Kept modes, orthonormal in M.
     free : ndarray of int, shape (n,)
         Places of the free degrees of freedom among all.
+    threads : int
+        Threads of the products of block vectors.
 
     Returns
     -------
@@ -296,20 +302,21 @@ def extended_residual_modes(
     """
     frequencies, count = residual_modes.frequencies, len(residual_modes.frequencies)
     shapes = residual_modes.shapes.reshape(count, -1).T[free]
-    added = _extended(stiffness, shapes / frequencies, further)[:, count:]
+    algebra = BlockAlgebra(len(free), threads)
+    added = _extended(stiffness, shapes / frequencies, further, np.asarray(stiffness @ further), algebra)[:, count:]
     # The given modes are orthonormal to the kept ones already, so that only what is added is made so.
     inertia = np.asarray(mass @ vectors)
     for _ in range(2):
-        added = added - vectors @ (inertia.T @ added)
+        algebra.subtract(added, vectors, algebra.products(inertia, added))
     force, weight = np.asarray(stiffness @ added), np.asarray(mass @ added)
     energy, inert = np.diag(np.append(frequencies**2, np.zeros(added.shape[1]))), np.eye(count + added.shape[1])
-    energy[:count, count:], inert[:count, count:] = shapes.T @ force, shapes.T @ weight
-    energy[count:, count:], inert[count:, count:] = added.T @ force, added.T @ weight
+    energy[:count, count:], inert[:count, count:] = algebra.products(shapes, force), algebra.products(shapes, weight)
+    energy[count:, count:], inert[count:, count:] = algebra.products(added, force), algebra.products(added, weight)
     squared, mixture = linalg.eigh(energy, inert, lower=False)
-    joined = shapes @ mixture[:count]
-    joined += added @ mixture[count:]
+    joined = algebra.combined(shapes, mixture[:count])
+    joined += algebra.combined(added, mixture[count:])
     full = np.zeros((len(squared), residual_modes.shapes[0].size))
-    full[:, free] = _upright(joined).T
+    full[:, free] = (joined * _signs(joined)).T
     return ResidualModes(
         np.sqrt(squared), full.reshape(len(squared), *residual_modes.shapes.shape[1:]), residual_modes.proof
     )
@@ -324,6 +331,7 @@ def missing_harmonic_responses(
     inertia: FloatArray,
     shapes: FloatArray,
     frequencies: FloatArray,
+    threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[FloatArray]:
     """Compute what residual modes lack of the undamped responses of the discarded modes to harmonic loads.
@@ -346,6 +354,8 @@ def missing_harmonic_responses(
         Residual modes.
     frequencies : ndarray, shape (k,)
         Their frequencies [rad/s].
+    threads : int
+        Threads of the products of block vectors.
     progress : callable
         Called with a line of text before each sweep.
 
@@ -360,19 +370,21 @@ def missing_harmonic_responses(
     ReductionError
         Where the sweeps do not converge.
     """
-    searches, energies = [], []
+    searches, energies, algebra = [], [], BlockAlgebra(len(vectors), threads)
     for w, load in loads:
-        static = shapes @ ((shapes.T @ load) / (frequencies**2 - w**2)[:, None])
+        static = algebra.combined(shapes, algebra.products(shapes, load) / (frequencies**2 - w**2)[:, None])
         energy = np.einsum("ij,ij->j", load, static)
         left = load - (np.asarray(stiffness @ static) - w**2 * np.asarray(mass @ static))
-        searches.append(_ConjugateGradients(left - inertia @ (vectors.T @ left), w**2, _HARMONIC_SETTLED, energy))
+        algebra.subtract(left, inertia, algebra.products(vectors, left))
+        searches.append(_ConjugateGradients(left, w**2, _HARMONIC_SETTLED, energy, algebra))
         energies.append(energy)
-    _sweep_until_settled(stiffness, mass, solve, searches, vectors, inertia, progress)
+    _sweep_until_settled(stiffness, mass, solve, searches, vectors, inertia, algebra, progress)
     missing = []
     for search, energy in zip(searches, energies, strict=True):
-        x = search.x - vectors @ (inertia.T @ search.x)
+        x = search.x
+        algebra.subtract(x, vectors, algebra.products(inertia, x))
         product = np.asarray(stiffness @ x) - search.squared * np.asarray(mass @ x)
-        missing.append(_independent(product, x, energy))
+        missing.append(_independent(product, x, energy, algebra))
     return missing
 
 
@@ -382,11 +394,21 @@ class _ConjugateGradients:
     Each sweep minimises the energy of every column over all columns' directions D, with Dᵀ (K - ω²M) D = I. The
     iteration has settled where a sweep moves no column by more than a part ``settled`` in the norm of the strain
     energy. ``covered`` [m/N] is the compliance held already, added to the columns' own as the measure where little is
-    left.
+    left. The directions of the sweeps up to a number ``kept`` stay in ``first``, each with its product.
     """
 
-    def __init__(self, loads: FloatArray, squared: float, settled: float, covered: FloatArray | float) -> None:
+    def __init__(
+        self,
+        loads: FloatArray,
+        squared: float,
+        settled: float,
+        covered: FloatArray | float,
+        algebra: BlockAlgebra,
+        kept: int = 0,
+    ) -> None:
         self.x = np.zeros_like(loads)
+        self.first: list[tuple[FloatArray, FloatArray]] = []
+        self._algebra, self._kept = algebra, kept
         self.squared, self.left = squared, loads
         self._loads, self._settled, self._covered = loads.copy(), settled, covered
         self._directions = self._products = np.zeros((len(loads), 0))
@@ -394,11 +416,12 @@ class _ConjugateGradients:
 
     def take(self, step: FloatArray, product: FloatArray) -> bool:
         """Take a sweep from the preconditioned loads left, and their product; whether it has settled."""
+        algebra = self._algebra
         if self._directions.shape[1]:
-            before = self._products.T @ step
-            step -= self._directions @ before
-            product -= self._products @ before
-        energy = step.T @ product
+            before = algebra.products(self._products, step)
+            algebra.subtract(step, self._directions, before)
+            algebra.subtract(product, self._products, before)
+        energy = algebra.products(step, product)
         if self._scale is None:
             # Loads are scaled by their response, so that forces and moments count alike.
             self._scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
@@ -407,13 +430,15 @@ class _ConjugateGradients:
         # A direction that the others have already waits until it is no longer rounding beside them.
         new = shares > _ROUNDING_ENERGY_SHARE * max(shares.max(initial=0.0), 0.0)
         mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
-        self._directions, self._products = step @ mixture, product @ mixture
-        length = self._directions.T @ self.left
-        self.x += self._directions @ length
-        self.left -= self._products @ length
+        self._directions, self._products = algebra.combined(step, mixture), algebra.combined(product, mixture)
+        if len(self.first) < self._kept:
+            self.first.append((self._directions, self._products))
+        length = algebra.products(self._directions, self.left)
+        algebra.subtract(self.x, self._directions, -length)
+        algebra.subtract(self.left, self._products, length)
         moved = np.einsum("ij,ij->j", length, length)
         own = np.einsum("ij,ij->j", self._loads, self.x)
-        return bool(np.all(moved <= self._settled**2 * (self._covered + own)))
+        return len(self.first) == self._kept and bool(np.all(moved <= self._settled**2 * (self._covered + own)))
 
 
 def _sweep_until_settled(
@@ -423,6 +448,7 @@ def _sweep_until_settled(
     searches: Sequence[_ConjugateGradients],
     vectors: FloatArray,
     inertia: FloatArray,
+    algebra: BlockAlgebra,
     progress: Callable[[str], None],
 ) -> int:
     """Sweep several searches side by side, preconditioned by A⁻¹, until each has settled; the number of sweeps."""
@@ -430,7 +456,7 @@ def _sweep_until_settled(
     for sweep in range(1, _MOST_SWEEPS + 1):
         progress(f"sweep {sweep}")
         steps = solve(np.hstack([search.left for search in unsettled]))
-        steps -= vectors @ (inertia.T @ steps)
+        algebra.subtract(steps, vectors, algebra.products(inertia, steps))
         products = np.asarray(stiffness @ steps)
         weighted = np.asarray(mass @ steps) if any(search.squared for search in unsettled) else steps
         remaining, first = [], 0
@@ -450,69 +476,73 @@ def _sweep_until_settled(
     )
 
 
-def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, inertia: FloatArray) -> FloatArray:
-    """A⁻¹ of loads in the M-orthogonal complement of the modes: the response of the discarded modes at ω² = σ."""
-    solution = solve(right - inertia @ (vectors.T @ right))
-    return np.asarray(solution - vectors @ (inertia.T @ solution))
-
-
-def _independent(product: FloatArray, residual: FloatArray, known_energy: FloatArray) -> FloatArray:
+def _independent(
+    product: FloatArray, residual: FloatArray, known_energy: FloatArray, algebra: BlockAlgebra
+) -> FloatArray:
     """Residual vectors orthonormal in K, whose ``product`` with them is given, that span the given ones.
 
     Loads are measured by the response that they find, so that a port of rotations counts like one of translations;
     combinations of them whose response adds less than a part of 1e-12 to the ports' compliance are dropped.
     """
-    energy = residual.T @ product
+    energy = algebra.products(residual, product)
     whole = known_energy + energy.diagonal()
     scale = 1.0 / np.sqrt(np.where(whole > 0.0, whole, 1.0))
     shares, mixture = linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
     new = shares > _NOTHING_NEW
-    return np.asarray((residual * scale) @ (mixture[:, new] / np.sqrt(shares[new])))
+    return algebra.combined(residual, scale[:, None] * mixture[:, new] / np.sqrt(shares[new]))
 
 
-def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> FloatArray:
-    """Extend vectors orthonormal in K by the part of further ones outside their span.
+def _extended(
+    stiffness: Operator, span: FloatArray, further: FloatArray, force: FloatArray, algebra: BlockAlgebra
+) -> FloatArray:
+    """Extend vectors orthonormal in K by the part of further ones, whose product with K is given, outside their span.
 
     A combination that adds less than the part `_ADDS_NOTHING` of its own strain energy is dropped.
     """
-    force = np.asarray(stiffness @ further)
     energy_before = np.einsum("ij,ij->j", further, force)
     scale = _ratio(np.ones(len(energy_before)), np.sqrt(np.maximum(energy_before, 0.0)))
-    further, force = further * scale, force * scale
-    for _ in range(2):
-        # Twice, for the rounding that the first time leaves.
-        further = further - span @ (span.T @ force)
-        force = np.asarray(stiffness @ further)
-    energy = further.T @ force
+    further = further * scale
+    algebra.subtract(further, span, algebra.products(span, force) * scale)
+    # Once more, for the rounding that the first time leaves.
+    force = np.asarray(stiffness @ further)
+    algebra.subtract(further, span, algebra.products(span, force))
+    energy = algebra.products(further, force)  # the span's part of this product is in no direction left
     shares, mixture = linalg.eigh(0.5 * (energy + energy.T))
     new = shares > _ADDS_NOTHING
-    return np.hstack([span, further @ (mixture[:, new] / np.sqrt(shares[new]))])
+    return np.hstack([span, algebra.combined(further, mixture[:, new] / np.sqrt(shares[new]))])
 
 
 def _orthonormal(
-    stiffness: Operator, mass: Operator, shapes: FloatArray, vectors: FloatArray, inertia: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """ω² and M-orthonormal shapes with the span of the given ones, less the modes', that diagonalise K, ascending."""
+    stiffness: Operator,
+    mass: Operator,
+    shapes: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    algebra: BlockAlgebra,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """ω² and M-orthonormal shapes with the span of the given ones, less the modes', that diagonalise K, ascending.
+
+    Their products with K and M come behind them.
+    """
     # Twice: the first pass mixes vectors of very different mass, whose rounding the second takes off.
-    squared = np.zeros(shapes.shape[1])
+    squared, products, weights = np.zeros(shapes.shape[1]), shapes, shapes
     for _ in range(2):
-        shapes = shapes - vectors @ (inertia.T @ shapes)
-        squared, mixture = linalg.eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
-        shapes = shapes @ mixture
-    return squared, _upright(shapes)
+        algebra.subtract(shapes, vectors, algebra.products(inertia, shapes))
+        products, weights = np.asarray(stiffness @ shapes), np.asarray(mass @ shapes)
+        squared, mixture = linalg.eigh(algebra.products(shapes, products), algebra.products(shapes, weights))
+        shapes = algebra.combined(shapes, mixture)
+    signs = _signs(shapes)
+    products, weights = (algebra.combined(columns, mixture * signs) for columns in (products, weights))
+    return squared, shapes * signs, products, weights
 
 
-def _upright(shapes: FloatArray) -> FloatArray:
-    """Shapes (n, k) with their largest entries positive."""
-    largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
-    return np.asarray(shapes * np.sign(largest))
+def _signs(shapes: FloatArray) -> FloatArray:
+    """Signs of the largest entries of shapes (n, k), shape (k,)."""
+    return np.asarray(np.sign(shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]))
 
 
-def _turn(
-    stiffness: Operator, squared: FloatArray, shapes: FloatArray, values: FloatArray, vectors: FloatArray
-) -> FloatArray:
-    """Return s of Eq. (3) for each residual mode and mode, shape (k, p); 0 beyond the error of a certified mode."""
-    coupling = np.asarray(stiffness @ shapes).T @ vectors
+def _turn(coupling: FloatArray, squared: FloatArray, values: FloatArray) -> FloatArray:
+    """Return s of Eq. (3) from ψᵀ K φ, shape (k, p) both; 0 beyond the error of a certified mode."""
     apart = values - squared[:, None]
     small = np.abs(coupling) <= RESIDUAL_BOUND * np.abs(apart)
     return np.asarray(np.divide(coupling, apart, out=np.zeros_like(coupling), where=small & (apart != 0.0)))

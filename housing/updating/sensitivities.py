@@ -15,7 +15,7 @@ parameters that concern them, σ : T is summed over the six components of the sy
 within straight elements their modal masses are computed once and scaled for every parameter.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -350,7 +350,11 @@ class ModalSensitivities:
 
 
 def modal_sensitivities(
-    mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Sequence[ModelSensitivity]
+    mesh: Mesh,
+    constants: FloatArray,
+    shapes: FloatArray,
+    rates: Sequence[ModelSensitivity],
+    report: Callable[[float], None] = lambda fraction: None,
 ) -> ModalSensitivities:
     """Compute the derivatives of modal stiffness and mass by each parameter.
 
@@ -362,6 +366,8 @@ def modal_sensitivities(
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Mass-normalised shapes [1/√kg].
     rates : sequence of ModelSensitivity
+    report : callable
+        Called with the completed fraction.
 
     Raises
     ------
@@ -385,7 +391,9 @@ def modal_sensitivities(
             mass[number] += _seen(rate.mass, flat)
     changes = [Changes(rate.velocity, rate.constants) for rate in rates]
     by_node = np.ascontiguousarray(shapes.transpose(1, 2, 0))
-    for part in parts(mesh, n, changes):
+    every = list(parts(mesh, n, changes))
+    for place, part in enumerate(every):
+        report(place / len(every))
         add_part(mesh, part, constants, by_node, changes, stiffness, mass)
     return ModalSensitivities(0.5 * (stiffness + stiffness.transpose(0, 2, 1)), 0.5 * (mass + mass.transpose(0, 2, 1)))
 

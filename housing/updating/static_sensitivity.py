@@ -147,11 +147,13 @@ def _nodal_means(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple
         first += len(block)
         slopes = np.einsum("kjeq,qak->eqja", inverse, reference, optimize=True)
         at = block.nodes.ravel()
-        np.add.at(weights, at, determinant.ravel())
-        for mean, values in zip(means, block_constants, strict=True):
-            np.add.at(mean, at, (determinant * values[:, None]).ravel())
+        # Sums over the elements at each node, by their volumes there.
+        volumes = sparse.csc_array((determinant.ravel(), at, np.arange(len(at) + 1)), shape=(nodes, len(at)))
+        weights += np.asarray(volumes @ np.ones(len(at)))
+        means += np.asarray(volumes @ np.repeat(block_constants, block.nodes.shape[1], axis=1).T).T
+        by_element = slopes.reshape(len(block), -1, block.nodes.shape[1])
         for gradient, field in zip(gradients, fields, strict=True):
-            local = np.einsum("eqja,eai->eqij", slopes, field[block.nodes], optimize=True)
-            np.add.at(gradient, at, (local * determinant[..., None, None]).reshape(-1, 3, 3))
+            local = by_element @ field[block.nodes]
+            gradient += np.asarray(volumes @ local.reshape(len(at), -1)).reshape(gradient.shape).swapaxes(1, 2)
     weights = np.where(weights > 0.0, weights, 1.0)
     return gradients / weights[:, None, None], means / weights

@@ -10,6 +10,9 @@ from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.linear.lines_over_speed import housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
+from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 LIMIT = 2.0 * np.pi * 6000.0
 
@@ -22,28 +25,39 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
     found = lines_over_speed(coupled, [part * machine.speed for part in parts], LIMIT)
     assert found.sensors == tuple(coupled.sensor_rows)
     assert len(found.sensors) == 2
+    felt = list[float]()
     for place, part in enumerate(parts):
         there = load_machine(replace(machine, speed=part * machine.speed), point).coupled
-        lines = MeshHarmonicModel(there).responses(LIMIT)
+        model = MeshHarmonicModel(there)
+        lines = model.responses(LIMIT)
+        harmonics = {cause: line.motion for line in model.responses(3.0 * LIMIT) for cause in line.causes}
+        sensors, housing = np.array(list(there.sensor_rows.values())), there.housing
+        assert housing is not None
+        rows = np.vstack([sensors, there.rows(housing.name, np.eye(housing.size))])
+        matrices = linear_matrices(there.system, model.contact)
+        meshes, directions = varying_meshes(model, LIMIT), there.system.contact_directions
+        varying = lines_of_meshes(
+            meshes, model.contact, directions, rows, DampedMachine(*matrices), harmonics
+        ).by_stiffness
         amplitudes = found.amplitudes[:, place]
         assert np.isfinite(amplitudes[0]).sum() == len(lines)
-        expected = np.array(
-            [[line.frequency**2 * abs(row @ line.motion) for line in lines] for row in there.sensor_rows.values()]
-        )
+        constant = np.array([line.frequency**2 * np.abs(rows @ line.motion) for line in lines]).T
+        changed = [-(line.frequency**2) * (rows @ line.motion) + varying[line.causes[0]] for line in lines]
+        moved = np.array(changed).T
+        expected, constant = np.abs(moved[: len(sensors)]), constant[: len(sensors)]
+        rates = (moved[len(sensors) :] / [1j * line.frequency for line in lines]).T
+        felt.append(np.max(np.abs(expected / constant - 1.0)))
         assert np.allclose(amplitudes[:, : len(lines)], expected, rtol=1e-8, atol=1e-10 * expected.max())
         assert np.allclose(
             found.orders[: len(lines)] * part * abs(machine.speed), [line.frequency for line in lines], rtol=1e-12
         )
-        housing = there.housing
-        assert housing is not None
-        moves = there.rows(housing.name, np.eye(housing.size))
-        rates = np.array([1j * line.frequency * (moves @ line.motion) for line in lines])
-        assert np.allclose(found.rates[place, : len(lines)], rates, rtol=1e-7, atol=1e-10 * np.abs(rates).max())
+        assert np.allclose(found.rates[place, : len(lines)], rates, rtol=1e-7, atol=1e-9 * np.abs(rates).max())
         assert not found.rates[place, len(lines) :].any()
-        assert np.allclose(housing_rates(there, LIMIT)[1], rates, rtol=1e-9, atol=1e-12 * np.abs(rates).max())
+        assert np.allclose(housing_rates(there, LIMIT)[1], rates, rtol=1e-7, atol=1e-9 * np.abs(rates).max())
         together = np.sqrt(np.sum((expected / np.sqrt(2.0)) ** 2, axis=1))
         assert np.allclose(found.rms[:, place], together, rtol=1e-8)
-        assert np.allclose(sensor_rms(there, LIMIT), together, rtol=1e-12)
+        assert np.allclose(sensor_rms(there, LIMIT), together, rtol=1e-8)
+    assert max(felt) > 0.05
 
 
 def test_speeds_of_the_other_sense_or_of_standstill_are_refused() -> None:

@@ -20,10 +20,8 @@ from gearwhine.meshes import mesh_cad
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _figures_unrendered(request: pytest.FixtureRequest) -> None:
-    """Render no figures, but in a module marked ``rendered``: that is of the pictures, and has them as users do."""
-    if not request.node.get_closest_marker("rendered"):
-        request.getfixturevalue("unrendered")
+def _figures_unrendered(unrendered: None) -> None:
+    """Render no figures, but in a module marked ``rendered``."""
 
 
 @pytest.fixture(scope="module", autouse=True)

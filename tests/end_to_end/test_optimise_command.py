@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parent.parent.parent
 OPTIMISATION = """
 [optimisation]
-evaluations = 32
+evaluations = 16
 verify = false
 [optimisation.design]
 "gear.*.tip_relief.amount" = { range = ["5 um", "40 um"] }
@@ -46,7 +46,7 @@ def test_an_interrupted_search_goes_on_by_workers_to_the_designs_of_one_go(tmp_p
         return [line for record in out.glob("samples/*.jsonl") for line in record.read_bytes().splitlines()]
 
     until = time.monotonic() + 240.0
-    while len(kept()) < 8:
+    while len(kept()) < 4:
         assert time.monotonic() < until
         assert process.poll() is None, process.communicate()
         time.sleep(0.02)
@@ -55,19 +55,20 @@ def test_an_interrupted_search_goes_on_by_workers_to_the_designs_of_one_go(tmp_p
     assert process.returncode == 130
     assert "Traceback" not in error
     before = kept()
-    assert 8 <= len(before) < 33
+    assert 4 <= len(before) < 17
     assert not (out / "summary.json").exists()
     assert run_command(["optimise", str(case), "-o", str(out), "-q", "--workers", "2"]) == 0
     document = json.loads((out / "summary.json").read_text())
     assert document["resumed"] >= len(before) - 1
-    assert document["designs"] == 32
+    assert document["designs"] == 16
     assert kept()[: len(before) - 1] == before[: len(before) - 1]
     assert run_command(["optimise", str(case), "-o", str(whole), "-q", "--workers", "1"]) == 0
     with xr.open_dataset(out / "optimise.nc") as resumed, xr.open_dataset(whole / "optimise.nc") as alone:
         assert np.array_equal(resumed["aim_value"].values, alone["aim_value"].values)
         assert np.array_equal(resumed["input_value"].values, alone["input_value"].values)
     # The best of a grid as large is no better.
-    assert run_command(["optimise", str(case), "-o", str(tmp_path / "grid"), "-q", "--method", "grid"]) == 0
-    grid = json.loads((tmp_path / "grid" / "summary.json").read_text())
-    assert document["aims"][0]["designs"][0] <= grid["aims"][0]["designs"][0]
-    assert grid["within_limits"] > 0
+    grid = ["optimise", str(case), "-o", str(tmp_path / "grid"), "-q", "--workers", "1", "--method", "grid"]
+    assert run_command(grid) == 0
+    of_grid = json.loads((tmp_path / "grid" / "summary.json").read_text())
+    assert document["aims"][0]["designs"][0] <= of_grid["aims"][0]["designs"][0]
+    assert of_grid["within_limits"] > 0

@@ -32,7 +32,7 @@ ROTORS = (
     *("sweep", "spur-pair", "-o", "out", "--json"),
     *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
     # Points that take half a second or so, so that there is something to interrupt.
-    *("--set", "transient.revolutions=12", "--set", "transient.discard=11", "--set", "transient.tolerance=1e-4"),
+    *("--set", "transient.revolutions=6", "--set", "transient.discard=5", "--set", "transient.tolerance=2e-4"),
 )
 HOUSED = (
     *("sweep", "small-gearbox", "-q", "--json", "--set", "housing.box.mesh_size=50 mm"),

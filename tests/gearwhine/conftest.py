@@ -1,4 +1,4 @@
-"""Cases: those whose housings are alike share its modes."""
+"""Cases: those whose housings are alike share its modes; figures are rendered where a test is of them."""
 
 import pytest
 
@@ -6,3 +6,8 @@ import pytest
 @pytest.fixture(scope="module", autouse=True)
 def _modes_solved_once(modes_solved_once: None) -> None:
     """Modes of a housing that another test of this process has solved are not solved again."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _figures_unrendered(unrendered: None) -> None:
+    """Render no figures, but in a module marked ``rendered``."""

@@ -43,7 +43,7 @@ def test_progress_names_the_steps_of_the_reduction(
     said: list[str] = []
     solve_modes(beam[1].held(clamped), frequency_limit=LIMIT, ports=port, port_orders=3, progress=said.append)
     work = "attaching the static response at the ports"
-    steps = ["response 1 of 2 at the limit", "response 2 of 2 at the limit", "orthonormal shapes", "proof"]
+    steps = ["orthonormal shapes", "proof"]
     begin = said.index(work)
     sweeps = [f"{work}: sweep {number}" for number in range(1, len(said) - begin - len(steps))]
     assert len(sweeps) > 1

@@ -204,6 +204,13 @@ def deflections(
     )
 
 
+@lru_cache(maxsize=4)
+def straight_body(basis: skfem.Basis) -> skfem.Basis:
+    """The same motions by elements with straight edges."""
+    mesh = basis.mesh
+    return skfem.Basis(skfem.MeshTri1(np.ascontiguousarray(mesh.p[:, : mesh.nvertices]), mesh.t), basis.elem)
+
+
 def loaded_flank(
     body: HeldBody,
     along_flank: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
@@ -221,9 +228,9 @@ def loaded_flank(
     loads, `directions` their unit vectors, `heights` where their lines of action cross the tooth's axis.
     """
     basis, free, factor = body
-    mesh, element = basis.mesh, basis.elem
+    mesh = basis.mesh
     facets = mesh.facets_satisfying(lambda x: along_flank(x)[1] < 2e-3 * module, boundaries_only=True)
-    flank = skfem.FacetBasis(mesh, element, facets=facets, intorder=10)
+    flank = skfem.FacetBasis(mesh, basis.elem, facets=facets, intorder=10)
     arc, _ = along_flank(np.asarray(flank.global_coordinates()))
     loads = []
     for place, direction in zip(places, directions, strict=True):
@@ -238,7 +245,7 @@ def loaded_flank(
     motion = np.zeros_like(right_sides)
     motion[free] = factor.solve(right_sides[free])
     # Inside the tooth edges are straight, so the straight mesh finds the element of a point.
-    inside = skfem.Basis(skfem.MeshTri1(np.ascontiguousarray(mesh.p[:, : mesh.nvertices]), mesh.t), element)
+    inside = straight_body(basis)
     probed = inside.probes(np.array([np.zeros_like(heights), heights])) @ motion
     # The load pushes the tooth from +y towards -x, where the next one stands a pitch on.
     turn = np.array([[math.cos(pitch), -math.sin(pitch)], [math.sin(pitch), math.cos(pitch)]])

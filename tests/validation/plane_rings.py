@@ -158,12 +158,18 @@ def ring_mesh(ring: Ring, fineness: float) -> skfem.MeshTri2:
         return curved_mesh(gmsh, surface)
 
 
-@lru_cache(maxsize=3)
+@lru_cache(maxsize=4)
+def free_ring(ring: Ring, fineness: float, state: PlaneState) -> tuple[skfem.Basis, Any]:
+    """Displacements of a ring that nothing holds, and its stiffness."""
+    basis = skfem.Basis(ring_mesh(ring, fineness), skfem.ElementVector(skfem.ElementTriP2()), intorder=4)
+    return basis, elasticity(basis, ring, state)
+
+
+@lru_cache(maxsize=4)
 def held_ring(ring: Ring, held: Held, fineness: float, state: PlaneState) -> HeldBody:
     """A ring held at its outside."""
-    mesh = ring_mesh(ring, fineness)
-    basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementTriP2()), intorder=4)
-    matrix = elasticity(basis, ring, state)
+    basis, matrix = free_ring(ring, fineness, state)
+    mesh = basis.mesh
     outside = mesh.facets_satisfying(lambda x: np.hypot(x[0], x[1]) > ring.root + 0.9 * ring.rim, boundaries_only=True)
     if held.springs:
 

@@ -8,6 +8,11 @@ import numpy as np
 from gearwhine.numerics.arrays import BoolArray, FloatArray, IndexArray
 from gearwhine.numerics.compiled import FUSED, counted, inner, uncounted
 
+# The arguments of `deflect_pair` after its row.
+Slices = tuple[
+    FloatArray, FloatArray, BoolArray, float, float, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray
+]
+
 
 @inner(fastmath=FUSED)
 def deflect(
@@ -300,6 +305,187 @@ def touch_alone(
             break
 
 
+@inner(fastmath=FUSED)
+def touch_as_before(begin: int, end: int, before: int, meeting: BoolArray, touching: BoolArray) -> None:
+    """Set the slices that touch to those of the pairs ``before`` places from them, where they meet."""
+    for pair in range(begin, end):
+        for i in range(meeting.shape[1]):
+            touching[pair, i] = touching[pair + before, i] and meeting[pair, i]
+
+
+@inner(fastmath=FUSED)
+def sum_pairs(
+    begin: int,
+    end: int,
+    shift: int,
+    width: float,
+    known: BoolArray,
+    slices: Slices,
+    total: FloatArray,
+    at_rest: FloatArray,
+) -> bool:
+    """Sum what resists a mesh's pairs over them, with the deflections of those that are not known yet.
+
+    ``total`` and ``at_rest`` take the sums of its slopes and constants over the face. Returns whether
+    the deflections are bounded.
+    """
+    slopes, constants = slices[7], slices[8]
+    size = at_rest.size
+    for j in range(size):
+        at_rest[j] = 0.0
+        for k in range(size):
+            total[j, k] = 0.0
+    for pair in range(begin, end):
+        row = pair + shift
+        if not known[pair]:
+            if not deflect_pair(pair, row, *slices):
+                return False
+            known[pair] = True
+        for j in range(size):
+            at_rest[j] += width * constants[row, j]
+            for k in range(size):
+                total[j, k] += width * slopes[row, j, k]
+    return True
+
+
+@inner(fastmath=FUSED)
+def reduce_to_compression(
+    total: FloatArray, at_rest: FloatArray, even: FloatArray, whole: FloatArray, constant: FloatArray
+) -> None:
+    """Reduce what resists a mesh to its compression, which comes first, and its shared deflections.
+
+    ``whole`` (1 + k, 1 + k) and ``constant`` (1 + k) take cᵀ K c, cᵀ K and K, and the forces at rest likewise.
+    """
+    own, size = even.size, constant.size
+    constant[0] = 0.0
+    for j in range(size):
+        whole[0, j] = 0.0
+        whole[j, 0] = 0.0
+    for j in range(own):
+        constant[0] += even[j] * at_rest[j]
+        for k in range(own):
+            whole[0, 0] += even[j] * total[j, k] * even[k]
+        for k in range(1, size):
+            whole[0, k] += even[j] * total[j, own + k - 1]
+    for j in range(1, size):
+        constant[j] = at_rest[own + j - 1]
+        whole[j, 0] = whole[0, j]
+        for k in range(1, size):
+            whole[j, k] = total[own + j - 1, own + k - 1]
+
+
+@inner(fastmath=FUSED)
+def solve_compression(
+    force: float, whole: FloatArray, constant: FloatArray, shared: FloatArray, resisting: FloatArray, answer: FloatArray
+) -> None:
+    """Find the compression of a mesh under a force, and minus its shared deflections, ``answer[:, 0]``.
+
+    The shared deflections are the shared compliance times the loads on them. ``answer[:, 1]`` takes the derivatives by
+    the force.
+    """
+    size = constant.size
+    for k in range(size):
+        resisting[0, k] = whole[0, k]
+    answer[0, 0], answer[0, 1] = force - constant[0], 1.0
+    for j in range(1, size):
+        answer[j, 0], answer[j, 1] = 0.0, 0.0
+        for between in range(1, size):
+            answer[j, 0] -= shared[j - 1, between - 1] * constant[between]
+        for k in range(size):
+            resisting[j, k] = 1.0 if j == k else 0.0
+            for between in range(1, size):
+                resisting[j, k] += shared[j - 1, between - 1] * whole[between, k]
+    solve_in_place(resisting, answer)
+
+
+@inner(fastmath=FUSED)
+def excess_of_slices(
+    begin: int,
+    end: int,
+    shift: int,
+    meeting: BoolArray,
+    fields: FloatArray,
+    motion: FloatArray,
+    excess: FloatArray,
+) -> bool:
+    """Find how far the slices of a mesh are pressed into each other; returns whether any that meet are."""
+    carries = False
+    for pair in range(begin, end):
+        row = pair + shift
+        for i in range(meeting.shape[1]):
+            pressed = fields[row, i, 0]
+            for j in range(motion.size):
+                pressed += motion[j] * fields[row, i, 1 + j]
+            excess[pair, i] = pressed
+            carries |= meeting[pair, i] and pressed > 0.0
+    return carries
+
+
+@inner(fastmath=FUSED)
+def nearest_alone(
+    begin: int,
+    end: int,
+    gap: FloatArray,
+    meeting: BoolArray,
+    motions: FloatArray,
+    shape: FloatArray,
+    pressed: FloatArray,
+) -> None:
+    """Set ``pressed`` to 1 at the nearest slices of a mesh, and to 0 at the others."""
+    nearest = shaped_gap(begin, end, gap, meeting, motions, shape, pressed)
+    for pair in range(begin, end):
+        for i in range(gap.shape[1]):
+            pressed[pair, i] = 1.0 if pressed[pair, i] <= nearest else 0.0
+
+
+@inner(fastmath=FUSED)
+def update_touching(
+    begin: int, end: int, meeting: BoolArray, pressed: FloatArray, touching: BoolArray, known: BoolArray
+) -> bool:
+    """Let those slices touch that meet and are pressed into each other; returns whether it was these before."""
+    settled = True
+    for pair in range(begin, end):
+        for i in range(meeting.shape[1]):
+            touches = meeting[pair, i] and pressed[pair, i] > 0.0
+            if touches != touching[pair, i]:
+                touching[pair, i] = touches
+                known[pair] = False
+                settled = False
+    return settled
+
+
+@inner(fastmath=FUSED)
+def load_slices(
+    begin: int,
+    end: int,
+    shift: int,
+    gap: FloatArray,
+    touching: BoolArray,
+    flattening: float,
+    fields: FloatArray,
+    rate: FloatArray,
+    line_load: FloatArray,
+    line_tangent: FloatArray,
+) -> tuple[float, float, float]:
+    """Turn the excess of a mesh's slices, ``line_load``, into loads per width, with their derivatives.
+
+    Returns the sum of the loads per width, the least of them, and the sum of their products with the gaps.
+    """
+    carried, least, closed = 0.0, 0.0, 0.0
+    for pair in range(begin, end):
+        row = pair + shift
+        for i in range(gap.shape[1]):
+            by_compression = 0.0
+            for j in range(rate.size):
+                by_compression += rate[j] * fields[row, i, 1 + j]
+            line_tangent[pair, i] = flattening * by_compression if touching[pair, i] else 0.0
+            line_load[pair, i] = flattening * line_load[pair, i] if touching[pair, i] else 0.0
+            carried += line_load[pair, i]
+            closed += line_load[pair, i] * gap[pair, i]
+            least = min(least, line_load[pair, i])
+    return carried, least, closed
+
+
 @counted(fastmath=FUSED)
 def balance_meshes(
     first: IndexArray,
@@ -368,79 +554,36 @@ def balance_meshes(
     int
         0, 1 where the slices do not settle, or 2 where they yield without bound.
     """
-    n, all_motions, own_motions = gap.shape[1], motions.shape[2], shape.size
+    all_motions, own_motions = motions.shape[2], shape.size
     size = 1 + all_motions - own_motions
     kept = fields.shape[0] >= gap.shape[0]
-    factors = np.empty((2, n))
+    factors = np.empty((2, gap.shape[1]))
     whole, resisting, answer = np.empty((size, size)), np.empty((size, size)), np.empty((size, 2))
     total, at_rest = np.empty((all_motions, all_motions)), np.empty(all_motions)
     constant, motion, rate = np.empty(size), np.empty(all_motions), np.empty(all_motions)
+    slices = (base, gap, touching, flattening, link, motions, fields, slopes, constants, factors)
     for mesh in range(force.size):
         begin, end = first[mesh], first[mesh + 1]
-        offset = 0 if kept else begin
+        # Row of a pair's deflections, less its number.
+        shift = 0 if kept else -begin
         if rounds[1] > 0:
             before = first[mesh - 1] if mesh > 0 else end
             if mesh > 0 and begin - before == end - begin:
-                for pair in range(begin, end):
-                    for i in range(n):
-                        touching[pair, i] = touching[pair + before - begin, i]
+                touch_as_before(begin, end, before - begin, meeting, touching)
             else:
                 shaped_gap(begin, end, gap, meeting, motions, shape, line_load)
                 line_force = force[mesh] / width
                 touch_alone(begin, end, base, line_load, meeting, touching, flattening, line_force, rounds[1])
-            for pair in range(begin, end):
-                for i in range(n):
-                    touching[pair, i] &= meeting[pair, i]
         settled = False
         for _ in range(rounds[0]):
-            for j in range(all_motions):
-                at_rest[j] = 0.0
-                for k in range(all_motions):
-                    total[j, k] = 0.0
-            for pair in range(begin, end):
-                row = pair - offset
-                if not known[pair]:
-                    arrays = (base, gap, touching, flattening, link, motions, fields, slopes, constants, factors)
-                    if not deflect_pair(pair, row, *arrays):
-                        return 2
-                    known[pair] = True
-                for j in range(all_motions):
-                    at_rest[j] += width * constants[row, j]
-                    for k in range(all_motions):
-                        total[j, k] += width * slopes[row, j, k]
+            if not sum_pairs(begin, end, shift, width, known, slices, total, at_rest):
+                return 2
             for j in range(all_motions):
                 for k in range(own_motions):
                     at_rest[j] += total[j, k] * shape[k]
-            # Motions y of a mesh over its face: its compression, then minus the shared deflections, which are the
-            # shared compliance times the loads on them. The second column is their derivative by the compression.
-            constant[0] = 0.0
-            for j in range(size):
-                whole[0, j] = 0.0
-                whole[j, 0] = 0.0
-            for j in range(own_motions):
-                constant[0] += even[j] * at_rest[j]
-                for k in range(own_motions):
-                    whole[0, 0] += even[j] * total[j, k] * even[k]
-                for k in range(1, size):
-                    whole[0, k] += even[j] * total[j, own_motions + k - 1]
-            for j in range(1, size):
-                constant[j] = at_rest[own_motions + j - 1]
-                whole[j, 0] = whole[0, j]
-                for k in range(1, size):
-                    whole[j, k] = total[own_motions + j - 1, own_motions + k - 1]
-            for k in range(size):
-                resisting[0, k] = whole[0, k]
-            answer[0, 0], answer[0, 1] = force[mesh] - constant[0], 1.0
-            for j in range(1, size):
-                answer[j, 0], answer[j, 1] = 0.0, 0.0
-                for between in range(1, size):
-                    answer[j, 0] -= shared[j - 1, between - 1] * constant[between]
-                for k in range(size):
-                    resisting[j, k] = 1.0 if j == k else 0.0
-                    for between in range(1, size):
-                        resisting[j, k] += shared[j - 1, between - 1] * whole[between, k]
+            reduce_to_compression(total, at_rest, even, whole, constant)
             if whole[0, 0] > 0.0:
-                solve_in_place(resisting, answer)
+                solve_compression(force[mesh], whole, constant, shared, resisting, answer)
             else:
                 answer[0, 0] = shaped_gap(begin, end, gap, meeting, motions, shape, line_load)
                 for j in range(1, size):
@@ -449,28 +592,12 @@ def balance_meshes(
                 motion[j] = shape[j] + even[j] * answer[0, 0]
             for j in range(1, size):
                 motion[own_motions + j - 1] = answer[j, 0]
-            carries, settled = False, True
-            for pair in range(begin, end):
-                row = pair - offset
-                for i in range(n):
-                    excess = fields[row, i, 0]
-                    for j in range(all_motions):
-                        excess += motion[j] * fields[row, i, 1 + j]
-                    line_load[pair, i] = excess
-                    carries |= meeting[pair, i] and excess > 0.0
-            nearest = -np.inf
-            if not carries:
-                nearest = shaped_gap(begin, end, gap, meeting, motions, shape, line_tangent)
-            for pair in range(begin, end):
-                for i in range(n):
-                    touches = meeting[pair, i] and line_load[pair, i] > 0.0
-                    # At least the nearest slice carries.
-                    if not carries and meeting[pair, i] and line_tangent[pair, i] <= nearest:
-                        touches = True
-                    if touches != touching[pair, i]:
-                        touching[pair, i] = touches
-                        known[pair] = False
-                        settled = False
+            pressed = line_load
+            if not excess_of_slices(begin, end, shift, meeting, fields, motion, line_load):
+                # At least the nearest slice carries.
+                pressed = line_tangent
+                nearest_alone(begin, end, gap, meeting, motions, shape, pressed)
+            settled = update_touching(begin, end, meeting, pressed, touching, known)
             if settled:
                 break
         if not settled:
@@ -486,23 +613,12 @@ def balance_meshes(
                 loads[mesh, j] += total[j, k] * (motion[k] - shape[k] if k < own_motions else motion[k])
             if j < own_motions:
                 work += loads[mesh, j] * motion[j]
-        carried, least = 0.0, 0.0
-        for pair in range(begin, end):
-            row = pair - offset
-            for i in range(n):
-                by_compression = 0.0
-                for j in range(all_motions):
-                    by_compression += rate[j] * fields[row, i, 1 + j]
-                line_tangent[pair, i] = flattening * by_compression if touching[pair, i] else 0.0
-                if touching[pair, i]:
-                    line_load[pair, i] *= flattening
-                    work -= width * line_load[pair, i] * gap[pair, i]
-                    carried += width * line_load[pair, i]
-                    least = min(least, line_load[pair, i])
-                else:
-                    line_load[pair, i] = 0.0
-        results[0, mesh], results[1, mesh], results[2, mesh] = answer[0, 0], answer[0, 1], 0.5 * work
-        results[3, mesh], results[4, mesh], results[5, mesh] = carried, least, whole[0, 0]
+        carried, least, closed = load_slices(
+            begin, end, shift, gap, touching, flattening, fields, rate, line_load, line_tangent
+        )
+        results[0, mesh], results[1, mesh] = answer[0, 0], answer[0, 1]
+        results[2, mesh] = 0.5 * (work - width * closed)
+        results[3, mesh], results[4, mesh], results[5, mesh] = width * carried, least, whole[0, 0]
         if tangents.shape[0]:
             condense(total, shared, tangents[mesh])
     return 0

@@ -6,19 +6,23 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from gearwhine.analyses.result import Result
-from gearwhine.drawing_process import one_process
+from gearwhine.drawing_process import draw_in_process, early_pictures, one_process
 from gearwhine.housing.errors import RendererUnavailableError
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
+from gearwhine.housing.pictures.scene import find_renderer
+from gearwhine.numerics.progress import silent
 
 
 def result_of(figures: Callable[[Any], Iterator[tuple[str, Figure]]], files: Callable[..., Mapping[str, Any]]) -> Any:
     return Result("test", None, None, {"warnings": []}, _figures=figures, _files=files)
 
 
-def test_figures_and_shapes_are_drawn_side_by_side(tmp_path: Path, unrendered: None) -> None:
+def test_figures_and_shapes_are_drawn_side_by_side(tmp_path: Path) -> None:
     """Each waits for the other to have begun."""
     shapes, figures = threading.Event(), threading.Event()
 
@@ -65,7 +69,7 @@ def test_an_error_among_the_figures_stops_the_shapes(tmp_path: Path, error: Base
     assert not (tmp_path / "out").exists()
 
 
-def test_an_error_among_the_shapes_is_told(tmp_path: Path, unrendered: None) -> None:
+def test_an_error_among_the_shapes_is_told(tmp_path: Path) -> None:
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         raise OSError(28, "No space left on device")
 
@@ -75,3 +79,69 @@ def test_an_error_among_the_shapes_is_told(tmp_path: Path, unrendered: None) -> 
     with pytest.raises(OSError, match="No space left"):
         result_of(draw, files).stored(tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_early_pictures_are_drawn_while_other_work_goes_on(tmp_path: Path) -> None:
+    work, drawn = threading.Event(), threading.Event()
+
+    def draw(name: str, *, place: Path, progress: Any) -> None:
+        assert work.wait(20.0)
+        (place / f"{name}.png").write_text(name)
+        drawn.set()
+
+    with early_pictures() as early:
+        early.draw(draw, "mode-01")
+        work.set()
+        assert drawn.wait(20.0)
+        assert early.move_to(tmp_path) == {"mode-01"}
+        assert (tmp_path / "mode-01.png").read_text() == "mode-01"
+        assert early.move_to(tmp_path) == set()
+
+
+def test_an_error_among_early_pictures_is_told_where_they_are_taken(tmp_path: Path) -> None:
+    def draw(*, place: Path, progress: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    with early_pictures() as early:
+        early.draw(draw)
+        with pytest.raises(OSError, match="No space left"):
+            early.move_to(tmp_path)
+
+
+def test_early_pictures_end_with_the_work_that_fails() -> None:
+    """What is being drawn is stopped, and nothing waits for it."""
+    begun = threading.Event()
+    stopped: list[str] = []
+
+    def draw(*, place: Path, progress: Any) -> None:
+        with one_process() as drawing:
+            begun.set()
+            limit = time.monotonic() + 20.0
+            while not drawing._is_stopped and time.monotonic() < limit:
+                time.sleep(0.01)
+            assert place.exists()
+            stopped.append("stopped" if drawing._is_stopped else "late")
+
+    def fail() -> None:
+        with early_pictures() as early:
+            early.draw(draw)
+            assert begun.wait(20.0)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    assert stopped == ["stopped"]
+
+
+def test_shapes_that_are_drawn_already_are_on_the_sheet_alone(tmp_path: Path) -> None:
+    try:
+        find_renderer()
+    except RendererUnavailableError as error:
+        pytest.skip(str(error))
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    triangles = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    housing = DrawnHousing(corners, triangles, np.arange(4), (0.0, 1.0, 0.0))
+    shapes = [DrawnShape(name, name, "", 0.1 * corners) for name in ("first", "second")]
+    files = draw_in_process(housing, shapes, tmp_path, "png", "iso", silent, sheet="all.png", drawn={"first"})
+    assert files == ["second.png", "all.png"]
+    assert {path.name for path in tmp_path.iterdir()} == {"second.png", "all.png"}

@@ -77,7 +77,7 @@ def test_no_housing_is_solved_for_the_aim_of_a_relief_that_is_left_out(monkeypat
 
 
 def test_the_command_writes_no_pictures_where_they_are_left_out(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], unrendered: None
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     few = ("gears", "spur-pair", "-q", "--without", "relief", "--without", "harris-map")
     assert run_command([*few, "-o", str(tmp_path / "drawn")]) == 0

@@ -18,8 +18,6 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.meshes import Mesh, write_mesh
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, write_ross
 
-pytestmark = pytest.mark.usefixtures("unrendered")
-
 STEEL = {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}
 CHANGED = "the file as it was when the case was read; it has changed since"
 
@@ -75,6 +73,15 @@ def test_a_changed_study_is_of_the_case_that_was_read(tmp_path: Path) -> None:
     file.unlink()
     (tmp_path / "fan.toml").unlink()
     assert studies[1].changed({}).case == studies[1].case
+
+
+def test_a_copy_of_a_case_has_the_files_of_its_tables_as_they_were_read(tmp_path: Path) -> None:
+    write_rotor(tmp_path / "fan.toml")
+    case, read = of_rotor(tmp_path).case, digest(tmp_path / "fan.toml")
+    write_rotor(tmp_path / "fan.toml", 0.6)
+    kept, without = case.model_copy(update={"title": "again"}), case.model_copy(update={"rotor": ()})
+    assert kept.input_files.contents[str(tmp_path / "fan.toml")]["sha256"] == read
+    assert not without.input_files.contents
 
 
 def test_a_file_named_by_a_change_is_read_then(tmp_path: Path) -> None:

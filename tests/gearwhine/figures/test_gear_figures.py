@@ -34,6 +34,8 @@ from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mes
 from gearwhine.from_case.machine import solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs
 
+pytestmark = pytest.mark.rendered
+
 ANGLE = math.radians(20.0)
 FORCE = 1700.0
 

@@ -25,6 +25,8 @@ from gearwhine.figures.rotors.mode_shapes import (
 )
 from gearwhine.figures.style import Label, arrange, draw_row, legend, panel, sheet, spread
 
+pytestmark = pytest.mark.rendered
+
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)
 BEARINGS = (rotors.Bearing.isotropic("left", 0.0, 1e6), rotors.Bearing.isotropic("right", 1.5, 1e6))

@@ -17,8 +17,6 @@ from gearwhine.housing.measured.survey_files import write_survey
 from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.solve.housing_modes import solve_housing
 
-pytestmark = pytest.mark.usefixtures("unrendered")
-
 COARSE = ("housing.box.mesh_size=45 mm", "housing.frequency_limit=4 kHz")
 
 

@@ -24,8 +24,6 @@ from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_poin
 from gearwhine.sweep.solution import solve_point
 from gearwhine.workers import code_digest
 
-pytestmark = pytest.mark.usefixtures("unrendered")
-
 BALLS = {"catalogue": {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "72 mm", "width": "19 mm"}}
 ROLLERS = {"catalogue": {"type": "cylindrical-roller", "bore": "30 mm", "outer_diameter": "62 mm", "width": "16 mm"}}
 

@@ -13,7 +13,7 @@ import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.lines_over_speed import housing_rates
 from gearwhine.coupling.sound.solution import build_radiation
 from gearwhine.numerics.distributions import Discrete
 
@@ -50,13 +50,11 @@ def _own(study: gw.CaseStudy, changes: dict[str, Any]) -> tuple[list[float], lis
     for speed in SPEEDS:
         there = study.changed(changes | {"operation.speed": f"{speed} rpm"}).machine
         coupled = load_machine(there, there.operating_point()).coupled
-        part = coupled.housing
-        assert part is not None
-        powers = []
-        for line in MeshHarmonicModel(coupled).responses(2.0 * np.pi * 3000.0):
-            hertz = line.frequency / (2.0 * np.pi)
-            rates = 1j * line.frequency * (coupled.rows(part.name, np.eye(part.size)) @ line.motion)
-            powers.append((hertz, radiation.solve(hertz, rates[:, None]).power / 1e-12))
+        frequencies, rates = housing_rates(coupled, 2.0 * np.pi * 3000.0)
+        powers = [
+            (hertz, radiation.solve(hertz, rate[:, None]).power / 1e-12)
+            for hertz, rate in zip((frequencies / (2.0 * np.pi)).tolist(), rates, strict=True)
+        ]
         plain.append(10.0 * np.log10(sum(power for _, power in powers)))
         weighted.append(10.0 * np.log10(sum(power * 10.0 ** (0.1 * _weighting(hertz)) for hertz, power in powers)))
     assert machine is not None

@@ -9,7 +9,7 @@ from solids import cubes, hollow_box, spherical_shell
 
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.surface_velocity import surface_velocity
-from gearwhine.housing.acoustics.wrapping import _divided, least_angles, wrap
+from gearwhine.housing.acoustics.wrapping import _collapse, _divided, least_angles, wrap
 from gearwhine.housing.errors import HousingError
 from gearwhine.meshes import Mesh
 
@@ -139,3 +139,16 @@ def test_a_tapered_rib_is_spanned_by_triangles_of_its_height() -> None:
     surface = wrap(replace(mesh, points=np.column_stack([x, sloped, z])), 0.04, 0.03)
     assert _edges(surface).max() <= 1.7 * 0.04 / 1.05 + 1e-12
     assert surface.volume == pytest.approx(0.24 * 0.02 * 0.16 + 0.5 * 0.02 * 0.08 * 0.16, rel=0.06)
+
+
+def test_an_edge_beside_a_flat_triangle_collapses_without_dividing_by_its_area():
+    """A pyramid on both sides of a ring, of whose corners one lies between its neighbour and the tip."""
+    angles = np.arange(6) * np.pi / 3.0
+    ring = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+    points = np.concatenate([ring, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]])
+    points[1] = 0.5 * (points[0] + points[6])
+    corners = [(i, (i + 1) % 6, 6) for i in range(6)] + [((i + 1) % 6, i, 7) for i in range(6)]
+    around = [{number for number, triangle in enumerate(corners) if vertex in triangle} for vertex in range(8)]
+    with np.errstate(divide="raise", invalid="raise"):
+        gone = _collapse(points, corners, around, 0, 5, 1.0)
+    assert set(gone) <= {5, 11}

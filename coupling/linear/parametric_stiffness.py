@@ -1,0 +1,201 @@
+r"""Parametric stiffness: lines of meshes whose stiffness changes with their phase, and with the pitch of each tooth.
+
+About its loaded transmission error e(p), at the phase p under the mean force F̄, a mesh that is pressed by u more has
+the force F̄ + κ(p) u. A machine with the mean mesh stiffness k̄ in place of κ moves as by the further load −g d,
+
+    g = (κ − k̄) u,      u = dᵀq − e.
+
+With G(ω) = dᵀ Z(ω)⁻¹ d of the machine with k̄, L the load on the mesh and n the orders of its frequency Ω_z,
+
+    u_n = G(nΩ_z) (L_n − g_n) − e_n,      g_n = Σ_m κ_{n−m} u_m,      κ_0 less k̄.
+
+The orders couple in sets ρ + j, j whole: the mesh harmonics, ρ = 0, by the change of stiffness from one pair to two;
+those of the hunting period of H meshes, ρ = k/H, likewise, and by what the pitch of single teeth changes in κ, which
+acts on the vibration u of the mesh harmonics; and those of runout, at the turns of a gear. This is Hill's method for a
+linear machine with periodic coefficients (Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 5), with pitch
+deviations to first order. κ is the secant over a tenth h of the mean compression,
+
+    κ(p) = (F(e + h, p) − F(e − h, p)) / 2h,
+
+which changes smoothly where a pitch deviation lets a pair meet a little earlier: the tangent jumps there.
+
+Left out: that flanks part, the torques at rest that follow from the mean of g (as of a free train, which has none), and
+how meshes of different frequencies change one another's lines.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
+from gearwhine.coupling.gears.loaded.transmission_error import period_mean, phasors_between, polygon_phasors
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
+
+_FURTHER = 3  # orders beyond the limit whose coupling counts
+_SECANT = 0.1  # part of the mean compression over which the stiffness is taken
+_AT_ONCE = 4000  # orders whose amplitudes are summed together
+_WHOLE = 1e-9  # distance from a whole order below which a line is a mesh harmonic
+
+
+@dataclass(frozen=True, eq=False)
+class VaryingMesh:
+    """A mesh with its stiffness and transmission error by orders of its frequency.
+
+    Amplitudes x_n are two-sided: x(t) = Σ x_n e^{i n Ω_z t}.
+
+    Attributes
+    ----------
+    number : int
+        Number of the contact in the system.
+    rate : float
+        Mesh frequency Ω_z at nominal speed [rad/s], above 0 in either sense.
+    fractions : ndarray, shape (r,)
+        ρ of each set of orders, in [0, 1/2]; the first is 0.
+    error : ndarray of complex, shape (r, 2 J + 1)
+        e at the orders ρ - J ... ρ + J [m].
+    stiffness : ndarray of complex, shape (r, 4 J + 1)
+        κ less its mean k̄ at the orders ρ - 2 J ... ρ + 2 J [N/m].
+    damped : ndarray of bool, shape (r,)
+        Whether the damping of the mesh passes the error on, too, as that of runout.
+    """
+
+    number: int
+    rate: float
+    fractions: FloatArray
+    error: ComplexArray
+    stiffness: ComplexArray
+    damped: npt.NDArray[np.bool_]
+
+    @property
+    def reach(self) -> int:
+        """J."""
+        return int(self.error.shape[1] // 2)
+
+    @property
+    def orders(self) -> FloatArray:
+        """Orders n of the mesh frequency, shape (r, 2 J + 1)."""
+        return np.asarray(self.fractions[:, None] + np.arange(-self.reach, self.reach + 1))
+
+    @property
+    def coupling(self) -> ComplexArray:
+        """κ_{n-m} from a mesh harmonic m to an order n, shape (r, 2 J + 1, 2 J + 1)."""
+        places = np.arange(2 * self.reach + 1)
+        return np.asarray(self.stiffness[:, places[:, None] - places + 2 * self.reach])
+
+    def loads(self, stiffness: float, damping: float, ratio: float) -> ComplexArray:
+        """Load (k̄ + i ω c) e at the part ``ratio`` of the nominal speed [N], shape (r, 2 J + 1)."""
+        passed = np.where(self.damped[:, None], 1j * ratio * self.rate * self.orders * damping, 0.0)
+        return np.asarray((stiffness + passed) * self.error)
+
+    def up_to(self, limit: float, ratio: float) -> "VaryingMesh":
+        """Return the mesh with the orders that count up to a limit [rad/s] at the part ``ratio`` of the speed."""
+        less = self.reach - _reach(limit, ratio * self.rate)
+        if less <= 0:
+            return self
+        stiffness = self.stiffness[:, 2 * less : -2 * less]
+        return replace(self, error=self.error[:, less:-less], stiffness=stiffness)
+
+    def forces_between(self, compression: ComplexArray, loads: ComplexArray, receptance: ComplexArray) -> ComplexArray:
+        """Return the loads less g of the sets between the mesh harmonics [N], shape (r - 1, 2 J + 1).
+
+        Parameters
+        ----------
+        compression : ndarray of complex, shape (2 J + 1,)
+            u of the mesh harmonics [m].
+        loads : ndarray of complex, shape (r, 2 J + 1)
+            As of `loads`.
+        receptance : ndarray of complex, shape (r, 2 J + 1)
+            G at the orders [m/N].
+        """
+        own, by_harmonics = self.coupling[0], self.coupling[1:] @ compression
+        g_1 = receptance[1:]
+        moved = g_1 * (loads[1:] - by_harmonics) - self.error[1:]
+        further = np.linalg.solve(np.eye(len(own)) + g_1[:, :, None] * own, moved[:, :, None])[:, :, 0]
+        return np.asarray(loads[1:] - by_harmonics - further @ own.T)
+
+
+def _reach(limit: float, rate: float) -> int:
+    return int(np.ceil(limit / rate - _WHOLE)) + _FURTHER
+
+
+def varying_meshes(model: MeshHarmonicModel, limit: float) -> list[VaryingMesh]:
+    """Return the loaded meshes with the orders that count up to a limit at nominal speed [rad/s]."""
+    return [_varying_mesh(model, number, limit) for number in model.loaded]
+
+
+def _varying_mesh(model: MeshHarmonicModel, number: int, limit: float) -> VaryingMesh:
+    contact, mesh = model.machine.system.contacts[number], model.meshes[number]
+    mean, force = float(model.contact.stiffness[number]), mesh.force
+    rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
+    reach = _reach(limit, rate)
+    still, away = np.zeros(mesh.phases.size), _SECANT * force / mean
+    pressed, eased = (
+        tooth_force_history(mesh.phases, mesh.transmission_error + by, still, *contact.contact.kernel_arguments)[:, 0]
+        for by in (away, -away)
+    )
+    secant = (pressed - eased) / (2.0 * away)
+    count = (2 * reach + 1) * periods
+    whole = np.arange(periods // 2 + 1)
+
+    def two_sided(values: FloatArray, widest: int) -> ComplexArray:
+        """Amplitudes at the orders k/H + j, j up to ``widest`` on either side, without the mean."""
+        orders = np.arange(1, count + 1)
+        if periods == 1:
+            found = polygon_phasors(mesh.phases, values, orders)
+        else:
+            parts = np.array_split(orders, -(-count // _AT_ONCE))
+            found = np.concatenate([phasors_between(mesh.phases, values, some) for some in parts])
+        found = 0.5 * found * np.exp(2j * np.pi * contact.phase / periods * orders)
+        found = np.concatenate([[0.0], found if contact.mesh_frequency > 0.0 else found.conj()])
+        at = whole[:, None] + periods * np.arange(-widest, widest + 1)
+        return np.asarray(np.where(at < 0, found[np.abs(at)].conj(), found[np.abs(at)]))
+
+    error, stiffness = two_sided(mesh.transmission_error, reach), two_sided(secant, 2 * reach)
+    stiffness[0, 2 * reach] = period_mean(mesh.phases, secant) - mean
+    runout = list(_runout(contact.errors, rate, reach))
+    return VaryingMesh(
+        number,
+        rate,
+        np.concatenate([whole / periods, [fraction for fraction, _ in runout]]),
+        np.vstack([error, *(row for _, row in runout)]),
+        np.vstack([stiffness, np.zeros((len(runout), stiffness.shape[1]))]),
+        np.arange(len(whole) + len(runout)) >= len(whole),
+    )
+
+
+def _runout(rows: FloatArray, rate: float, reach: int) -> Iterator[tuple[float, ComplexArray]]:
+    """Fraction ρ of each runout's order, and its error at the orders ρ + j."""
+    for amplitude, frequency, angle in rows[(rows[:, 0] != 0.0) & (rows[:, 1] != 0.0)].tolist():
+        order, value = abs(frequency) / rate, 0.5 * amplitude * np.exp(1j * np.sign(frequency) * angle)
+        if order % 1.0 > 0.5:
+            order, value = -order, np.conj(value)
+        place = int(np.floor(order + _WHOLE))
+        error = np.zeros(2 * reach + 1, dtype=np.complex128)
+        if abs(place) <= reach:
+            error[place + reach] = value
+            yield order - place, error
+
+
+def harmonic_compressions(
+    meshes: Sequence[VaryingMesh], compression: Sequence[ComplexArray], receptance: Sequence[Sequence[ComplexArray]]
+) -> list[ComplexArray]:
+    """Compressions u of meshes of one frequency at its harmonics with varying stiffness [m], shape (2 J + 1,) each.
+
+    Parameters
+    ----------
+    meshes : sequence of VaryingMesh
+    compression : sequence of ndarray of complex, shape (2 J + 1,)
+        dᵀq - e of each in the machine with mean stiffness [m].
+    receptance : sequence of sequence of ndarray of complex, shape (2 J + 1,)
+        dᵀ Z⁻¹ d' of mesh and other mesh at the harmonics [m/N].
+    """
+    size = 2 * meshes[0].reach + 1
+    matrix = np.eye(len(meshes) * size, dtype=np.complex128)
+    for row, of_row in enumerate(receptance):
+        for column, mesh in enumerate(meshes):
+            block = slice(row * size, (row + 1) * size), slice(column * size, (column + 1) * size)
+            matrix[block] += of_row[column][:, None] * mesh.coupling[0]
+    return np.split(np.linalg.solve(matrix, np.concatenate(compression)), len(meshes))
