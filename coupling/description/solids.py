@@ -442,6 +442,7 @@ def machine_findings(
         shaft, bearing = by_name[held.rotor], held.bearing
         if held.elements is None and held.law is None:
             yield from bearing.findings
+        yield from seat_error_findings(held)
         if seat_diameters is None:
             continue
         seat = seat_diameters.get(held.seat) if held.seat is not None else None
@@ -477,6 +478,19 @@ def support_findings(shaft: Shaft, bearings: Sequence[MountedBearing]) -> Iterat
 
 
 _MOST_DAMPED = 0.2
+_LARGEST_SEAT_ERROR = 1e-3, 1e-2
+"""Position [m] and rotation [rad] of a bore that no workshop leaves."""
+
+
+def seat_error_findings(held: MountedBearing) -> Iterator[Finding]:
+    """Yield an error of a seat's place that is no error of production."""
+    x, y, rx, ry = held.seat_error or (0.0, 0.0, 0.0, 0.0)
+    off, turned = math.hypot(x, y), math.hypot(rx, ry)
+    if off > _LARGEST_SEAT_ERROR[0] or turned > _LARGEST_SEAT_ERROR[1]:
+        expected = f"a bore within 1 mm and 10 mrad of its place; it is {in_mm(off)} and {1e3 * turned:.3g} mrad off"
+        yield Finding(("bearing", held.bearing.name), "seat_error", None, expected, "warning")
+
+
 _LARGEST_ECCENTRICITY = 0.1
 """Eccentricity of a rotor's mass over its radius that is unlikely."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -22,6 +22,7 @@ from gearwhine.case.units import si_amount
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.failures import explain
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
@@ -41,11 +42,13 @@ from gearwhine.optimisation.design import (
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
 from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, plain_pattern, statistic_problems
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
+from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
 from gearwhine.output.named_quantities import statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solve.machine import plan_of
+from gearwhine.solve.radiated_power import Radiations
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.cost import cost_of_study, duration
 from gearwhine.variation.inputs import varied_inputs
@@ -182,6 +185,8 @@ def optimise(
     analyses: Sequence[str] | None = None,
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
+    acoustics: Acoustics | None = None,
+    scatter: Scatter | None = None,
     method: Method = "search",
     levels: int = 5,
     seed: int = 1,
@@ -208,9 +213,14 @@ def optimise(
     analyses : sequence of str, optional
         What is found of each machine; by default what aims and limits name.
     speeds : sequence of float
-        Signed speeds of "lines" [rad/s]; by default that of each machine.
+        Signed speeds of "lines" and "sound" [rad/s]; by default that of each machine.
     plan : TransientPlan, optional
         Stretch of the motion; with it the transient of the start and of the proposed machines is solved at the end.
+    acoustics : Acoustics, optional
+        Settings of "sound", by default boundary elements in free air; each housing is solved once.
+    scatter : Scatter, optional
+        Machines about each design, of :mod:`gearwhine.optimisation.scatter`; aims and limits are then of the worse side
+        of their scatter, or of statistics such as ``mean of machine.mass_kg`` and ``yield``.
     method : {"search", "grid"}
         "grid" tries every combination of the values, of each range a number of levels.
     levels : int
@@ -247,8 +257,10 @@ def optimise(
     named = tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
     senses = _senses(aims)
     ranges = limits_of("optimise", limits)
+    good = {} if scatter is None else limits_of("optimise, scatter", scatter.good)
+    robust = None if scatter is None else scatter.robust
     if analyses is None:
-        analyses = tuple(dict.fromkeys(filter(None, map(analysis_of, [*senses, *ranges]))))
+        analyses = tuple(dict.fromkeys(filter(None, map(analysis_of, _quantities_named(senses, ranges, good)))))
     if unknown := [name for name in analyses if name not in ANALYSES]:
         raise CouplingError(f"optimise: analyses {unknown}; expected some of {', '.join(ANALYSES)}")
     wanted = Wanted(tuple(analyses), tuple(speeds), plan)
@@ -257,6 +269,8 @@ def optimise(
     }
     if set(first) != set(laws):
         raise CouplingError(f"optimise: a start with {', '.join(first)}; expected a value of each of {', '.join(laws)}")
+
+    radiations = Radiations(acoustics, progress)
 
     def made(values: Mapping[str, float]) -> Machine | Mapping[str, float]:
         try:
@@ -267,44 +281,46 @@ def optimise(
     def found(values: Mapping[str, float]) -> Evaluation:
         machine = made(values)
         if isinstance(machine, Machine):
-            return evaluate(machine, wanted)
+            return evaluate(machine, wanted, radiations.of(machine) if wanted.has_sound else None)
         if not isinstance(machine, Mapping):
             raise CouplingError(
                 f"optimise: {make!r} returned {machine!r}; expected a gearwhine.Machine or numbers by name"
             )
         return Evaluation({name: float(value) for name, value in machine.items()})
 
+    medians = {} if scatter is None else scatter.medians
+
     def values_of(point: FloatArray) -> Mapping[str, float]:
         if point[0] == AS_WRITTEN:
-            return first
-        return {one.name: one.value(float(at)) for one, at in zip(named, point, strict=True)}
+            return medians | dict(first)
+        return medians | {one.name: one.value(float(at)) for one, at in zip(named, point, strict=True)}
 
     progress("the start")
-    nominal = found(first)
-    if problems := list(statistic_problems(senses, ranges, None, {})):
+    as_written = np.full(len(named), AS_WRITTEN)
+    nominal = found(values_of(as_written))
+    if problems := list(statistic_problems(senses, ranges, robust, good)):
         raise CaseError(problems)
-    goals = goals_of(senses, ranges, list(nominal.numbers))
+    goals = goals_of(senses, ranges, list(nominal.numbers), robust, good)
     settings = _Settings(method, evaluations, seed)
     settings.require_library(senses)
 
-    def tried(points: FloatArray, to_come: int) -> list[Design]:
-        outcomes = [outcome_of(partial(found, values_of(point))) for point in points]
-        return [
-            design_of(
-                point,
-                [one.numbers] if isinstance(one, Evaluation) else [],
-                one if isinstance(one, Failure) else None,
-                goals,
-            )
-            for point, one in zip(points, outcomes, strict=True)
-        ]
+    def design_at(point: FloatArray) -> Design:
+        about = [values_of(point)] if scatter is None else scatter.about(values_of(point))
+        outcomes = [outcome_of(partial(found, values)) for values in about]
+        numbers = [one.numbers for one in outcomes if isinstance(one, Evaluation)]
+        return design_of(point, numbers, failure_of(outcomes), goals)
 
-    begun = design_of(np.full(len(named), AS_WRITTEN), [nominal.numbers], None, goals)
+    def tried(points: FloatArray, to_come: int) -> list[Design]:
+        return [design_at(point) for point in points]
+
+    begun = design_at(as_written)
     coordinates = [one.coordinate_of(float(first[one.name])) for one in named]
     designs, ended = _searched(named, goals, settings, coordinates, tried, progress)
     written = tuple(f"{float(first[one.name]):.6g}" for one in named)
-    optimised = Optimised(named, goals, settings.words(goals, named), begun, written, tuple(designs), ended)
-    if plan is not None and plan.run is None and isinstance(machine := made(first), Machine):
+    count = 1 if scatter is None else scatter.samples
+    words = settings.words(goals, named)
+    optimised = Optimised(named, goals, words, begun, written, tuple(designs), ended, gearboxes=count)
+    if plan is not None and plan.run is None and isinstance(machine := made(values_of(as_written)), Machine):
         at = tuple(wanted.speeds or (machine.speed,))
 
         def motion(values: Mapping[str, float]) -> Motion | Failure:
@@ -313,7 +329,7 @@ def optimise(
 
         proposals = [values_of(designs[number].point) for number in optimised.chosen]
         found_motions = tuple(motion(values) for values in proposals)
-        checked = Verification(at, motion(first), found_motions, _given_levels(optimised))
+        checked = Verification(at, motion(values_of(as_written)), found_motions, _given_levels(optimised))
         optimised = replace(optimised, verification=checked if proposals else None)
     return _result(Origin(title), optimised, begin)
 
@@ -428,15 +444,19 @@ def _shown(one: DesignInput, value: object) -> str:
     return f"{amount / one.keys[0][1] / scale:.6g} {one.unit}".strip()
 
 
+def _quantities_named(aims: Iterable[str], limits: Iterable[str], good: Iterable[str]) -> list[str]:
+    """Return the quantities of aims and limits: of a statistic its own, of a yield those of a good gearbox."""
+    named = [*aims, *limits]
+    of_yield = good if YIELD in named else ()
+    return [statistic_of(name)[1] for name in (*(name for name in named if name != YIELD), *of_yield)]
+
+
 def _with_what_is_named(optimisation: Optimisation, good: Mapping[str, Limit]) -> Optimisation:
     """Return an optimisation with the analyses of the quantities that it names, and with these beside its own.
 
     No analyses are named where none has one of them: it is refused with those that there are by default.
     """
-    named = [*optimisation.aim, *optimisation.limit]
-    if YIELD in named:
-        named = [*(name for name in named if name != YIELD), *good]
-    named = [statistic_of(name)[1] for name in named]
+    named = _quantities_named(optimisation.aim, optimisation.limit, good)
     found = {analysis_of(name) for name in (*named, *optimisation.quantities)}
     changes: dict[str, Any] = {}
     if optimisation.quantities:

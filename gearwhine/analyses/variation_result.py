@@ -23,6 +23,7 @@ from gearwhine.case.optimisation import Optimisation
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
@@ -36,7 +37,7 @@ from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
-from gearwhine.solve.radiated_power import radiated_power_of
+from gearwhine.solve.radiated_power import Radiations, radiated_power_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
@@ -186,6 +187,7 @@ def vary(
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
     limits: Mapping[str, tuple[float | None, float | None]] | None = None,
+    acoustics: Acoustics | None = None,
     indices: bool = False,
     widen: float | None = None,
     seed: int = 1,
@@ -203,14 +205,16 @@ def vary(
     samples : int
         Number of machines; with ``indices`` times the number of values and two more.
     analyses : sequence of str
-        What is found of each: "gears", "load", "rotors", "lines", "motion".
+        What is found of each: "gears", "load", "rotors", "mass", "lines", "sound", "motion".
     speeds : sequence of float
-        Signed speeds of "lines" [rad/s]; by default that of each machine.
+        Signed speeds of "lines" and "sound" [rad/s]; by default that of each machine.
     plan : TransientPlan, optional
         Stretch of the motion.
     limits : mapping of str to tuple, optional
         Least and largest value of good machines by quantity, None where there is none:
         ``{"bearing.left.life_h": (5000.0, None)}``.
+    acoustics : Acoustics, optional
+        Settings of "sound", by default boundary elements in free air; each housing is solved once.
     indices : bool
         Find Sobol' indices.
     widen : float, optional
@@ -255,6 +259,7 @@ def vary(
     wider = _wider(inputs, widen)
     points, design = _points(inputs, Variation(), samples, seed, indices=indices, wider=wider)
     values = values_at(inputs, points, wider)
+    radiations = Radiations(acoustics, progress)
 
     def found(row: FloatArray) -> Evaluation:
         try:
@@ -263,7 +268,7 @@ def vary(
             raise CouplingError(str(error)) from error
         if not isinstance(machine, Machine):
             raise CouplingError(f"vary: {make!r} returned {machine!r}; expected a gearwhine.Machine")
-        return evaluate(machine, wanted)
+        return evaluate(machine, wanted, radiations.of(machine) if wanted.has_sound else None)
 
     progress("the machine of all medians")
     nominal = found(values_at(inputs, np.full((1, len(inputs)), 0.5))[0])

@@ -267,7 +267,7 @@ def _trust_region(trials: Trials, begin: FloatArray) -> FloatArray:
 
     continuous = trials.space.continuous
     (number,) = trials.of(begin)
-    scale = max(float(np.ptp([aims[0] for aims in trials.aims if np.isfinite(aims[0])])), 1e-300)
+    scale = float(np.ptp([aims[0] for aims in trials.aims if np.isfinite(aims[0])])) or 1.0
     origin, limits = float(trials.aims[number][0]), trials.excesses[number].size
 
     def tried(x: FloatArray) -> int:

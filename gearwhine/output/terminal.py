@@ -139,7 +139,8 @@ def _grid(table: Table) -> Grid:
     grid = Grid(box=SIMPLE_HEAD, show_edge=False)
     for place, column in enumerate(columns):
         numbers = any(is_number(row[place]) for row in rows)
-        grid.add_column(column.heading, justify="right" if numbers else "left")
+        # Key paths have no spaces to wrap at; what would be cut off is what they differ in.
+        grid.add_column(column.heading, justify="right" if numbers else "left", overflow="fold")
     for row in rows:
         grid.add_row(*row)
     return grid

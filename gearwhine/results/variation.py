@@ -169,14 +169,18 @@ def varied_document(varied: "VariedResult") -> dict[str, Any]:
 
 def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
     yield from failed_warnings(varied, len(varied.outcomes), "failed samples", "gearboxes")
-    wide = [
-        one.name
+    widths = {
+        one.name: float(np.ptp(one.indices.total_interval, axis=1).max())
         for one in varied.headlines
-        if one.indices is not None and float(np.ptp(one.indices.total_interval, axis=1).max()) > _WIDE_INTERVAL
-    ]
-    if wide:
+        if one.indices is not None
+    }
+    wide = {name: width for name, width in widths.items() if width > _WIDE_INTERVAL}
+    if wide and varied.design is not None:
+        # Intervals fall with the root of the number of samples, of which powers of two are best.
+        needed = varied.design.rows * (max(wide.values()) / _WIDE_INTERVAL) ** 2
         message = (
-            f"the total-order indices of {', '.join(wide[:3])} are known to no better than ±0.1: take more samples"
+            f"the total-order indices of {', '.join(list(wide)[:3])} are known to no better than ±0.1: take more "
+            f"samples, some {2 ** int(np.ceil(np.log2(needed)))} in place of {varied.design.rows}"
         )
         yield warning("few samples", message)
     for one in varied.headlines:
@@ -338,11 +342,11 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
         first = [*sorted(values, key=lambda key: -values[key]), *by_rank][:_MOST_INPUTS]
         if not first:
             unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
-        for place, key in enumerate(first):
+        for key in first:
             shown.append(
                 {
-                    "of": "" if place else part_of(row["name"]),
-                    "quantity": "" if place else shown_quantity(row["name"])[0].partition(" [")[0],
+                    "of": part_of(row["name"]),
+                    "quantity": shown_quantity(row["name"])[0].partition(" [")[0],
                     "input": key,
                     "value": f"{values[key]:.2f}" if key in values else "",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",

@@ -1,9 +1,10 @@
-"""Radiation of a case's housing, by which the sound power of any motion of it is known without a further solution."""
+"""Radiation of a housing, by which the sound power of any motion of it is known without a further solution."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearwhine.coupling import Machine
 from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 def radiated_power_of(
     acoustics: Acoustics, housing: HousingModes, progress: Progress = silent
 ) -> "tuple[RadiatedPower, HousingModes]":
-    """Return the radiation of a housing as `[acoustics]` of a case says, and the housing whose record holds it.
+    """Return the radiation of a housing, and the housing whose record holds it.
 
     Raises
     ------
@@ -40,3 +41,29 @@ def radiated_power_of(
     places = np.array(list(positions.values())).reshape(-1, 3)
     table, housing = kept_radiation(acoustics, housing, radiation, places, (AUDIBLE, limit), progress)
     return RadiatedPower(radiation, table, AUDIBLE, limit), housing
+
+
+class Radiations:
+    """Radiation of the housings of machines, solved once for each.
+
+    Parameters
+    ----------
+    acoustics : Acoustics, optional
+        By default boundary elements in free air.
+    progress : callable
+    """
+
+    def __init__(self, acoustics: Acoustics | None = None, progress: Progress = silent) -> None:
+        self._acoustics, self._progress = acoustics or Acoustics(), progress
+        self._found = list["tuple[HousingModes, RadiatedPower]"]()
+
+    def of(self, machine: Machine) -> "RadiatedPower | None":
+        """Return the radiation of a machine's housing; None of a machine without the modes of one."""
+        housing = machine.housing
+        if not isinstance(housing, HousingModes):
+            return None
+        found = next((radiated for other, radiated in self._found if other is housing), None)
+        if found is None:
+            found = radiated_power_of(self._acoustics, housing, self._progress)[0]
+            self._found.append((housing, found))
+        return found

@@ -301,7 +301,7 @@ def _highest(gearbox: _Gearbox, name: str, name_of_speed: str, levels: FloatArra
 def _of_sound(gearbox: _Gearbox) -> Named:
     radiated, over = gearbox.radiated, gearbox.over_speed
     if radiated is None:
-        raise CouplingError("sound: expected a case with a housing of its own mesh, whose surface radiates")
+        raise CouplingError("sound: expected a housing with its modes on a mesh, whose surface radiates")
     if over is None:
         lines = [housing_rates(one, gearbox.limit) for one in gearbox.at_speeds]
     else:

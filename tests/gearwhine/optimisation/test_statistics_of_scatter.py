@@ -11,8 +11,10 @@ from scipy import stats
 import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.case.optimisation import Aim
-from gearwhine.numerics.distributions import Uniform
+from gearwhine.coupling import CouplingError
+from gearwhine.numerics.distributions import Discrete, Normal, Uniform
 from gearwhine.optimisation.goals import goals_of
+from gearwhine.optimisation.scatter import Scatter
 from gearwhine.output.named_quantities import part_of, shown_quantity, statistic_of
 from gearwhine.results.optimisation import sections
 from tests.machines.belted_shaft import BELTED_SHAFT
@@ -101,3 +103,31 @@ def test_a_statistic_is_shown_by_its_quantity() -> None:
     assert shown_quantity("standard deviation of sensor.top.level_db")[0].endswith("over speed [dB]")
     assert shown_quantity(f"mean of {LEFT}")[0] == "mean of force [N]"
     assert statistic_of("mean of ") == ("", "mean of ")
+
+
+def test_numbers_of_python_scatter_about_their_designed_values() -> None:
+    """A margin of a - b with both scattering, and a yield of it being positive, that the normal distribution gives."""
+
+    def margin(values: dict[str, float]) -> dict[str, float]:
+        return {"margin_m": values["a"] - values["b"]}
+
+    scatter = Scatter({"a": Normal(0.0, 3.0), "b": Normal(10.0, 4.0)}, samples=256, good={"margin_m": (0.0, None)})
+    steps = {"a": Discrete([10.0, 16.0, 18.0, 22.0])}
+    found = gw.optimise(margin, steps, {"mean of margin_m": "least"}, limits={"yield": (0.9, None)}, scatter=scatter)
+    designs = found.solved.designs
+    assert [one.sides["mean of margin_m"][0] for one in designs] == pytest.approx([0.0, 6.0, 8.0, 12.0], abs=0.1)
+    expected = [stats.norm.cdf(mean / 5.0) for mean in (0.0, 6.0, 8.0, 12.0)]
+    assert [one.sides["yield"][0] for one in designs] == pytest.approx(expected, abs=0.02)
+    assert found.document["keys"][0]["designs"] == ["18"]
+    assert found.document["gearboxes_about_each"] == 256
+    low, high = designs[1].sides["margin_m"]
+    assert (low, high) == pytest.approx((6.0 - 2.0 * 5.0, 6.0 + 2.0 * 5.0), abs=0.4)
+
+
+def test_a_scatter_that_cannot_be_is_refused() -> None:
+    with pytest.raises(CouplingError, match=r"'a' as 3\.0; expected distributions"):
+        Scatter({"a": 3.0})  # type: ignore[dict-item]
+    with pytest.raises(CouplingError, match=r"quantile = 0\.4; expected"):
+        Scatter({"a": Normal(0.0, 1.0)}, quantile=0.4)
+    with pytest.raises(CouplingError, match="samples = 1"):
+        Scatter({"a": Normal(0.0, 1.0)}, 1)

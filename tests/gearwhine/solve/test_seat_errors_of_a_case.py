@@ -30,3 +30,12 @@ def test_a_bore_of_a_bearing_with_its_own_law_is_refused_by_its_key() -> None:
     stop = {"bearing.input-right.stiffness": {"stop": {"force": "1 N", "depth": "1 um"}}}
     with pytest.raises(CaseError, match=r"bearing.*seat_error.*none of a stop"):
         gw.load("helical-pair", stop | {"bearing.input-right.seat_error.x": "20 um"})
+
+
+def test_a_bore_farther_off_than_any_workshop_leaves_it_is_warned_of() -> None:
+    # Millimetres in place of micrometres.
+    far = gw.load("helical-pair", {"bearing.input-right.seat_error": {"x": "3 mm", "y": "4 mm", "tilt_x": "1 mrad"}})
+    (told,) = [one for one in far.check().warnings if "seat_error" in one]
+    assert "it is 5 mm and 1 mrad off" in told
+    near = gw.load("helical-pair", {"bearing.input-right.seat_error": {"x": "30 um"}})
+    assert not [one for one in near.check().warnings if "seat_error" in one]

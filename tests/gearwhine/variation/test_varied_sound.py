@@ -1,5 +1,6 @@
 """Sound power of varied gearboxes and designs, against the sound of each line solved by itself."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,11 @@ from sounding_gearbox import TOP
 
 import gearwhine as gw
 from gearwhine.case import CaseError
+from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.linear.lines_over_speed import housing_rates
 from gearwhine.coupling.sound.solution import build_radiation
+from gearwhine.numerics.distributions import Discrete
 
 RPM = 30.0 / np.pi
 SPEEDS = (2500.0, 4000.0)
@@ -47,10 +50,11 @@ def _own(study: gw.CaseStudy, changes: dict[str, Any]) -> tuple[list[float], lis
     for speed in SPEEDS:
         there = study.changed(changes | {"operation.speed": f"{speed} rpm"}).machine
         coupled = load_machine(there, there.operating_point()).coupled
-        powers = []
-        for frequency, rates in zip(*housing_rates(coupled, 2.0 * np.pi * 3000.0), strict=True):
-            hertz = float(frequency) / (2.0 * np.pi)
-            powers.append((hertz, radiation.solve(hertz, rates[:, None]).power / 1e-12))
+        frequencies, rates = housing_rates(coupled, 2.0 * np.pi * 3000.0)
+        powers = [
+            (hertz, radiation.solve(hertz, rate[:, None]).power / 1e-12)
+            for hertz, rate in zip((frequencies / (2.0 * np.pi)).tolist(), rates, strict=True)
+        ]
         plain.append(10.0 * np.log10(sum(power for _, power in powers)))
         weighted.append(10.0 * np.log10(sum(power * 10.0 ** (0.1 * _weighting(hertz)) for hertz, power in powers)))
     assert machine is not None
@@ -101,3 +105,23 @@ def test_a_gearbox_with_other_walls_has_a_radiation_of_its_own(tmp_path: Path) -
     study = _coarse().changed(ESTIMATE | {"housing.box.wall": f"{wall!r} mm"})
     plain, _ = _own(study, {})
     assert found.solved.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
+
+
+def test_machines_of_python_sound_as_those_of_a_case(tmp_path: Path) -> None:
+    study = _coarse().changed(ESTIMATE)
+    found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1).solved
+    machine, acoustics = study.machine, study.settings.acoustics
+    speeds = [speed / RPM for speed in SPEEDS]
+    law = {"torque": Discrete([float(found.values[0, 0])])}
+
+    def loaded(values: Any) -> gw.Machine:
+        return replace(machine, torque=values["torque"])
+
+    settings: dict[str, Any] = {"speeds": speeds, "acoustics": acoustics}
+    own = gw.vary(loaded, law, 1, analyses=["sound"], **settings).solved.outcomes[0]
+    assert own.curves["housing.sound_power_db"] == pytest.approx(found.outcomes[0].curves["housing.sound_power_db"])
+    best = gw.optimise(loaded, law, {"housing.sound_power_db": "least"}, **settings).solved.best
+    assert best.aims == pytest.approx([own.numbers["housing.sound_power_db"]])
+    bare = replace(machine, housing=machine.housing_component)
+    with pytest.raises(CouplingError, match="modes on a mesh"):
+        gw.vary(lambda values: replace(bare, **values), law, 1, analyses=["sound"], **settings)
