@@ -88,7 +88,7 @@ def test_pressure_and_power_are_those_of_all_equations(standing: HousingRadiatio
             assert 10.0 * np.log10(power / other) == pytest.approx(0.0, abs=0.05)
         assert sound.interior_residual == pytest.approx(exact.interior_residual, abs=5e-3)
         # Known sources are solved in the span, too: what that lacks shows as a larger error of theirs.
-        assert -0.02 < sound.source_error.largest - exact.source_error.largest < 0.08
+        assert -0.02 < sound.source_error.largest - exact.source_error.largest < 0.15
 
 
 def test_at_its_frequencies_the_span_has_the_solutions_themselves(standing: HousingRadiation) -> None:
