@@ -34,7 +34,7 @@ from gearwhine.numerics.dense_least_squares import solve_least_squares
 LARGEST_MISFIT = 1.5e-2
 """Largest root mean square of what equations without a part in a solution leave over, relative to the pressure."""
 
-SPACING = 4.5
+SPACING = 5.2
 """Distance of the frequencies of a span, as wavenumber times the largest extent of the surface."""
 
 _NEIGHBOURS = 4  # frequencies around one whose solutions span its own
