@@ -615,7 +615,7 @@ class HousingRadiation:
         if known is not None and known.hold(wanted):
             return replace(self, reduced=ReducedElements(elements, modal, known))
         between = min(between[0], float(wanted[0])), max(between[1], float(wanted[-1]))
-        if (chosen := spanning_frequencies(wanted, between, elements)) is None:
+        if (chosen := spanning_frequencies(wanted, between, elements, modal.shape[1])) is None:
             return self
         message, done = f"sound of all modes at {len(chosen)} frequencies", dict.fromkeys(chosen.tolist(), 0.0)
 

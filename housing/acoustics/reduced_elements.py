@@ -34,8 +34,8 @@ from gearwhine.numerics.dense_least_squares import solve_least_squares
 LARGEST_MISFIT = 1.5e-2
 """Largest root mean square of what equations without a part in a solution leave over, relative to the pressure."""
 
-SPACING = 5.2
-"""Distance of the frequencies of a span, as wavenumber times the largest extent of the surface."""
+SPACING = 6.0
+"""Largest mean distance of the frequencies of a span, as wavenumber times the largest extent of the surface."""
 
 _NEIGHBOURS = 4  # frequencies around one whose solutions span its own
 _LEAST_SINGULAR_VALUE = 1e-3  # of the largest one
@@ -43,7 +43,7 @@ _CLOSER = 0.8  # power of even steps by which the frequencies of a span lie clos
 _EQUATIONS = 2.0  # vertices whose equations are taken, over the columns of the basis
 _WORTH = 2.0  # frequencies at which fields are wanted for each at which all modes are solved, above which these pay
 _PROVING = 150  # vertices whose equations prove it
-_MOST = 0.6  # part of the vertices above which all equations are as cheap
+_MOST = 0.6  # part of the vertices that a span may ask for equations: above it all are as cheap
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +125,9 @@ class ReducedElements:
         if len(same):
             of_modes, of_sources = np.split(self.solutions.pressure[same[0]], [len(rates)], axis=1)
             return self.elements.field(frequency_hz, velocity, np.hstack([of_modes @ rates, of_sources]))
-        if not frequencies[0] < frequency_hz < frequencies[-1] or (basis := self._basis_around(frequency_hz)) is None:
+        if not frequencies[0] < frequency_hz < frequencies[-1]:
             return None
+        basis = self._basis_around(frequency_hz)
         medium = self.elements.medium
         wavenumber = medium.wavenumber(frequency_hz)
         flux = self.elements.with_known_sources(wavenumber, medium.flux(frequency_hz, velocity))
@@ -140,17 +141,17 @@ class ReducedElements:
             return None
         return self.elements.field(frequency_hz, velocity, every)
 
-    def _basis_around(self, frequency_hz: float) -> _Basis | None:
+    def _basis_around(self, frequency_hz: float) -> _Basis:
         above = int(np.searchsorted(self.solutions.frequencies, frequency_hz))
         return self._bases[int(np.clip(above - _NEIGHBOURS // 2, 0, len(self._bases) - 1))]
 
     @cached_property
-    def _bases(self) -> tuple[_Basis | None, ...]:
+    def _bases(self) -> tuple[_Basis, ...]:
         count = max(len(self.solutions.frequencies) - _NEIGHBOURS + 1, 1)
         return tuple(self._basis(slice(first, first + _NEIGHBOURS)) for first in range(count))
 
-    def _basis(self, some: slice) -> _Basis | None:
-        """Span of some solutions, each of unit size; None where it has too many columns to be of use."""
+    def _basis(self, some: slice) -> _Basis:
+        """Span of some solutions, each of unit size."""
         surface = self.elements.surface
         area = np.bincount(surface.triangles.ravel(), np.repeat(surface.areas / 3.0, 3), len(surface.points))
         sizes = np.sqrt(area)[:, None]
@@ -161,8 +162,6 @@ class ReducedElements:
         chosen = squares > _LEAST_SINGULAR_VALUE**2 * squares[-1]
         columns = solutions @ (mixtures[:, chosen] / np.sqrt(squares[chosen]))
         wanted, count = int(_EQUATIONS * columns.shape[1]), len(surface.points)
-        if wanted + _PROVING > _MOST * count:
-            return None
         # Without replacement: the largest of log-weights with Gumbel's noise.
         generator = np.random.default_rng(2013)
         leverage = (np.abs(columns) ** 2).sum(axis=1)
@@ -172,11 +171,12 @@ class ReducedElements:
 
 
 def spanning_frequencies(
-    wanted: FloatArray, between: tuple[float, float], elements: BoundaryElements
+    wanted: FloatArray, between: tuple[float, float], elements: BoundaryElements, modes: int
 ) -> FloatArray | None:
-    """Return the frequencies at which solutions span those at some others, ascending; None where these are as few.
+    """Return the frequencies at which solutions span those at some others, ascending; None where they do not pay.
 
-    They lie closer together where waves are short, and are of those at which fields are wanted where these are near.
+    That is where few fields are wanted, or the surface is small for the number of modes. The frequencies lie closer
+    together where waves are short, and are of those at which fields are wanted where these are near.
 
     Parameters
     ----------
@@ -185,11 +185,14 @@ def spanning_frequencies(
     between : tuple of float
         Lowest and highest frequency [Hz].
     elements : BoundaryElements
+    modes : int
+        Number of modes.
     """
     low, high = between
+    columns = _NEIGHBOURS * (modes + len(elements.known_sources.places))
     reach = elements.medium.wavenumber(high - low) * float(np.ptp(elements.surface.points, axis=0).max())
-    count = max(int(np.ceil(reach / SPACING)) + 1, _NEIGHBOURS)
-    if len(wanted) <= _WORTH * count:
+    count = max(int(np.ceil(reach / SPACING)) + 2, _NEIGHBOURS)
+    if len(wanted) <= _WORTH * count or _EQUATIONS * columns + _PROVING > _MOST * len(elements.surface.points):
         return None
     even = low + (high - low) * np.linspace(0.0, 1.0, count) ** _CLOSER
     for place in range(1, count - 1):
