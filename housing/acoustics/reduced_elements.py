@@ -21,15 +21,16 @@ power by two ways.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, SoundField
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.storage.netcdf import LabelledArray
 from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 from gearwhine.numerics.dense_least_squares import solve_least_squares
+from gearwhine.numerics.progress import in_order
 
 LARGEST_MISFIT = 1.5e-2
 """Largest root mean square of what equations without a part in a solution leave over, relative to the pressure."""
@@ -86,7 +87,7 @@ class SpanningSolutions:
 
 
 @dataclass(frozen=True, eq=False)
-class _Basis:
+class Basis:
     """Span of the solutions at neighbouring frequencies."""
 
     columns: ComplexArray
@@ -105,11 +106,24 @@ class ReducedElements:
     modal : ndarray, shape (3 n_triangles, n_modes)
         Normal velocities of the modes.
     solutions : SpanningSolutions
+    bases : tuple of Basis
+        Span of each few neighbouring solutions.
     """
 
     elements: BoundaryElements
     modal: FloatArray
     solutions: SpanningSolutions
+    bases: tuple[Basis, ...]
+
+    @classmethod
+    def of(cls, elements: BoundaryElements, modal: FloatArray, solutions: SpanningSolutions) -> "ReducedElements":
+        """Make the bases of all solutions' neighbours."""
+        count = max(len(solutions.frequencies) - _NEIGHBOURS + 1, 1)
+
+        def basis(first: int) -> Basis:
+            return _basis(elements.surface, solutions.pressure[first : first + _NEIGHBOURS])
+
+        return cls(elements, modal, solutions, in_order(basis, range(count), "span of the solutions"))
 
     def solve(self, frequency_hz: float, rates: ComplexArray) -> SoundField | None:
         """Solve for the field of some rates of the modes' coordinates; None where the span does not hold it.
@@ -127,7 +141,8 @@ class ReducedElements:
             return self.elements.field(frequency_hz, velocity, np.hstack([of_modes @ rates, of_sources]))
         if not frequencies[0] < frequency_hz < frequencies[-1]:
             return None
-        basis = self._basis_around(frequency_hz)
+        above = int(np.searchsorted(frequencies, frequency_hz))
+        basis = self.bases[int(np.clip(above - _NEIGHBOURS // 2, 0, len(self.bases) - 1))]
         medium = self.elements.medium
         wavenumber = medium.wavenumber(frequency_hz)
         flux = self.elements.with_known_sources(wavenumber, medium.flux(frequency_hz, velocity))
@@ -140,34 +155,6 @@ class ReducedElements:
         if np.any(left > LARGEST_MISFIT * _mean_square(every)):
             return None
         return self.elements.field(frequency_hz, velocity, every)
-
-    def _basis_around(self, frequency_hz: float) -> _Basis:
-        above = int(np.searchsorted(self.solutions.frequencies, frequency_hz))
-        return self._bases[int(np.clip(above - _NEIGHBOURS // 2, 0, len(self._bases) - 1))]
-
-    @cached_property
-    def _bases(self) -> tuple[_Basis, ...]:
-        count = max(len(self.solutions.frequencies) - _NEIGHBOURS + 1, 1)
-        return tuple(self._basis(slice(first, first + _NEIGHBOURS)) for first in range(count))
-
-    def _basis(self, some: slice) -> _Basis:
-        """Span of some solutions, each of unit size."""
-        surface = self.elements.surface
-        area = np.bincount(surface.triangles.ravel(), np.repeat(surface.areas / 3.0, 3), len(surface.points))
-        sizes = np.sqrt(area)[:, None]
-        solutions = np.concatenate([*self.solutions.pressure[some]], axis=1) * sizes
-        lengths = np.linalg.norm(solutions, axis=0)
-        solutions = solutions[:, lengths > 0.0] / lengths[lengths > 0.0]
-        squares, mixtures = np.linalg.eigh(solutions.conj().T @ solutions)
-        chosen = squares > _LEAST_SINGULAR_VALUE**2 * squares[-1]
-        columns = solutions @ (mixtures[:, chosen] / np.sqrt(squares[chosen]))
-        wanted, count = int(_EQUATIONS * columns.shape[1]), len(surface.points)
-        # Without replacement: the largest of log-weights with Gumbel's noise.
-        generator = np.random.default_rng(2013)
-        leverage = (np.abs(columns) ** 2).sum(axis=1)
-        drawn = np.argsort(-np.log(leverage) - generator.gumbel(size=count), kind="stable")
-        proving = generator.choice(drawn[wanted:], _PROVING, replace=False)
-        return _Basis((columns / sizes).astype(np.complex64), np.sort(drawn[:wanted]), np.sort(proving))
 
 
 def spanning_frequencies(
@@ -200,6 +187,25 @@ def spanning_frequencies(
         if abs(near - even[place]) < 0.25 * (even[place + 1] - even[place]):
             even[place] = near
     return even
+
+
+def _basis(surface: RadiatingSurface, pressure: npt.NDArray[np.complex64]) -> Basis:
+    """Span of some solutions, each of unit size."""
+    count = len(surface.points)
+    sizes = np.sqrt(np.bincount(surface.triangles.ravel(), np.repeat(surface.areas / 3.0, 3), count))[:, None]
+    solutions = np.concatenate([*pressure], axis=1) * sizes
+    lengths = np.linalg.norm(solutions, axis=0)
+    solutions = solutions[:, lengths > 0.0] / lengths[lengths > 0.0]
+    squares, mixtures = np.linalg.eigh(solutions.conj().T @ solutions)
+    chosen = squares > _LEAST_SINGULAR_VALUE**2 * squares[-1]
+    columns = solutions @ (mixtures[:, chosen] / np.sqrt(squares[chosen]))
+    wanted = int(_EQUATIONS * columns.shape[1])
+    # Without replacement: the largest of log-weights with Gumbel's noise.
+    generator = np.random.default_rng(2013)
+    leverage = (np.abs(columns) ** 2).sum(axis=1)
+    drawn = np.argsort(-np.log(leverage) - generator.gumbel(size=count), kind="stable")
+    proving = generator.choice(drawn[wanted:], _PROVING, replace=False)
+    return Basis((columns / sizes).astype(np.complex64), np.sort(drawn[:wanted]), np.sort(proving))
 
 
 def _mean_square(values: ComplexArray) -> FloatArray:

@@ -133,6 +133,8 @@ def test_arrays_hold_the_solutions_bit_for_bit(standing: HousingRadiation) -> No
     kept = radiation.spanned([300.0, 1200.0], (20.0, 2000.0), known=again)
     assert kept.reduced is not None
     assert kept.reduced.solutions is again
+    fewer = replace(radiation, modal=(radiation.modal[0][:, :9],))
+    assert fewer.spanned([300.0, 1200.0], (20.0, 2000.0), known=again) is fewer  # of other modes
     assert radiation.spanned([300.0, 2100.0], (20.0, 2000.0), known=again) is radiation  # few, and one beyond
 
 
