@@ -488,6 +488,7 @@ def solve_sound(
     def of_line(place: int) -> SoundLine:
         number, hertz = chosen[place], float(motion.frequencies[chosen[place]])
         sound = radiation.solve(hertz, rates[number].T)
+        _ = sound.resistance  # the far field's integral, on this thread beside that of another line
         heard = sound.pressure_at(solved.places) if positions else np.zeros(0, dtype=np.complex128)
         powers = _mechanism_powers(mechanisms, radiation, _TWO_PI * hertz, _TWO_PI * motion.tolerance)
         return SoundLine(

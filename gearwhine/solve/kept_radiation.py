@@ -155,7 +155,7 @@ class KeptSpan:
         if record.notes.get(_NOTE_OF_SPAN) == key:
             known = SpanningSolutions.of_arrays(record.extras)
         spanned = radiation.spanned(wanted, between, progress, known)
-        if spanned.reduced is not None and spanned.reduced.solutions is not known:
+        if spanned is not radiation and spanned.reduced is not None and spanned.reduced.solutions is not known:
             extras = {**record.extras, **spanned.reduced.solutions.arrays()}
             updated = replace(record, extras=extras, notes={**record.notes, _NOTE_OF_SPAN: key})
             self.housing = replace(self.housing, record=updated, source_holds=False)

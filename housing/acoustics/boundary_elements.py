@@ -31,7 +31,7 @@ Every solution of a closed surface includes the field of known sources inside, w
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -576,15 +576,11 @@ def _integrals(
     flux: RealParts,
 ) -> SurfaceIntegrals:
     """Integrals over a surface and its image in a hard plane; points in the plane are vertices of both."""
-    integrals = surface_integrals(surface, points, own, wavenumber, flux)
     if plane is None:
-        return integrals
-    if own is not None:
-        own = np.where(np.abs(plane.height(points)) <= surface.rounding, own, -1)
-    image = surface_integrals(surface, plane.mirror(points), own, wavenumber, flux)
-    for values, more in ((integrals.single, image.single), (integrals.double, image.double)):
-        values += more
-    return replace(integrals, static=integrals.static + image.static)
+        return surface_integrals(surface, points, own, wavenumber, flux)
+    vertices = np.full(len(points), -1) if own is None else own
+    in_plane = np.where(np.abs(plane.height(points)) <= surface.rounding, vertices, -1)
+    return surface_integrals(surface, points, vertices, wavenumber, flux, (plane.mirror(points), in_plane))
 
 
 def _represent(

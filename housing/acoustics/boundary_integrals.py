@@ -238,7 +238,7 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
     """Integrals over all triangles for some points; `vertex` is the vertex at a point, or -1.
 
     With the three points of degree 2 the shape function of a corner is 2/3 at its own and 1/6 at the others.
-    `centers` to `weights` are in blocks, see :func:`_in_blocks`; `layer` is set, `double` and `static` are added to.
+    `centers` to `weights` are in blocks, see :func:`_in_blocks`; `layer`, `double` and `static` are added to.
     """
     count, blocks = triangles.shape[0], weights.shape[0]
     far, near = np.empty((blocks, _BLOCK)), np.empty(count, np.int64)
@@ -263,7 +263,7 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                 )  # fmt: skip
                 total += _sum(far_dg0)
                 for part in range(2):
-                    layer[t, part, q, start : start + length] = far_g[part, :length]
+                    layer[t, part, q, start : start + length] += far_g[part, :length]
             for e in range(length):
                 real = (far_dg[0, 0, e] + far_dg[1, 0, e] + far_dg[2, 0, e]) / 6.0
                 imaginary = (far_dg[0, 1, e] + far_dg[1, 1, e] + far_dg[2, 1, e]) / 6.0
@@ -285,8 +285,8 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
             mean = (g[0] + g[1] + g[2]) / 3.0
             for i in range(3):
                 # Values at the three points are S q of those at the corners, and S⁻¹ = 2 − 1/3.
-                layer[t, 0, i, e] = 2.0 * g[i].real - mean.real
-                layer[t, 1, i, e] = 2.0 * g[i].imag - mean.imag
+                layer[t, 0, i, e] += 2.0 * g[i].real - mean.real
+                layer[t, 1, i, e] += 2.0 * g[i].imag - mean.imag
                 double[t, triangles[e, i]] += dg[i]
                 total += dg0[i]
         static[t] += total
@@ -346,25 +346,28 @@ class RealParts:
 
     Attributes
     ----------
-    parts : tuple of (complex, ndarray)
-        Factor 1 or i and its real columns, shape (m, n); none of a part that is zero.
+    parts : tuple of (complex, ndarray of int, ndarray)
+        Factor 1 or i, the columns of which this part is not zero, and it, shape (m, n_of_them).
     columns : int
     """
 
-    parts: tuple[tuple[complex, FloatArray], ...]
+    parts: tuple[tuple[complex, IntArray, FloatArray], ...]
     columns: int
 
     @classmethod
     def of(cls, values: ComplexArray) -> "RealParts":
         """Columns of shape (m, n)."""
-        both = ((1.0 + 0.0j, values.real), (1.0j, values.imag))
-        return cls(tuple((by, np.ascontiguousarray(part)) for by, part in both if part.any()), values.shape[1])
+        parts = []
+        for factor, part in ((1.0 + 0.0j, values.real), (1.0j, values.imag)):
+            filled = np.flatnonzero(part.any(axis=0))
+            parts.append((factor, filled, np.ascontiguousarray(part[:, filled])))
+        return cls(tuple(parts), values.shape[1])
 
     def times(self, real: FloatArray, imaginary: FloatArray) -> ComplexArray:
         """Return (real + i imaginary) x, matrices of shape (k, m)."""
         total = np.zeros((len(real), self.columns), dtype=np.complex128)
-        for factor, part in self.parts:
-            total += factor * (real @ part + 1j * (imaginary @ part))
+        for factor, filled, part in self.parts:
+            total[:, filled] += factor * (real @ part + 1j * (imaginary @ part))
         return total
 
 
@@ -399,6 +402,7 @@ def surface_integrals(
     own: IntArray | None,
     wavenumber: float,
     flux: RealParts,
+    images: tuple[FloatArray, IntArray] | None = None,
 ) -> SurfaceIntegrals:
     """Integrate Green's function and its normal derivative over a surface.
 
@@ -413,6 +417,8 @@ def surface_integrals(
         k [rad/m].
     flux : RealParts
         q, see :func:`point_flux`.
+    images : tuple of ndarray, optional
+        A further point for each, and the vertex that it is or -1, whose integrals are added: its mirror image.
     """
     vertex = np.full(len(points), -1) if own is None else own
     count = len(surface.triangles)
@@ -430,17 +436,21 @@ def surface_integrals(
             surface.areas / (12.0 * math.pi),
         )
     )
-    places = np.ascontiguousarray(points)
+    sets = [(np.ascontiguousarray(points), vertex)]
+    if images is not None:
+        sets.append((np.ascontiguousarray(images[0]), images[1]))
     rows = max(_LAYER // (6 * count), 1)
     layer = np.empty((min(rows, len(points)), 2, 3, count))
     for start in range(0, len(points), rows):
         some = slice(start, min(start + rows, len(points)))
         part = layer[: some.stop - start]
-        _integrate_rows(
-            places[some], vertex[some], surface.corners, surface.triangles, surface.normals, surface.areas,
-            reaches, centers, wavenumber, quadrature, normals, weights,
-            _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
-        )  # fmt: skip
+        part[:] = 0.0
+        for places, vertices in sets:
+            _integrate_rows(
+                places[some], vertices[some], surface.corners, surface.triangles, surface.normals, surface.areas,
+                reaches, centers, wavenumber, quadrature, normals, weights,
+                _DEGREE_4, _POINTS, _WEIGHTS, part, double[some], static[some],
+            )  # fmt: skip
         real, imaginary = np.moveaxis(part.reshape(-1, 2, 3 * count), 1, 0)
         single[some] = flux.times(real, imaginary)
     return SurfaceIntegrals(single, double, static)

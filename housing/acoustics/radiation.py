@@ -612,10 +612,12 @@ class HousingRadiation:
         if self.method != "boundary-elements" or self.reduced is not None or not len(wanted):
             return self
         (elements,), (modal,) = self.elements, self.modal
-        if known is not None and known.hold(wanted):
-            return replace(self, reduced=ReducedElements(elements, modal, known))
+        columns = modal.shape[1] + len(elements.known_sources.places)
+        shape = (len(elements.surface.points), columns)
+        if known is not None and known.hold(wanted) and known.pressure.shape[1:] == shape:
+            return replace(self, reduced=ReducedElements.of(elements, modal, known))
         between = min(between[0], float(wanted[0])), max(between[1], float(wanted[-1]))
-        if (chosen := spanning_frequencies(wanted, between, elements)) is None:
+        if (chosen := spanning_frequencies(wanted, between, elements, modal.shape[1])) is None:
             return self
         message, done = f"sound of all modes at {len(chosen)} frequencies", dict.fromkeys(chosen.tolist(), 0.0)
 
@@ -631,7 +633,7 @@ class HousingRadiation:
 
         progress(message, 0.0)
         solutions = SpanningSolutions(chosen, np.stack(in_order(pressure, chosen.tolist(), message)))
-        return replace(self, reduced=ReducedElements(elements, modal, solutions))
+        return replace(self, reduced=ReducedElements.of(elements, modal, solutions))
 
     def solve(self, frequency_hz: float, coordinates: npt.ArrayLike) -> RadiatedSound:
         """Solve for the sound of some motions of the housing.

@@ -21,21 +21,22 @@ power by two ways.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, SoundField
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.storage.netcdf import LabelledArray
 from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 from gearwhine.numerics.dense_least_squares import solve_least_squares
+from gearwhine.numerics.progress import in_order
 
 LARGEST_MISFIT = 1.5e-2
 """Largest root mean square of what equations without a part in a solution leave over, relative to the pressure."""
 
-SPACING = 4.5
-"""Distance of the frequencies of a span, as wavenumber times the largest extent of the surface."""
+SPACING = 6.0
+"""Largest mean distance of the frequencies of a span, as wavenumber times the largest extent of the surface."""
 
 _NEIGHBOURS = 4  # frequencies around one whose solutions span its own
 _LEAST_SINGULAR_VALUE = 1e-3  # of the largest one
@@ -43,7 +44,7 @@ _CLOSER = 0.8  # power of even steps by which the frequencies of a span lie clos
 _EQUATIONS = 2.0  # vertices whose equations are taken, over the columns of the basis
 _WORTH = 2.0  # frequencies at which fields are wanted for each at which all modes are solved, above which these pay
 _PROVING = 150  # vertices whose equations prove it
-_MOST = 0.6  # part of the vertices above which all equations are as cheap
+_MOST = 0.6  # part of the vertices that a span may ask for equations: above it all are as cheap
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +87,7 @@ class SpanningSolutions:
 
 
 @dataclass(frozen=True, eq=False)
-class _Basis:
+class Basis:
     """Span of the solutions at neighbouring frequencies."""
 
     columns: ComplexArray
@@ -105,11 +106,24 @@ class ReducedElements:
     modal : ndarray, shape (3 n_triangles, n_modes)
         Normal velocities of the modes.
     solutions : SpanningSolutions
+    bases : tuple of Basis
+        Span of each few neighbouring solutions.
     """
 
     elements: BoundaryElements
     modal: FloatArray
     solutions: SpanningSolutions
+    bases: tuple[Basis, ...]
+
+    @classmethod
+    def of(cls, elements: BoundaryElements, modal: FloatArray, solutions: SpanningSolutions) -> "ReducedElements":
+        """Make the bases of all solutions' neighbours."""
+        count = max(len(solutions.frequencies) - _NEIGHBOURS + 1, 1)
+
+        def basis(first: int) -> Basis:
+            return _basis(elements.surface, solutions.pressure[first : first + _NEIGHBOURS])
+
+        return cls(elements, modal, solutions, in_order(basis, range(count), "span of the solutions"))
 
     def solve(self, frequency_hz: float, rates: ComplexArray) -> SoundField | None:
         """Solve for the field of some rates of the modes' coordinates; None where the span does not hold it.
@@ -125,8 +139,10 @@ class ReducedElements:
         if len(same):
             of_modes, of_sources = np.split(self.solutions.pressure[same[0]], [len(rates)], axis=1)
             return self.elements.field(frequency_hz, velocity, np.hstack([of_modes @ rates, of_sources]))
-        if not frequencies[0] < frequency_hz < frequencies[-1] or (basis := self._basis_around(frequency_hz)) is None:
+        if not frequencies[0] < frequency_hz < frequencies[-1]:
             return None
+        above = int(np.searchsorted(frequencies, frequency_hz))
+        basis = self.bases[int(np.clip(above - _NEIGHBOURS // 2, 0, len(self.bases) - 1))]
         medium = self.elements.medium
         wavenumber = medium.wavenumber(frequency_hz)
         flux = self.elements.with_known_sources(wavenumber, medium.flux(frequency_hz, velocity))
@@ -140,43 +156,14 @@ class ReducedElements:
             return None
         return self.elements.field(frequency_hz, velocity, every)
 
-    def _basis_around(self, frequency_hz: float) -> _Basis | None:
-        above = int(np.searchsorted(self.solutions.frequencies, frequency_hz))
-        return self._bases[int(np.clip(above - _NEIGHBOURS // 2, 0, len(self._bases) - 1))]
-
-    @cached_property
-    def _bases(self) -> tuple[_Basis | None, ...]:
-        count = max(len(self.solutions.frequencies) - _NEIGHBOURS + 1, 1)
-        return tuple(self._basis(slice(first, first + _NEIGHBOURS)) for first in range(count))
-
-    def _basis(self, some: slice) -> _Basis | None:
-        """Span of some solutions, each of unit size; None where it has too many columns to be of use."""
-        surface = self.elements.surface
-        area = np.bincount(surface.triangles.ravel(), np.repeat(surface.areas / 3.0, 3), len(surface.points))
-        sizes = np.sqrt(area)[:, None]
-        solutions = np.concatenate([*self.solutions.pressure[some]], axis=1) * sizes
-        lengths = np.linalg.norm(solutions, axis=0)
-        solutions = solutions[:, lengths > 0.0] / lengths[lengths > 0.0]
-        squares, mixtures = np.linalg.eigh(solutions.conj().T @ solutions)
-        chosen = squares > _LEAST_SINGULAR_VALUE**2 * squares[-1]
-        columns = solutions @ (mixtures[:, chosen] / np.sqrt(squares[chosen]))
-        wanted, count = int(_EQUATIONS * columns.shape[1]), len(surface.points)
-        if wanted + _PROVING > _MOST * count:
-            return None
-        # Without replacement: the largest of log-weights with Gumbel's noise.
-        generator = np.random.default_rng(2013)
-        leverage = (np.abs(columns) ** 2).sum(axis=1)
-        drawn = np.argsort(-np.log(leverage) - generator.gumbel(size=count), kind="stable")
-        proving = generator.choice(drawn[wanted:], _PROVING, replace=False)
-        return _Basis((columns / sizes).astype(np.complex64), np.sort(drawn[:wanted]), np.sort(proving))
-
 
 def spanning_frequencies(
-    wanted: FloatArray, between: tuple[float, float], elements: BoundaryElements
+    wanted: FloatArray, between: tuple[float, float], elements: BoundaryElements, modes: int
 ) -> FloatArray | None:
-    """Return the frequencies at which solutions span those at some others, ascending; None where these are as few.
+    """Return the frequencies at which solutions span those at some others, ascending; None where they do not pay.
 
-    They lie closer together where waves are short, and are of those at which fields are wanted where these are near.
+    That is where few fields are wanted, or the surface is small for the number of modes. The frequencies lie closer
+    together where waves are short, and are of those at which fields are wanted where these are near.
 
     Parameters
     ----------
@@ -185,11 +172,14 @@ def spanning_frequencies(
     between : tuple of float
         Lowest and highest frequency [Hz].
     elements : BoundaryElements
+    modes : int
+        Number of modes.
     """
     low, high = between
+    columns = _NEIGHBOURS * (modes + len(elements.known_sources.places))
     reach = elements.medium.wavenumber(high - low) * float(np.ptp(elements.surface.points, axis=0).max())
-    count = max(int(np.ceil(reach / SPACING)) + 1, _NEIGHBOURS)
-    if len(wanted) <= _WORTH * count:
+    count = max(int(np.ceil(reach / SPACING)) + 2, _NEIGHBOURS)
+    if len(wanted) <= _WORTH * count or _EQUATIONS * columns + _PROVING > _MOST * len(elements.surface.points):
         return None
     even = low + (high - low) * np.linspace(0.0, 1.0, count) ** _CLOSER
     for place in range(1, count - 1):
@@ -197,6 +187,25 @@ def spanning_frequencies(
         if abs(near - even[place]) < 0.25 * (even[place + 1] - even[place]):
             even[place] = near
     return even
+
+
+def _basis(surface: RadiatingSurface, pressure: npt.NDArray[np.complex64]) -> Basis:
+    """Span of some solutions, each of unit size."""
+    count = len(surface.points)
+    sizes = np.sqrt(np.bincount(surface.triangles.ravel(), np.repeat(surface.areas / 3.0, 3), count))[:, None]
+    solutions = np.concatenate([*pressure], axis=1) * sizes
+    lengths = np.linalg.norm(solutions, axis=0)
+    solutions = solutions[:, lengths > 0.0] / lengths[lengths > 0.0]
+    squares, mixtures = np.linalg.eigh(solutions.conj().T @ solutions)
+    chosen = squares > _LEAST_SINGULAR_VALUE**2 * squares[-1]
+    columns = solutions @ (mixtures[:, chosen] / np.sqrt(squares[chosen]))
+    wanted = int(_EQUATIONS * columns.shape[1])
+    # Without replacement: the largest of log-weights with Gumbel's noise.
+    generator = np.random.default_rng(2013)
+    leverage = (np.abs(columns) ** 2).sum(axis=1)
+    drawn = np.argsort(-np.log(leverage) - generator.gumbel(size=count), kind="stable")
+    proving = generator.choice(drawn[wanted:], _PROVING, replace=False)
+    return Basis((columns / sizes).astype(np.complex64), np.sort(drawn[:wanted]), np.sort(proving))
 
 
 def _mean_square(values: ComplexArray) -> FloatArray:

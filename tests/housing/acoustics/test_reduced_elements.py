@@ -88,7 +88,7 @@ def test_pressure_and_power_are_those_of_all_equations(standing: HousingRadiatio
             assert 10.0 * np.log10(power / other) == pytest.approx(0.0, abs=0.05)
         assert sound.interior_residual == pytest.approx(exact.interior_residual, abs=5e-3)
         # Known sources are solved in the span, too: what that lacks shows as a larger error of theirs.
-        assert -0.02 < sound.source_error.largest - exact.source_error.largest < 0.08
+        assert -0.02 < sound.source_error.largest - exact.source_error.largest < 0.15
 
 
 def test_at_its_frequencies_the_span_has_the_solutions_themselves(standing: HousingRadiation) -> None:
@@ -133,21 +133,24 @@ def test_arrays_hold_the_solutions_bit_for_bit(standing: HousingRadiation) -> No
     kept = radiation.spanned([300.0, 1200.0], (20.0, 2000.0), known=again)
     assert kept.reduced is not None
     assert kept.reduced.solutions is again
+    fewer = replace(radiation, modal=(radiation.modal[0][:, :9],))
+    assert fewer.spanned([300.0, 1200.0], (20.0, 2000.0), known=again) is fewer  # of other modes
     assert radiation.spanned([300.0, 2100.0], (20.0, 2000.0), known=again) is radiation  # few, and one beyond
 
 
 def test_frequencies_of_a_span_lie_closer_at_short_waves(standing: HousingRadiation) -> None:
     (elements,) = standing.elements
     wanted = np.linspace(100.0, 2000.0, 200)
-    chosen = spanning_frequencies(wanted, (20.0, 2000.0), elements)
+    chosen = spanning_frequencies(wanted, (20.0, 2000.0), elements, 16)
     assert chosen is not None
     assert (chosen[0], chosen[-1]) == (20.0, 2000.0)
     assert np.isin(chosen[1:-1], wanted).all()
     steps = np.diff(chosen)
     assert steps[-1] < steps[0]
     # Largest extent 0.4 m: waves of 0.17 m.
-    assert 2.0 * np.pi * 2000.0 / AIR.speed_of_sound * 0.4 / (len(chosen) - 1) < 5.0
-    assert spanning_frequencies(wanted[:5], (20.0, 2000.0), elements) is None
+    assert 2.0 * np.pi * 2000.0 / AIR.speed_of_sound * 0.4 / (len(chosen) - 1) < 5.3
+    assert spanning_frequencies(wanted[:5], (20.0, 2000.0), elements, 16) is None
+    assert spanning_frequencies(wanted, (20.0, 2000.0), elements, 80) is None  # 834 vertices
 
 
 def test_other_methods_have_nothing_to_span(standing: HousingRadiation) -> None:
