@@ -49,7 +49,7 @@ from gearwhine.coupling.gears.geometry.ring_support import RingSupport
 from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Finding, Instance, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
 from gearwhine.numerics.own_copies import keep_tuples, unchecked
 
@@ -544,13 +544,15 @@ def _check_numbers(gear: Gear) -> None:
         require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     for quantity in ("bore", "eccentricity", "tooth_thinning"):
         require_finite(label + quantity, getattr(gear, quantity), minimum=0.0)
-    for quantity in ("profile_shift", "eccentricity_phase", "helix_angle"):
+    for quantity in ("profile_shift", "eccentricity_phase", "helix_angle", "poisson_ratio", "pressure_angle"):
         require_finite(label + quantity, getattr(gear, quantity))
     for quantity in ("rim_thickness", "web_thickness", "hub_diameter", "hub_width"):
         if getattr(gear, quantity) is not None:
             require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     if gear.root_radius is not None:
         require_finite(f"{label}root_radius", gear.root_radius, minimum=0.0)
+    pitches = Instance(tuple, "numbers, one for each tooth")
+    refuse(attribute_findings(("gear", gear.name), gear, pitch_deviations=pitches), GearError)
     if gear.pitch_deviations and len(gear.pitch_deviations) != gear.tooth_count:
         raise GearError(
             f"{label}pitch_deviations must be one for each of {gear.tooth_count} teeth, "
