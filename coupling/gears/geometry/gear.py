@@ -34,7 +34,7 @@ bore reaches down to the axis; on a shaft its core is part of the shaft
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple, Protocol
@@ -100,6 +100,10 @@ class Fault(Protocol):
 
     def require_fit(self, gear: Gear) -> None:
         """Raise `GearError` where no tooth of this gear can have it."""
+        ...
+
+    def findings(self, gear: Gear, attribute: str) -> Iterable[Finding]:
+        """Find sizes that no tooth has, or hardly one, at an attribute of the gear such as ``faults.0``."""
         ...
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
@@ -246,7 +250,8 @@ class Gear:
     def findings(self) -> tuple[Finding, ...]:
         """Deviations larger than the teeth, and what is unlikely of sizes, deviations and material."""
         material = material_findings(("gear", self.name), self.youngs_modulus, self.poisson_ratio, self.density)
-        return (*_deviation_findings(self), *_size_findings(self), *material)
+        faults = (found for n, fault in enumerate(self.faults) for found in fault.findings(self, f"faults.{n}"))
+        return (*_deviation_findings(self), *_size_findings(self), *material, *faults)
 
     @cached_property
     def sound(self) -> Gear:
