@@ -32,7 +32,7 @@ from gearwhine.housing.measured.survey_planning import Survey, survey_grid
 from gearwhine.housing.model.bushings import Joint, Mount
 from gearwhine.housing.model.cover_bolts import cover_joints
 from gearwhine.housing.model.fixtures import Fixture, LumpedMass, attach_fixtures, fixture_kind
-from gearwhine.housing.model.patches import rigid_motions
+from gearwhine.housing.model.patches import Patch, rigid_motions
 from gearwhine.housing.model.seats import (
     Seat,
     Sensor,
@@ -218,13 +218,17 @@ class Housing:
                 expected = f"the name of a surface of the mesh, one of {surfaces}"
                 yield Finding(("seat", seat.name), "name", seat.name, expected)
         for fixture in self.fixtures:
-            places = (fixture.first, fixture.second) if isinstance(fixture, Joint) else (fixture,)
-            if isinstance(fixture, Mount | LumpedMass):
+            places: tuple[Patch | Support | None, ...] = ()
+            if isinstance(fixture, Joint):
+                places = (fixture.first, fixture.second)
+            elif isinstance(fixture, Mount | LumpedMass):
                 places = (fixture.patch,)
-            for name in (place.surface for place in places if place is not None):
-                if name is not None and name not in self.mesh.surfaces:
+            elif isinstance(fixture, Support):
+                places = (fixture,)
+            for surface in (place.surface for place in places if place is not None):
+                if surface is not None and surface not in self.mesh.surfaces:
                     expected = f"the name of a surface of the mesh, one of {surfaces}"
-                    yield Finding((fixture_kind(fixture), fixture.name), "surface", name, expected)
+                    yield Finding((fixture_kind(fixture), fixture.name), "surface", surface, expected)
         for sensor in self.sensors:
             yield from sensor_findings(self.mesh, sensor)
 

@@ -178,9 +178,18 @@ def catalogue_bearing(
     clearance: float = 0.0,
     dynamic: float | None = None,
     static: float | None = None,
+    carries: Literal["+z", "-z"] = "+z",
     name: str = "rolling bearing",
 ) -> RollingBearing:
-    """Estimate a whole bearing, its two rows in their places if it has two; parameters as of `catalogue_row`."""
+    """Estimate a whole bearing, its two rows in their places if it has two; parameters as of `catalogue_row`.
+
+    Parameters
+    ----------
+    carries : {"+z", "-z"}
+        Sense of the thrust of the shaft that a row in angular contact carries. "+z" at the left end and "-z" at the
+        right one are back to back (O), the other way round face to face (X). Two opposed rows carry both.
+    """
+    require(carries in ("+z", "-z"), "carries", carries, "'+z' or '-z'")
     row = catalogue_row(
         kind,
         bore,
@@ -191,7 +200,10 @@ def catalogue_bearing(
         dynamic=dynamic,
         static=static,
     )
-    return RollingBearing(standing_rows(kind, row, width), name=name)
+    rows = standing_rows(kind, row, width)
+    if len({one.direction for one in rows}) == 1:
+        rows = tuple(one.facing(1 if carries == "+z" else -1) for one in rows)
+    return RollingBearing(rows, name=name)
 
 
 def standing_rows(kind: CatalogueType, row: Row, width: float) -> tuple[Row, ...]:
