@@ -80,7 +80,7 @@ browser: | $(VENV)/.installed
 
 # After what it needs of the system, therefore last.
 $(VENV)/.compiled: pyproject.toml constraints.txt | $(BIN)/python
-	@echo "Compiling the kernels (two minutes of processor time, once) ..."
+	@echo "Compiling the kernels (about five minutes of processor time, once) ..."
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python scripts/compile_kernels.py
 	@touch $@
 

@@ -129,9 +129,10 @@ from gearwhine.numerics.findings import (
     kind_findings,
     refuse,
 )
+from gearwhine.numerics.materials import material_findings
 from gearwhine.numerics.own_copies import keep_tuples, unchecked
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
+from gearwhine.rotors import Coupling, EquilibriumError, Rotor, Segment, modal_rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
 
@@ -282,6 +283,7 @@ class Machine:
     def _findings(self) -> Iterator[Finding]:
         meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
         yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
+        yield from self._doubted_materials()
         for shaft in self.shafts:
             tips = [mounted.gear.outer_radius for mounted in self._gears_on(shaft.name)]
             yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
@@ -297,6 +299,20 @@ class Machine:
         for pair, geometry, torque, speed in rows:
             yield from pair.findings(geometry)
             yield from operation_findings(geometry, torque, speed)
+
+    def _doubted_materials(self) -> Iterator[Finding]:
+        """Yield unlikely materials of shafts and of the housing; a shaft without mass is a spring, and no error."""
+        for shaft in self.shafts:
+            parts = (part.material for part in shaft.rotor.segments if isinstance(part, Segment))
+            for one in sorted({(part.youngs_modulus, part.poisson_ratio, part.density) for part in parts}):
+                doubts = material_findings(("shaft", shaft.name), *one)
+                yield from (
+                    replace(doubt, attribute=f"material.{doubt.attribute}")
+                    for doubt in doubts
+                    if doubt.severity == "warning"
+                )
+        if isinstance(self.housing, HousingModes):
+            yield from self.housing.housing.findings
 
     @cached_property
     def housing_component(self) -> HousingComponent | None:

@@ -44,8 +44,9 @@ class HousingStudy:
     def origin(self) -> "Origin":
         """What results are of."""
         from gearwhine.analyses.origin import Origin
+        from gearwhine.numerics.result_warnings import warning
 
-        return Origin(self.title)
+        return Origin(self.title, warnings=[warning("input", str(doubt)) for doubt in self.housing.housing.findings])
 
     def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
         """Natural modes of the housing, certified complete, with checks of the model.

@@ -134,8 +134,10 @@ class StudiedMachine:
     def origin(self) -> "Origin":
         """What the results are of."""
         from gearwhine.analyses.origin import Origin
+        from gearwhine.numerics.result_warnings import warning
 
-        return Origin(self.settings.title, self.machine.speed)
+        doubts = [warning("input", text) for text in self.machine.warnings]
+        return Origin(self.settings.title, self.machine.speed, warnings=doubts)
 
     @property
     def fresh(self) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from gearwhine.numerics.findings import Finding, Number, refuse
+from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, argument_findings, refuse
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.studied_machine import StudiedMachine
 from gearwhine.view_names import GearPart
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
 HARMONICS = Number(at_least=1, at_most=50, whole=True)
 POINTS = Number(at_least=2, at_most=2000, whole=True)
+_SPEEDS = Numbers(each=Number(unit="rad/s"))
 
 
 class Study(StudiedMachine):
@@ -161,6 +162,7 @@ class Study(StudiedMachine):
         from gearwhine.analyses.machine_results import load_result
         from gearwhine.coupling.load_analysis.solved_load import solve_load
 
+        _require_arguments("load", line=(line, Text(optional=True)))
         self.require("load")
         ranked = sensitivity or line is not None
         housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
@@ -212,7 +214,8 @@ class Study(StudiedMachine):
         from gearwhine.analyses.machine_results import system_result
         from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, solve_system
 
-        _require_numbers("system", sidebands=(sidebands, SIDEBANDS), mesh_harmonics=(mesh_harmonics, HARMONICS))
+        _require_arguments("system", sidebands=(sidebands, SIDEBANDS), mesh_harmonics=(mesh_harmonics, HARMONICS))
+        _require_arguments("system", mesh_phase=(mesh_phase, Number(optional=True)))
         self.require("system" if mesh_phase is None else "system --mesh-phase")
         over_speed = campbell or sidebands > 0 or mesh_harmonics > MESH_HARMONICS or len(self.settings.speeds) > 1
         machine = self.under_load(self.settings.transient)
@@ -256,7 +259,7 @@ class Study(StudiedMachine):
         from gearwhine.analyses.machine_results import steady_result
         from gearwhine.coupling.analyses.steady_state import solve_steady
 
-        _require_numbers("steady", points=(points, POINTS))
+        _require_arguments("steady", points=(points, POINTS))
         self.require("steady")
         machine = self.under_load()
         speeds = self._branch_speeds(down=down) if curve or down else None
@@ -288,6 +291,8 @@ class Study(StudiedMachine):
         from gearwhine.coupling.analyses.recording import TransientPlan
         from gearwhine.coupling.statics.mean_mesh import mean_contact
 
+        plans = Instance(TransientPlan, "a TransientPlan, or None", optional=True)
+        _require_arguments("simulate", plan=(plan, plans))
         require_either("simulate", "a TransientPlan", plan, stretch)
         if plan is None and not stretch:
             self.require("simulate")
@@ -320,7 +325,10 @@ class Study(StudiedMachine):
             the result.
         """
         from gearwhine.analyses.sweep_result import solve_speed_sweep
+        from gearwhine.coupling.analyses.recording import TransientPlan
 
+        plans = Instance(TransientPlan, "a TransientPlan, or None", optional=True)
+        _require_arguments("sweep", speeds=(speeds, _SPEEDS), plan=(plan, plans))
         if plan is None:
             self.require("sweep")
             plan = self.settings.transient
@@ -409,12 +417,8 @@ def require_either(verb: str, kind: str, given: object, named: Mapping[str, obje
         )
 
 
-def _require_numbers(verb: str, **given: tuple[object, Number]) -> None:
-    """Refuse numbers that are not as their rules have them."""
+def _require_arguments(verb: str, **given: tuple[object, Rule]) -> None:
+    """Refuse arguments that are not as their rules have them."""
     from gearwhine.coupling import CouplingError
 
-    part = (verb, "")
-    findings = (
-        Finding(part, name, value, rule.expected) for name, (value, rule) in given.items() if not rule.accepts(value)
-    )
-    refuse(findings, CouplingError)
+    refuse(argument_findings((verb, ""), given), CouplingError)

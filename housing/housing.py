@@ -31,8 +31,8 @@ from gearwhine.housing.material import (
 from gearwhine.housing.measured.survey_planning import Survey, survey_grid
 from gearwhine.housing.model.bushings import Joint, Mount
 from gearwhine.housing.model.cover_bolts import cover_joints
-from gearwhine.housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
-from gearwhine.housing.model.patches import rigid_motions
+from gearwhine.housing.model.fixtures import Fixture, LumpedMass, attach_fixtures, fixture_kind
+from gearwhine.housing.model.patches import Patch, rigid_motions
 from gearwhine.housing.model.seats import (
     Seat,
     Sensor,
@@ -82,6 +82,7 @@ from gearwhine.numerics.findings import (
     Numbers,
     Part,
     Rule,
+    argument_findings,
     attribute_findings,
     kind_findings,
     refuse,
@@ -102,6 +103,7 @@ between."""
 
 _TWO_PI = 2.0 * np.pi
 _PART: Part = ("housing", "")
+_HIGHEST, _COUNT = Number(above=0.0, optional=True, unit="Hz"), Number(at_least=1, optional=True, whole=True)
 _UPWARDS = (0.0, 1.0, 0.0)
 _DAMPING = "modal_damping"  # name of the damping matrix in a mode-set file
 _RESPONSES = "responses_"  # begin of the names of further responses in that file
@@ -210,13 +212,32 @@ class Housing:
             if name not in self.mesh.volumes:
                 volumes = ", ".join(map(repr, sorted(self.mesh.volumes))) or "none"
                 yield Finding(_PART, "materials", name, f"a volume of the mesh, one of {volumes}")
+        surfaces = ", ".join(map(repr, sorted(self.mesh.surfaces))) or "none"
         for seat in self.seats:
             if seat.name not in self.mesh.surfaces:
-                surfaces = ", ".join(map(repr, sorted(self.mesh.surfaces))) or "none"
                 expected = f"the name of a surface of the mesh, one of {surfaces}"
                 yield Finding(("seat", seat.name), "name", seat.name, expected)
+        for fixture in self.fixtures:
+            places: tuple[Patch | Support | None, ...] = ()
+            if isinstance(fixture, Joint):
+                places = (fixture.first, fixture.second)
+            elif isinstance(fixture, Mount | LumpedMass):
+                places = (fixture.patch,)
+            elif isinstance(fixture, Support):
+                places = (fixture,)
+            for surface in (place.surface for place in places if place is not None):
+                if surface is not None and surface not in self.mesh.surfaces:
+                    expected = f"the name of a surface of the mesh, one of {surfaces}"
+                    yield Finding((fixture_kind(fixture), fixture.name), "surface", surface, expected)
         for sensor in self.sensors:
             yield from sensor_findings(self.mesh, sensor)
+
+    @property
+    def findings(self) -> Iterator[Finding]:
+        """Unlikely numbers of its materials."""
+        yield from self.material.findings
+        for name, material in self.materials.items():
+            yield from (replace(finding, part=("material", name)) for finding in material.findings)
 
     @classmethod
     def from_step(
@@ -432,6 +453,8 @@ class Housing:
         IncompleteModesError, ReductionError, HealthError
             Where the modes fail their certificate, their static compliance its proof, or the model its checks.
         """
+        given = {"below_hz": (below_hz, _HIGHEST), "count": (count, _COUNT)}
+        refuse(argument_findings(_PART, given), HousingError)
         defects = self._sound_mesh_defects() if defects is None else defects
         seat_ports = self.seat_ports()
         places = {name: (name, 0.0) for name in seat_ports} if bearings is None else dict(bearings)

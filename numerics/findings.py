@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
@@ -127,6 +127,9 @@ class Number:
         return math.isfinite(number) and within
 
 
+FINITE = Number()
+
+
 @dataclass(frozen=True)
 class Text:
     """Rule of a text that is not empty."""
@@ -177,7 +180,7 @@ class Numbers:
     """Rule of a row of numbers of some length; None for any length."""
 
     count: int | None = None
-    each: Number = Number()
+    each: Number = FINITE
 
     @property
     def expected(self) -> str:
@@ -217,7 +220,11 @@ def kind_findings(part: Part, owner: object, **kinds: type | tuple[type, ...]) -
     """Yield a finding for each entry of a sequence in an attribute that is of another kind than its own."""
     for attribute, kind in kinds.items():
         names = " or ".join(one.__name__ for one in (kind if isinstance(kind, tuple) else (kind,)))
-        for place, entry in enumerate(getattr(owner, attribute)):
+        entries = getattr(owner, attribute)
+        if isinstance(entries, str) or not isinstance(entries, Iterable):
+            yield Finding(part, attribute, "None" if entries is None else entries, f"a sequence, each a {names}")
+            continue
+        for place, entry in enumerate(entries):
             if not isinstance(entry, kind):
                 yield Finding(part, f"{attribute}.{place}", entry, f"a {names}")
 
@@ -228,6 +235,13 @@ def attribute_findings(part: Part, owner: object, **rules: Rule) -> Iterator[Fin
         value = getattr(owner, attribute)
         if not rule.accepts(value):
             yield Finding(part, attribute, value if value is not None else "None", rule.expected)
+
+
+def argument_findings(part: Part, given: Mapping[str, tuple[object, Rule]]) -> Iterator[Finding]:
+    """Yield a finding for each argument, by name with its rule, that breaks the rule."""
+    for name, (value, rule) in given.items():
+        if not rule.accepts(value):
+            yield Finding(part, name, value if value is not None else "None", rule.expected)
 
 
 def table_findings(

@@ -1,9 +1,8 @@
 """Errors of the package, and the checks of arguments that raise them."""
 
-import math
 import numbers
 
-from gearwhine.numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import FINITE, RefusedPartError
 
 
 class RotorError(RefusedPartError):
@@ -32,7 +31,7 @@ def require_count(label: str, value: int | None) -> None:
 
 def require_finite(label: str, value: float, *, positive: bool = False, minimum: float | None = None) -> None:
     """Raise `RotorError` unless ``value`` is finite and, as asked, positive or not below ``minimum``."""
-    require(math.isfinite(value), label, value, "a finite number")
+    require(FINITE.accepts(value), label, value, FINITE.expected)
     if positive:
         require(value > 0.0, label, value, "a positive number")
     if minimum is not None:

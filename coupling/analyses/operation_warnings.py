@@ -22,9 +22,9 @@ _OFF_LINE = 0.05  # difference of a line from the torque of operation without a 
 
 
 def operation_warnings(machine: Machine) -> list[ResultWarning]:
-    """Warn of gear pairs without torque in a loaded train, and of torque lines that miss the torque of operation.
+    """Warn of gear pairs without torque, of several outputs without names, and of torque lines that miss the torque.
 
-    Outputs that are named may leave a pair idle on purpose.
+    Outputs that are named may leave a pair idle, or share the torque, on purpose.
     """
     if not machine.gear_pairs:
         return []
@@ -37,6 +37,15 @@ def operation_warnings(machine: Machine) -> list[ResultWarning]:
                 "exchanged, or does an [[operation.output]] lack?"
             )
             warnings.append(warning("idle gear pair", message, gear_pair=f"{pair.driver} -> {pair.driven}"))
+    outputs = machine.train.output_shafts
+    if not machine.outputs and torques.max() > 0.0 and len(outputs) > 1:
+        first, shaft = machine.gear_pairs[0], machine.train.first
+        names = ", ".join(f'"{name}"' for name in outputs)
+        message = (
+            f'torque and speed of operation are those of "{shaft}", the shaft of the first driver, and {names} take '
+            f"equal power, as no [[operation.output]] says otherwise: are driver and driven of {first.label} exchanged?"
+        )
+        warnings.append(warning("several outputs", message, input=shaft, outputs=list(outputs)))
     for name, line in (("motor", machine.motor), ("load", machine.load)):
         if line is None:
             continue

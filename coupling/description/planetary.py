@@ -77,7 +77,7 @@ class PlanetarySet:
         rules: dict[str, Rule] = {"name": text, "carrier": text, "sun": optional, "ring": optional}
         part = ("planetary set", str(self.name))
         findings = [*attribute_findings(part, self, **rules)]
-        if not self.planets or not all(map(text.accepts, self.planets)):
+        if not self.planets or not isinstance(self.planets, tuple) or not all(map(text.accepts, self.planets)):
             findings.append(Finding(part, "planets", self.planets, "names of gears, one or more"))
         if self.sun is None and self.ring is None:
             findings.append(Finding(part, "sun", None, "a sun or a ring, or both"))

@@ -2,7 +2,7 @@
 
 import math
 
-from gearwhine.numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import FINITE, RefusedPartError
 
 
 class GearError(RefusedPartError):
@@ -43,7 +43,7 @@ class ContactAccuracyError(RuntimeError):
 
 def require_finite(label: str, value: float, *, minimum: float = -math.inf, strict: bool = False) -> None:
     """Raise `GearError` unless `value` is a finite number above `minimum`."""
-    if not math.isfinite(value):
+    if not FINITE.accepts(value):
         raise GearError(f"{label} must be a finite number, got {value!r}")
     if value < minimum or (strict and value == minimum):
         raise GearError(f"{label} must be {'above' if strict else 'at least'} {minimum:g}, got {value!r}")

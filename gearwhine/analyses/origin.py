@@ -38,12 +38,15 @@ class Origin:
         None where Python describes the machine.
     housing : HousingModes or None
         The solved housing of the case, which takes part in the result.
+    warnings : sequence of ResultWarning
+        Warnings of the inputs of Python; those of a case are given where it is read.
     """
 
     title: str
     speed: float | None = None
     case: Case | None = None
     housing: HousingModes | None = None
+    warnings: Sequence[ResultWarning] = ()
 
     @property
     def labels(self) -> Labels:
@@ -84,7 +87,7 @@ class Origin:
             command,
             self.case,
             solved,
-            joined(document, origin_document(self.housing)),
+            joined(document, origin_document(self.housing), {"warnings": self.warnings}),
             _arrays=(lambda: labelled(labels, *of_housing, *arrays)) if arrays else None,
             _figures=figures,
             _files=files,
@@ -124,7 +127,7 @@ class Origin:
             solved,
             joined(
                 {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
-                {"warnings": warnings},
+                {"warnings": [*warnings, *self.warnings]},
                 {"warnings": [] if self.housing is None else self.housing.warnings},
             ),
             _arrays=arrays

@@ -438,7 +438,8 @@ class Gear(Table):
         if self.teeth < 0:
             self._without_hub()
         elif self.ring_support is not None:
-            raise wrong("none of an external gear, which is held at its bore or rim", "ring_support")
+            expected = f"none of an external gear; a ring has a negative number of teeth, teeth = {-self.teeth}"
+            raise wrong(expected, "ring_support")
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:

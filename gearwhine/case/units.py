@@ -390,9 +390,15 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
 
 def rpm(value: float) -> float:
     """Return revolutions per minute as an angular speed [rad/s]."""
-    return value * math.pi / 30.0
+    try:
+        return value * math.pi / 30.0
+    except TypeError:
+        raise QuantityError(f"rpm: value is {value!r}; expected a number of revolutions per minute") from None
 
 
 def to_rpm(speed: float) -> float:
     """Return an angular speed [rad/s] in revolutions per minute."""
-    return speed * 30.0 / math.pi
+    try:
+        return speed * 30.0 / math.pi
+    except TypeError:
+        raise QuantityError(f"to_rpm: speed is {speed!r}; expected a number of radians per second") from None

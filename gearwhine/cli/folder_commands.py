@@ -100,8 +100,13 @@ def _on_results(
 ) -> None:
     """Do work on a results folder, or on that of a case, and hand its document over."""
     from gearwhine.case import CaseError, Problem
+    from gearwhine.case.load import bundled_names
+    from gearwhine.numerics.names import did_you_mean
     from gearwhine.progress import shown
 
+    if not Path(results).exists() and results not in (names := bundled_names()):
+        expected = f"a folder of results, or a case that has one; there is none here{did_you_mean(results, names)}"
+        raise CaseError([Problem("RESULTS", results, expected)])
     if not Path(results).is_dir():
         on_case(
             results,

@@ -522,7 +522,7 @@ def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
 _MOST_TABLE_ROWS = 12  # rows of a table
 _MAP_ROWS = 5  # rows of the critical-speed map
 _REACH = 2.0  # multiple of the speed of operation above which critical speeds are only counted
-_MOSTLY_AXIAL, _PARTLY_AXIAL = 0.9, 0.05  # axial share of kinetic energy from which a motion is axial, or partly so
+_MOSTLY_AXIAL, _PARTLY_AXIAL = 0.5, 0.05  # axial share of kinetic energy from which a motion is axial, or partly so
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
 _TORQUE_ROUNDING = 1e-9  # part of the largest torque up to which a torque counts as zero
@@ -614,6 +614,10 @@ def _bending(frequencies: Sequence[float], axial_shares: Sequence[float]) -> Ite
             place + 1 < len(frequencies)
             and frequencies[place + 1] - frequency <= _SAME_FREQUENCY_DIFFERENCE * frequencies[place + 1]
         )
+        if frequency > 0.0 and axial_shares[place] > _MOSTLY_AXIAL:
+            yield frequency, f"axial{_with_axial(axial_shares[place])}"
+            place += 1
+            continue
         kind = "bending" if frequency > 0.0 else "moves freely"
         planes = "both planes" if double else "one plane"
         yield frequency, f"{kind}, {planes}{_with_axial(axial_shares[place])}"

@@ -6,13 +6,12 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from gearwhine.case import SPEED_KEY, SweptKey
 from gearwhine.case.units import to_rpm
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.numerics.findings import FINITE
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.sweep.solution import PointFailure, PointResult, failure_of, solve_motion_of_point
 
@@ -61,7 +60,7 @@ def sweep_speeds(
     gearwhine.coupling.CouplingError
         Where there is no speed, or one is zero or not finite.
     """
-    if not speeds or not all(np.isfinite(speed) and speed != 0.0 for speed in speeds):
+    if not speeds or not all(FINITE.accepts(speed) and speed != 0.0 for speed in speeds):
         raise CouplingError(f"sweep: speeds are {list(speeds)!r}; expected finite speeds other than 0 [rad/s]")
     rpms = tuple(float(f"{to_rpm(speed):.12g}") for speed in speeds)
     texts = tuple(f"{rpm:.12g} rpm" for rpm in rpms)

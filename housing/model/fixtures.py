@@ -48,6 +48,11 @@ class Fixture(Protocol):
         """
 
 
+def fixture_kind(fixture: Fixture) -> str:
+    """Kind of a fixture, as the key of a case has it."""
+    return "mass" if isinstance(fixture, LumpedMass) else type(fixture).__name__.lower()
+
+
 def attach_fixtures(matrices: Matrices, mesh: Mesh, fixtures: Iterable[Fixture]) -> Matrices:
     """Attach supports, mounts, joints and masses to the matrices of a housing.
 
@@ -61,8 +66,7 @@ def attach_fixtures(matrices: Matrices, mesh: Mesh, fixtures: Iterable[Fixture])
         try:
             additions += fixture.additions(mesh)
         except (HousingError, GeometryError) as error:
-            kind = "mass" if isinstance(fixture, LumpedMass) else type(fixture).__name__.lower()
-            misfits.append(Finding((kind, fixture.name), "", None, f"what fits the mesh; {error}"))
+            misfits.append(Finding((fixture_kind(fixture), fixture.name), "", None, f"what fits the mesh; {error}"))
     refuse(misfits, HousingError)
     return matrices.plus(additions)
 

@@ -181,7 +181,15 @@ class Bearing:
 
     @classmethod
     def isotropic(cls, name: str, at: float, stiffness: float, damping: float = 0.0) -> "Bearing":
-        """Bearing alike in every direction: one stiffness [N/m] and one damping [N·s/m]."""
+        """Bearing alike in every direction: one stiffness [N/m] and one damping [N·s/m].
+
+        Raises
+        ------
+        RotorError
+            As :class:`Bearing`; or either is not one number.
+        """
+        for attribute, value in (("stiffness", stiffness), ("damping", damping)):
+            require_finite(f"bearing {name!r}: {attribute}", value)
         return cls(name, at, stiffness * np.eye(2), damping * np.eye(2))
 
     def at_speed(self, speed: float) -> "Bearing":

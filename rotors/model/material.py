@@ -66,6 +66,8 @@ class ShaftMaterial:
     @classmethod
     def from_poisson_ratio(cls, youngs_modulus: float, poisson_ratio: float, density: float) -> "ShaftMaterial":
         """Material of modulus E [Pa], Poisson ratio ν and density [kg/m³]; G = E / 2(1 + ν)."""
+        require_finite("youngs_modulus", youngs_modulus, positive=True)
+        require_finite("poisson_ratio", poisson_ratio)
         require(-1.0 < poisson_ratio <= 0.5, "poisson_ratio", poisson_ratio, "a number in (-1, 0.5]")
         return cls(youngs_modulus, youngs_modulus / (2.0 * (1.0 + poisson_ratio)), density)
 

@@ -1,7 +1,7 @@
 """Rotor: round shaft segments end to end with rigid discs on them, and its inertias."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -143,9 +143,9 @@ class Rotor:
 
     def __post_init__(self) -> None:
         """Check for segments, the mass model, discs and stiffness diameters on the shaft and a mass; keep tuples."""
-        object.__setattr__(self, "segments", tuple(self.segments))
-        object.__setattr__(self, "discs", tuple(self.discs))
-        object.__setattr__(self, "stiffness_diameters", tuple(self.stiffness_diameters))
+        for attribute in ("segments", "discs", "stiffness_diameters"):
+            if isinstance(given := getattr(self, attribute), Iterable):
+                object.__setattr__(self, attribute, tuple(given))
         part = ("rotor", str(self.name))
         refuse([*attribute_findings(part, self, name=Instance(str, "a name")), *self._kind_findings(part)], RotorError)
         places = {f"discs.{number}.at": disc.at for number, disc in enumerate(self.discs)}

@@ -65,6 +65,8 @@ _INSIDES: dict[str, _Inside] = {
     "tapered-roller": _Inside(0.26, 1.12, 0.58, angle=14.0),
     "spherical-roller": _Inside(0.25, 1.1, 0.33, rows=2, angle=10.5),
 }
+_LARGEST = 5.0
+"""Outer diameter that no bearing of a catalogue has [m]; slewing rings, which are larger, are not among its types."""
 _CONRAD = math.radians(186.0)
 # Largest length of a roller's contact over the width, two rows together.
 _LONGEST_ROLLER_CONTACT = 0.95
@@ -108,12 +110,14 @@ def catalogue_row(
         Impossible dimensions, a contact angle that does not fit the type, or ratings that no inside of this size has.
     """
     expected = ", ".join(map(repr, get_args(CatalogueType)))
-    require(kind in _INSIDES, "type of bearing", kind, f"one of {expected}")
+    require(kind in tuple(_INSIDES), "type of bearing", kind, f"one of {expected}")
     inside = _INSIDES[kind]
     rows_rated = inside.rows * bearings
     require_finite("bore", bore, positive=True)
     require_finite("bearing width", width, positive=True)
     require_finite("outer diameter", outer_diameter)
+    hint = f"at most {_LARGEST:g} m, as the largest rolling bearings have; are {outer_diameter:g} mm meant?"
+    require(outer_diameter <= _LARGEST, "outer diameter", outer_diameter, hint)
     height = outer_diameter - bore
     require(height > 0.0, "outer diameter", outer_diameter, f"more than the bore, {bore:g} m")
     for label, rating in (("dynamic rating", dynamic), ("static rating", static)):
@@ -174,12 +178,20 @@ def catalogue_bearing(
     clearance: float = 0.0,
     dynamic: float | None = None,
     static: float | None = None,
+    carries: Literal["+z", "-z"] = "+z",
     name: str = "rolling bearing",
 ) -> RollingBearing:
     """Estimate a whole bearing, its two rows in their places if it has two; parameters as of `catalogue_row`.
 
     Its lives are by ``dynamic``, the catalogue's C, where it is given, and not by C of the estimated inside.
+
+    Parameters
+    ----------
+    carries : {"+z", "-z"}
+        Sense of the thrust of the shaft that a row in angular contact carries. "+z" at the left end and "-z" at the
+        right one are back to back (O), the other way round face to face (X). Two opposed rows carry both.
     """
+    require(carries in ("+z", "-z"), "carries", carries, "'+z' or '-z'")
     row = catalogue_row(
         kind,
         bore,
@@ -190,7 +202,10 @@ def catalogue_bearing(
         dynamic=dynamic,
         static=static,
     )
-    return RollingBearing(standing_rows(kind, row, width), name=name, catalogue_rating=dynamic)
+    rows = standing_rows(kind, row, width)
+    if len({one.direction for one in rows}) == 1:
+        rows = tuple(one.facing(1 if carries == "+z" else -1) for one in rows)
+    return RollingBearing(rows, name=name, catalogue_rating=dynamic)
 
 
 def standing_rows(kind: CatalogueType, row: Row, width: float) -> tuple[Row, ...]:

@@ -41,6 +41,20 @@ def test_a_pair_behind_which_nothing_is_taken_off_is_told() -> None:
     )
 
 
+def test_two_shafts_that_share_the_power_without_being_named_are_told() -> None:
+    """With driver and driven of the first stage exchanged torque and speed are those of the middle shaft."""
+    exchanged = reducer().replace('driver = "a"\ndriven = "b"', 'driver = "b"\ndriven = "a"')
+    assert exchanged != reducer()
+    (told,) = operation_warnings(describe_machine(case_of(exchanged)))
+    assert told["name"] == "several outputs"
+    assert (told["input"], sorted(told["outputs"])) == ("middle", ["input", "output"])
+    assert "are driver and driven of gear pair 'b' -> 'a' exchanged?" in told["message"]
+    halves = {"input": 30.0 * 21.0 / 72.0, "output": 30.0 * 56.0 / 19.0}
+    listed = ", ".join(f'{{ rotor = "{name}", torque = {torque} }}' for name, torque in halves.items())
+    named = f"output = [{listed}]\n"
+    assert operation_warnings(describe_machine(case_of(exchanged + named))) == []
+
+
 @pytest.mark.parametrize(("at_speed", "warned"), [(62.0, False), (45.0, True)])
 def test_a_line_of_torque_that_misses_the_torque_of_operation_is_told(at_speed: float, *, warned: bool) -> None:
     motor = {"speed": ["0 rpm", "3000 rpm", "3300 rpm"], "torque": ["90 N*m", "60 N*m", "0 N*m"]}

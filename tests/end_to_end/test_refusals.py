@@ -26,7 +26,7 @@ NO_NUMBER = 'update.parameter.0.keys=["housing.material"]'
 @pytest.mark.parametrize(
     ("case", "changes", "told"),
     [
-        ("spur-pair", [CRACK], "goes through the foot of the tooth"),
+        ("spur-pair", [CRACK], "gear[0].fault[0].depth"),
         ("spur-pair", [ALL_MISSING], "no teeth meet"),
         ("small-gearbox", [IN_A_BORE], 'in the bore of seat "input-back", 26 mm from its rim'),
         ("spur-pair", [NO_MASS], "a mass above 0, to be followed in time"),
@@ -46,6 +46,14 @@ def test_check_refuses_what_no_command_can_use(gearwhine: Any, case: str, change
     assert told in outcome.err
     assert "Traceback" not in outcome.err
     assert len(outcome.err) < 10_000
+
+
+@pytest.mark.parametrize("command", ["report", "export"])
+def test_a_folder_that_is_none_is_not_taken_for_a_case(gearwhine: Any, command: str) -> None:
+    outcome = gearwhine(command, "no-folder")
+    assert outcome.code == 2
+    assert "expected a folder of results, or a case that has one; there is none here, got 'no-folder'" in outcome.err
+    assert "did you mean 'spur-pair'?" in gearwhine(command, "spur-pear").err
 
 
 def test_a_rib_of_ten_metres_ends(gearwhine: Any) -> None:

@@ -57,6 +57,10 @@ class Wear:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
+    def findings(self, gear: Gear, attribute: str) -> tuple[()]:
+        """None."""
+        return ()
+
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         if self.shape == "uniform":
@@ -134,6 +138,10 @@ class Spall:
                 f"{math.degrees(self.start_roll_angle):.4g} to {math.degrees(self.end_roll_angle):.4g} degrees"
             )
 
+    def findings(self, gear: Gear, attribute: str) -> tuple[()]:
+        """None."""
+        return ()
+
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         return self.depth * self._inside(roll_angle) if self.across_face(face_width) else np.zeros_like(roll_angle)
@@ -187,6 +195,10 @@ class MissingTooth:
     def require_fit(self, gear: Gear) -> None:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
+
+    def findings(self, gear: Gear, attribute: str) -> tuple[()]:
+        """None."""
+        return ()
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """Gap wider than any load closes."""

@@ -34,7 +34,7 @@ bore reaches down to the axis; on a shaft its core is part of the shaft
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple, Protocol
@@ -49,7 +49,7 @@ from gearwhine.coupling.gears.geometry.ring_support import RingSupport
 from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Finding, Instance, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
 from gearwhine.numerics.own_copies import keep_tuples, unchecked
 
@@ -100,6 +100,10 @@ class Fault(Protocol):
 
     def require_fit(self, gear: Gear) -> None:
         """Raise `GearError` where no tooth of this gear can have it."""
+        ...
+
+    def findings(self, gear: Gear, attribute: str) -> Iterable[Finding]:
+        """Find sizes that no tooth has, or hardly one, at an attribute of the gear such as ``faults.0``."""
         ...
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
@@ -246,7 +250,8 @@ class Gear:
     def findings(self) -> tuple[Finding, ...]:
         """Deviations larger than the teeth, and what is unlikely of sizes, deviations and material."""
         material = material_findings(("gear", self.name), self.youngs_modulus, self.poisson_ratio, self.density)
-        return (*_deviation_findings(self), *_size_findings(self), *material)
+        faults = (found for n, fault in enumerate(self.faults) for found in fault.findings(self, f"faults.{n}"))
+        return (*_deviation_findings(self), *_size_findings(self), *material, *faults)
 
     @cached_property
     def sound(self) -> Gear:
@@ -544,13 +549,15 @@ def _check_numbers(gear: Gear) -> None:
         require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     for quantity in ("bore", "eccentricity", "tooth_thinning"):
         require_finite(label + quantity, getattr(gear, quantity), minimum=0.0)
-    for quantity in ("profile_shift", "eccentricity_phase", "helix_angle"):
+    for quantity in ("profile_shift", "eccentricity_phase", "helix_angle", "poisson_ratio", "pressure_angle"):
         require_finite(label + quantity, getattr(gear, quantity))
     for quantity in ("rim_thickness", "web_thickness", "hub_diameter", "hub_width"):
         if getattr(gear, quantity) is not None:
             require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     if gear.root_radius is not None:
         require_finite(f"{label}root_radius", gear.root_radius, minimum=0.0)
+    pitches = Instance(tuple, "numbers, one for each tooth")
+    refuse(attribute_findings(("gear", gear.name), gear, pitch_deviations=pitches), GearError)
     if gear.pitch_deviations and len(gear.pitch_deviations) != gear.tooth_count:
         raise GearError(
             f"{label}pitch_deviations must be one for each of {gear.tooth_count} teeth, "

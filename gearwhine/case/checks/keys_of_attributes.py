@@ -28,16 +28,17 @@ _OF_GEARS: dict[str, Location] = {
     "helix_deviation": ("errors", "helix"),
     "rim_thickness": ("rim",),
     "web_thickness": ("web",),
+    "faults": ("fault",),
 }
 
 
 def key_in_gear(gear: Gear, attribute: str) -> Location:
     """Return the key of a gear's attribute."""
-    first, *rest = attribute.split(".")
+    first, *rest = steps_of(attribute)
     if first == "eccentricity":
         return ("errors", "eccentricity" if gear.errors.eccentricity else "runout")
     if first == "pitch_deviations":
         return ("errors", "spacing" if gear.errors.spacing else "pitch")
     if first == "module" and gear.module is None:
         return ("diametral_pitch" if gear.diametral_pitch is not None else "base_radius",)
-    return (*_OF_GEARS.get(first, (first,)), *rest)
+    return (*_OF_GEARS.get(str(first), (first,)), *rest)

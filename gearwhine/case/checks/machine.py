@@ -394,7 +394,7 @@ def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
     else:
         return
     expected = f'gears of {size}; "{driver.name}" has {values[0]}, "{driven.name}" {values[1]}'
-    yield Finding(("gear_pair", index, "driven"), expected)
+    yield Finding(("gear_pair", index, "driven"), expected, UNSAID)
 
 
 def _check_model(draft: Draft, index: int, pair: GearPair, gear: Gear) -> Iterator[Finding]:

@@ -7,6 +7,8 @@ finding's part and attribute become a key. A finding that is a warning can be ac
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -21,6 +23,7 @@ from gearwhine.case.housing import Housing, Material, Seat
 from gearwhine.case.model import Case
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.rotors import Rotor
+from gearwhine.case.units import to_rpm
 
 if TYPE_CHECKING:
     from gearwhine.case.parts import Parts
@@ -41,6 +44,8 @@ def library_findings(case: Case) -> Iterator[Finding]:
         yield from _of_housing(case.housing)
     if case.acoustics is not None:
         yield from _of_acoustics(case.acoustics, None if case.housing is None else case.housing.frequency_limit)
+    if case.operation is not None:
+        yield from _of_speed(case.operation.speed)
     if case.operation is not None and case.operation.gravity is not None:
         from gearwhine.coupling.description.arrangement import gravity_findings
 
@@ -70,7 +75,8 @@ def case_warnings(unusual: Iterable[str], findings: Iterable[Finding], document:
         key, label = key_of(finding.location), label_of(document, finding.location)
         place = f"{key} ({label})" if label else key
         got = f", got {show_value(look_up(document, finding.location))}" if finding.value is LOOK_UP else ""
-        sentences.append(f"{place}: expected {finding.expected}{got}; 'unusual' accepts it")
+        accept = f"unusual = [{json.dumps(key, ensure_ascii=False)}] at the head of the case accepts it"
+        sentences.append(f"{place}: expected {finding.expected}{got}; where it is meant, {accept}")
     return list(dict.fromkeys(sentences))
 
 
@@ -92,6 +98,23 @@ def _of_materials(materials: Mapping[str, Material]) -> Iterator[Finding]:
         numbers = material.youngs_modulus, material.poisson_ratio, material.density
         for finding in material_findings(("material", name), *numbers):
             yield placed(("material", name), finding)
+
+
+_MAINS_SPEED = 3600.0 * math.pi / 30.0
+"""Speed of two poles at 60 Hz [rad/s], which motors at the mains do not exceed."""
+
+
+def _of_speed(speed: float) -> Iterator[Finding]:
+    """Yield a speed that is a whole number of rad/s and fast: a number of rpm without its unit.
+
+    Speeds in rpm or in turns a second are no whole numbers of rad/s.
+    """
+    if speed.is_integer() and abs(speed) > _MAINS_SPEED:
+        expected = (
+            f"a speed with its unit: a plain number is in rad/s, and {speed:.0f} rad/s are {to_rpm(speed):.0f} rpm; is "
+            f"'{speed:.0f} rpm' meant?"
+        )
+        yield Finding(("operation", "speed"), expected, UNSAID, warns=True)
 
 
 _MOST_DAMPED = 0.1

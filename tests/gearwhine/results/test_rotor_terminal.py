@@ -268,3 +268,9 @@ def test_torsional_response_shows_its_largest() -> None:
 
 def test_the_proof_is_told() -> None:
     assert "complete below 500 Hz: 4 found, 4 counted" in said()
+
+
+def test_a_mode_that_moves_along_the_axis_for_the_most_part_is_called_axial() -> None:
+    table = dict(rows(said(lateral_hz=[10.0, 40.0, 45.0], lateral_axial_share=[0.0, 0.8, 0.4]), "At rest"))
+    assert table["40"] == "axial, 80 % along the axis"
+    assert table["45"] == "bending, one plane, 40 % along the axis"
