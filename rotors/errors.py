@@ -31,7 +31,8 @@ def require_count(label: str, value: int | None) -> None:
 
 def require_finite(label: str, value: float, *, positive: bool = False, minimum: float | None = None) -> None:
     """Raise `RotorError` unless ``value`` is finite and, as asked, positive or not below ``minimum``."""
-    require(FINITE.accepts(value), label, value, FINITE.expected)
+    if not FINITE.accepts(value):
+        require(False, label, value, FINITE.expected)
     if positive:
         require(value > 0.0, label, value, "a positive number")
     if minimum is not None:

@@ -4,6 +4,7 @@ Residual attachment modes can be added to an existing mode set, read from a file
 """
 
 import hashlib
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -382,7 +383,7 @@ class ModeSetExtension:
             system.stiffness,
             system.mass,
             modes.residual_modes,
-            response.reshape(len(response), -1).T[system.free],
+            response.reshape(len(response), math.prod(response.shape[1:])).T[system.free],
             self._vectors,
             system.free,
             system.threads,

@@ -68,7 +68,7 @@ def test_a_speed_without_a_motion_has_its_failure_and_the_others_go_on(monkeypat
     assert "diverged" in found["points"][1]["failure"]
     assert (found["done"], found["failed"]) == (1, 1)
     for speeds in ([200.0, 0.0], [float("nan")], []):
-        with pytest.raises(CouplingError, match="expected finite speeds other than 0"):
+        with pytest.raises(CouplingError, match=r"expected (finite speeds other|numbers, each a finite)"):
             machine.sweep(speeds, plan)
     with pytest.raises(CouplingError, match="sweep: expected how far to integrate"):
         machine.sweep([200.0])

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from coupled_cases import sensor_level
 from scipy import stats
 
 import gearwhine as gw
 from gearwhine.case.load import bundled_case
 from gearwhine.case.variation import Limit
 from gearwhine.cli import run_command
-from gearwhine.coupling.linear.lines_over_speed import sensor_rms
 from gearwhine.figures.variation import draw_variation
 from gearwhine.numerics.distributions import Discrete, Normal
 from gearwhine.numerics.sampling import sobol_points, widened_points
@@ -213,13 +213,7 @@ def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_ope
     rows = document["worst"]
     worst = next(row for row in rows if row["quantity"] == LEVEL)
     study = gw.load(out / f"worst-{LEVEL}-1.toml")
-    housing = study.machine.housing_component
-    assert housing is not None
-    assert housing.complete_below is not None
-    coupled = study.machine.at_operating_point().assembled
-    rms = sensor_rms(coupled, housing.complete_below)[[*coupled.sensor_rows].index("top")]
-    level = 20.0 * np.log10(rms / 1e-6)
-    assert level == pytest.approx(worst["value"], abs=1e-3)
+    assert sensor_level(study, "top") == pytest.approx(worst["value"], abs=1e-3)
     assert study.case.operation is not None
     assert abs(study.case.operation.speed) * RPM == pytest.approx(worst["speed_rpm"])
     assert f"{worst['value']:.6g} at {worst['speed_rpm']:.5g} rpm" in study.case.title
