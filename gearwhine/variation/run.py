@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 _WORTH_WORKERS = 20.0  # time of all samples below which workers, which take seconds to start, are not called [s]
-_BATCH_TIME = 1.0  # time of the samples that a worker is given at once, which the death of a worker may cost [s]
+_BATCH_TIME = 3.0  # time of the samples that a worker is given at once, which the death of a worker may cost [s]
 _LARGEST_BATCH = 200
 _TOLD_EACH = 2.0  # least time between two lines of progress [s]
 
