@@ -9,6 +9,8 @@ s the row of a sensor, f_m the load of the mechanism m:
 
 - ``transmission_error``: k e d at the harmonics of a mesh, e those of the loaded transmission error of teeth that are
   all alike: of their shape, deflection and changing number in contact;
+- ``varying_stiffness``: the force -g d by the mesh stiffness that varies with the phase
+  (:mod:`gearwhine.coupling.linear.parametric_stiffness`), at the mesh harmonics, and, where teeth differ, between them;
 - ``load_shuttling``: the moments of a load that moves along the face
   (:mod:`gearwhine.coupling.machine.load_shuttling`);
 - ``friction``: Coulomb's friction on the flanks under the mean force, which reverses at the pitch point
@@ -21,33 +23,27 @@ Where directions turn with carriers, an excitation at ω_e moves a sensor at all
 all excitations that are so many turns off it (:mod:`gearwhine.coupling.linear.turning_response`).
 
 The parts add up with their phases to the line of the linear model. A motion has other lines than that where flanks
-part, where the mesh stiffness that changes with the phase meets large vibration (parametric excitation), and where a
-bearing's law bends within the motion.
+part and where a bearing's law bends within the motion. With carriers that turn, the mesh stiffness is the mean one.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.coupling.assembly import CoupledMachine
-from gearwhine.coupling.gears.loaded.transmission_error import (
-    LoadedMesh,
-    hunting_period_mesh,
-    loaded_transmission_error,
-    mesh_period_phases,
-    polygon_phasors,
-)
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, polygon_phasors
+from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
-from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
+from gearwhine.coupling.linear.unequal_teeth import StiffnessForce
+from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 MECHANISMS = (
     "transmission_error",
+    "varying_stiffness",
     "load_shuttling",
     "friction",
     "pitch_errors",
@@ -59,10 +55,8 @@ MECHANISMS = (
 )
 """Mechanisms in the order in which they are told; ``load`` is a harmonic load of another kind."""
 
-_POINTS = 200  # number of phases of a mesh period, as in the mean mesh
 _SAME_FREQUENCY_DIFFERENCE = 1e-6  # relative difference of frequencies that are one
 _TRANSMISSION_ERROR_ROUNDING = 1e-12  # part of the largest transmission error that is rounding
-_BESIDE = 1e-9  # distance of a phase from a step [mesh periods]
 
 
 @dataclass(frozen=True)
@@ -95,41 +89,6 @@ class LineParts:
             {name: float((values @ np.conj(sums)).real / power) for name, values in of.items()},
             float(np.linalg.norm(sums)),
         )
-
-
-@dataclass(frozen=True, eq=False)
-class Force:
-    """A harmonic force: its directions, which may turn, and its amplitudes along them.
-
-    Attributes
-    ----------
-    directions : ndarray, shape (n, d)
-        Directions D(0).
-    amplitudes : ndarray of complex, shape (d,)
-    turning : tuple of TurningPart
-        Parts of the directions that turn.
-    """
-
-    directions: npt.NDArray[np.float64] | ComplexArray
-    amplitudes: ComplexArray
-    turning: tuple[TurningPart, ...] = ()
-
-    @property
-    def load(self) -> ComplexArray:
-        """Load on the coordinates with the directions as they stand at t = 0, shape (n,)."""
-        return np.asarray(self.directions @ self.amplitudes)
-
-    def by_order(self, model: TurningResponse) -> dict[Order, ComplexArray]:
-        """Split the force into loads on the coordinates by the order of their frequency, shape (n,) each."""
-        if not self.turning:
-            return {model.still: self.load}
-        parts = model.directions_by_order(self.directions.real, self.turning)
-        return {order: np.asarray(directions @ self.amplitudes) for order, directions in parts.items()}
-
-
-def _along(direction: FloatArray, amplitude: complex, turning: tuple[TurningPart, ...] = ()) -> Force:
-    """Force along one direction (n,)."""
-    return Force(direction[:, None], np.array([amplitude], dtype=np.complex128), turning)
 
 
 @dataclass(frozen=True, eq=False)
@@ -331,32 +290,34 @@ class LineMechanisms:
     def _of_contact(self, number: int, frequency: float, reach: float) -> Iterator[tuple[float, str, Force]]:
         """Yield what a loaded contact excites near a frequency by its phase."""
         contact, stiffness = self.machine.system.contacts[number], self.model.contact.stiffness[number]
-        rate = 2.0 * np.pi * abs(contact.mesh_frequency)
+        rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
         order = round(frequency / rate)
-        alike, friction = self._alike[number]
+        alike, _ = self.model.alike[number]
         if order > 0 and abs(order * rate - frequency) <= reach:
-            error = _at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
+            error = at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
             if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
-                force = _along(contact.direction, stiffness * error[0], contact.turning)
-                yield order * rate, "transmission_error", force
-            if friction is not None and contact.sliding is not None:
-                shares = _at_time_zero(polygon_phasors(alike.phases, friction, [order]), contact, order)
-                sliding = contact.sliding
-                yield order * rate, "friction", Force(sliding.directions, -shares[:, 0], sliding.turning)
-        periods = contact.contact.hunting_period
-        if periods == 1:
-            return
-        order = round(frequency / rate * periods)
+                yield order * rate, "transmission_error", Force.along(contact, stiffness * error[0])
+            if (rubbed := self.model.friction((number, order))) is not None:
+                yield order * rate, "friction", rubbed
         # Closer harmonics of the hunting period than the line resolves make no single line.
-        if order > 0 and abs(order / periods * rate - frequency) <= reach and reach < 0.5 * rate / periods:
+        resolved = periods == 1 or reach < 0.5 * rate / periods
+        if number in self._stiffness_forces:
+            orders, forces = self._stiffness_forces[number].lines
+            least = _TRANSMISSION_ERROR_ROUNDING * stiffness * np.abs(alike.transmission_error).max()
+            first, end = np.searchsorted(orders, [(frequency - reach) / rate, (frequency + reach) / rate]).tolist()
+            for at, force in zip(orders[first:end].tolist(), forces[first:end].tolist(), strict=True):
+                if (resolved or at % 1.0 == 0.0) and abs(force) > least:
+                    yield at * rate, "varying_stiffness", Force.along(contact, force)
+        order = round(frequency / rate * periods)
+        if periods > 1 and order > 0 and abs(order / periods * rate - frequency) <= reach and resolved:
             every, same = self._hunting[number]
             at = order / periods
             error = polygon_phasors(every.phases, every.transmission_error, [at], periods)
             if order % periods == 0:
                 error = error - polygon_phasors(same.phases, same.transmission_error, [at])
-            error = _at_time_zero(error, contact, at)
+            error = at_time_zero(error, contact, at)
             if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max():
-                yield at * rate, "pitch_errors", _along(contact.direction, stiffness * error[0], contact.turning)
+                yield at * rate, "pitch_errors", Force.along(contact, stiffness * error[0])
 
     def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, Force]]:
         """Yield frequency [rad/s] and force (k + iω c) e d of each harmonic of a contact's runout."""
@@ -366,26 +327,14 @@ class LineMechanisms:
             if at > 0.0 and amplitude != 0.0 and state.stiffness[number] > 0.0:
                 error = amplitude * np.exp(1j * phase * np.sign(frequency))
                 law = complex(state.stiffness[number], at * state.damping[number])
-                yield at, _along(contact.direction, law * error, contact.turning)
+                yield at, Force.along(contact, law * error)
 
     @cached_property
-    def _alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
-        """Mesh of every loaded contact over a period with all teeth alike, and its friction force by position.
-
-        The friction is μ F (A, B) [N], shape (n, 2), see
-        `gearwhine.coupling.machine.tooth_friction.friction_of`.
-        """
-        force, meshes = self._force, {}
-        for number in self.model.loaded:
-            contact = self.machine.system.contacts[number]
-            law = contact.contact.teeth_alike
-            phases = mesh_period_phases(law, _POINTS)
-            if contact.sliding is not None:
-                steps = np.array(contact.sliding.friction.event_phases)
-                phases = np.unique(np.concatenate([phases, (steps - _BESIDE) % 1.0, (steps + _BESIDE) % 1.0]))
-            mesh = loaded_transmission_error(law, force[number], phases)
-            meshes[number] = (mesh, _friction(replace(contact, contact=law), mesh))
-        return meshes
+    def _stiffness_forces(self) -> dict[int, StiffnessForce]:
+        """Forces by the mesh stiffness that varies, by contact; none where directions turn."""
+        if self.machine.system.turns or not self.model.stiffness_varies:
+            return {}
+        return self.model.stiffness_forces(self.model.varying_meshes())
 
     @cached_property
     def _hunting(self) -> dict[int, tuple[LoadedMesh, LoadedMesh]]:
@@ -408,24 +357,3 @@ class LineMechanisms:
 def _are_one(first: float, second: float) -> bool:
     """Whether two frequencies are one but for rounding."""
     return abs(first - second) <= _SAME_FREQUENCY_DIFFERENCE * abs(second)
-
-
-def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:
-    """Friction force of a contact by the phase under its mean force, shape (n, 2) [N]; None without friction."""
-    if contact.sliding is None:
-        return None
-    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
-
-    sliding = contact.sliding.friction
-    law, by_slices = contact.friction_law
-    compression = np.ascontiguousarray(mesh.transmission_error)
-    shares = friction_history(mesh.phases, compression, law, by_slices, sliding.pitch_point, sliding.path_end)
-    sense = np.sign(contact.sliding.nominal[1])
-    return np.asarray(sense * sliding.coefficient * mesh.force * shares)
-
-
-def _at_time_zero(phasors: ComplexArray, contact: ContactConnector, order: float) -> ComplexArray:
-    """Return phasors by the mesh phase as those at t = 0, by e^{iωt} with ω > 0."""
-    if contact.mesh_frequency < 0.0:
-        phasors = phasors.conj()
-    return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * order * contact.phase))

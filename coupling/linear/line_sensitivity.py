@@ -49,7 +49,7 @@ from gearwhine.coupling.gears.contact.face_slices import FACE_STATIONS, face_sta
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import LineOutput, SensorAmplitude
-from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response
+from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response, sum_of
 from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.machine.connectors import LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
@@ -303,7 +303,7 @@ class LineModel(MeshHarmonicModel):
         """
         key = (line.frequency, line.causes, change)
         if key not in self._motions:
-            self._motions[key] = linalg.solve(dynamic(), self._load(line.causes))
+            self._motions[key] = linalg.solve(dynamic(), sum_of(self._loads(line.causes)))
         return (output or line.output).value(line.frequency, self._motions[key]) - line.value
 
     @cached_property

@@ -19,7 +19,6 @@ import numpy as np
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -124,7 +123,7 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
         raise CouplingError(f"lines over speed: speeds of {list(speeds)} rad/s beside {nominal:g}; expected one sense")
     model = MeshHarmonicModel(machine)
     highest = limit / min(ratios)
-    meshes = varying_meshes(model, highest)
+    meshes = model.varying_meshes(highest)
     further = model.loads(highest + max((mesh.rate * mesh.reach for mesh in meshes), default=0.0))
     loads = [load for load in further if load.frequency <= highest * (1.0 + 1e-9)]
     stiffness, damping = linear_matrices(system, model.contact)

@@ -1,21 +1,23 @@
-"""Mesh harmonics: response of a machine about its operating point to loaded transmission error and load shuttling.
+"""Mesh harmonics: response of a machine about its operating point to its loaded meshes.
 
 About the operating point a mesh under its mean force F acts as its mean mesh stiffness k and damping c, driven by its
-loaded transmission error e(t) and by the moments of its shuttling load. At a mesh harmonic ω the motion q of the
-machine is
+loaded transmission error e(t), by the moments of its shuttling load and by the friction of its teeth. Its stiffness κ
+varies with the phase, which adds the force -g of :mod:`gearwhine.coupling.linear.parametric_stiffness`. At a mesh
+harmonic ω the motion q of the machine is
 
-    Z q = f,      Z = K + iωC - ω² I,      f = Σ k e d + moments of shuttling,
+    Z q = f,      Z = K + iωC - ω² I,      f = Σ (k e - g) d + moments of shuttling + friction,
 
-K and C with the tangents of bearings and meshes, d the directions of the meshes. Both excitations of a mesh are
-periodic with it, and their phases are those of one mesh period: at a harmonic they add as complex numbers, and one may
-be far above the other at a sensor. A transmissibility by transmission error alone misses the second.
+K and C with the tangents of bearings and meshes, d the directions of the meshes. All excitations of a mesh are periodic
+with it, and their phases are those of one mesh period: at a harmonic they add as complex numbers, and one may be far
+above another at a sensor. A transmissibility by transmission error alone misses the others.
 
 Where directions turn with planet carriers, the force k e acts along d(t) and the moments turn with the mesh, and the
-motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carrier_sidebands`), each a response of its own here.
+motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carrier_sidebands`), each a response of its own here. The
+mesh stiffness is the mean one there: g is left out.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -29,17 +31,22 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
     hunting_period_mesh,
     loaded_transmission_error,
     mesh_period_phases,
+    polygon_phasors,
     transmission_error_phasors,
 )
 from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands, Sideband
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
-from gearwhine.coupling.linear.turning_response import Order
+from gearwhine.coupling.linear.parametric_stiffness import Cause, VaryingMesh, varying_mesh
+from gearwhine.coupling.linear.turning_response import Order, TurningResponse
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce, stiffness_forces
+from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int_]
 
 HARMONICS = 12
 """Largest number of harmonics of a mesh."""
@@ -47,8 +54,7 @@ _POINTS = 200  # number of phases of a mesh period, as in the mean mesh
 _SAME_FREQUENCY_DIFFERENCE = 1e-9  # relative difference below which frequencies are equal
 _FAINT_SIDEBAND = 1e-4  # part of the largest motion by its meshes one by one below which a sideband is left out
 
-Cause = tuple[int, int]
-"""Number of a contact in the system, and harmonic of its mesh frequency."""
+_BESIDE_STEP = 1e-9  # distance of a phase from a step [mesh periods]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,17 +151,52 @@ def causes_in_words(
 
 
 @dataclass(frozen=True, eq=False)
+class Force:
+    """A harmonic force: its directions, which may turn, and its amplitudes along them.
+
+    Attributes
+    ----------
+    directions : ndarray, shape (n, d)
+        Directions D(0).
+    amplitudes : ndarray of complex, shape (d,)
+    turning : tuple of TurningPart
+        Parts of the directions that turn.
+    """
+
+    directions: FloatArray | ComplexArray
+    amplitudes: ComplexArray
+    turning: tuple[TurningPart, ...] = ()
+
+    @classmethod
+    def along(cls, contact: ContactConnector, amplitude: complex) -> "Force":
+        """Force along the line of action of a contact."""
+        return cls(contact.direction[:, None], np.array([amplitude], dtype=np.complex128), contact.turning)
+
+    @property
+    def load(self) -> ComplexArray:
+        """Load on the coordinates with the directions as they stand at t = 0, shape (n,)."""
+        return np.asarray(self.directions @ self.amplitudes)
+
+    def by_order(self, model: TurningResponse) -> dict[Order, ComplexArray]:
+        """Split the force into loads on the coordinates by the order of their frequency, shape (n,) each."""
+        if not self.turning:
+            return {model.still: self.load}
+        parts = model.directions_by_order(self.directions.real, self.turning)
+        return {order: np.asarray(directions @ self.amplitudes) for order, directions in parts.items()}
+
+
+@dataclass(frozen=True, eq=False)
 class ResponseParts(Response):
     """Motion of the machine at a mesh harmonic, and its parts.
 
     Attributes
     ----------
-    by_error, by_shuttling : ndarray of complex, shape (n,)
-        Motions by the transmission errors and by the load shuttling of the meshes that drive it; q is their sum.
+    parts : mapping of str to ndarray of complex, shape (n,)
+        Motions by the mechanisms of the meshes that drive it, q their sum: by ``transmission_error``,
+        ``load_shuttling``, ``friction`` where teeth have any, and ``varying_stiffness`` where it is known.
     """
 
-    by_error: ComplexArray
-    by_shuttling: ComplexArray
+    parts: Mapping[str, ComplexArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,9 +226,12 @@ class MeshHarmonicModel:
     ----------
     machine : CoupledMachine
         Assembled about its operating point.
+    stiffness_varies : bool
+        Whether the stiffness of meshes varies with the phase, where no directions turn; otherwise it is the mean one.
     """
 
     machine: CoupledMachine
+    stiffness_varies: bool = field(default=True, kw_only=True)
 
     @cached_property
     def contact(self) -> ContactState:
@@ -206,8 +250,11 @@ class MeshHarmonicModel:
         )
 
     def loads(self, limit: float) -> tuple[MeshLoad, ...]:
-        """Return the loads f of the mesh harmonics up to a limit [rad/s], ascending, with frozen directions."""
-        return tuple(MeshLoad(w, causes, self._load(causes)) for w, causes in self._harmonics(limit))
+        """Return the loads of the mesh harmonics up to a limit [rad/s], ascending, with frozen directions.
+
+        They are those on the machine with the mean mesh stiffness, f without g.
+        """
+        return tuple(MeshLoad(w, causes, sum_of(self._mean_loads(causes))) for w, causes in self._harmonics(limit))
 
     def responses(self, limit: float) -> tuple[Response, ...]:
         """Solve the motions at the mesh harmonics, and their sidebands, up to a limit [rad/s], ascending."""
@@ -216,19 +263,19 @@ class MeshHarmonicModel:
     def frozen_responses(self, limit: float) -> tuple[Response, ...]:
         """Solve the motions of `responses` with directions that turn frozen as they stand at t = 0."""
         return tuple(
-            Response(w, causes, linalg.solve(self._dynamic(w), self._load(causes)))
+            Response(w, causes, linalg.solve(self._dynamic(w), sum_of(self._loads(causes))))
             for w, causes in self._harmonics(limit)
         )
 
     def parts(self, limit: float) -> tuple[ResponseParts, ...]:
-        """Solve the motions of `responses` with their parts by transmission error and by load shuttling."""
+        """Solve the motions of `responses` with their parts by mechanism."""
         if self.machine.system.turns:
             return self._turning_parts(limit)
         parts = []
         for w, causes in self._harmonics(limit):
-            loads = np.stack([self._error_load(causes), self._shuttling_load(causes)], axis=1)
-            by_error, by_shuttling = linalg.solve(self._dynamic(w), loads).T
-            parts.append(ResponseParts(w, causes, by_error + by_shuttling, by_error, by_shuttling))
+            loads = self._loads(causes)
+            moved = linalg.solve(self._dynamic(w), np.stack([*loads.values()], axis=1)).T
+            parts.append(ResponseParts(w, causes, moved.sum(axis=0), dict(zip(loads, moved, strict=True))))
         return tuple(parts)
 
     def _turning_parts(self, limit: float) -> tuple[ResponseParts, ...]:
@@ -242,12 +289,13 @@ class MeshHarmonicModel:
 
     def _sidebands(self, w: float, causes: tuple[Cause, ...]) -> list[ResponseParts]:
         """Solve the motions at a mesh harmonic [rad/s] and its sidebands."""
-        turning, count = self.turning, len(causes)
-        pairs = [self._turning_loads(w, cause) for cause in causes]
-        loads = [*(error for error, _ in pairs), *(shuttling for _, shuttling in pairs)]
-        motion = turning.respond(w, loads)
-        seen = self._housing_coordinates
-        sizes = {order: np.linalg.norm((q[:count] + q[count:])[:, seen], axis=1).sum() for order, q in motion.items()}
+        turning, seen = self.turning, self._housing_coordinates
+        by_cause = [self._turning_loads(w, cause) for cause in causes]
+        mechanisms = [*by_cause[0]]
+        solved = turning.respond(w, [loads[mechanism] for mechanism in mechanisms for loads in by_cause])
+        # By mechanism and cause.
+        motion = {order: q.reshape(len(mechanisms), len(causes), -1) for order, q in solved.items()}
+        sizes = {order: np.linalg.norm(q.sum(axis=0)[:, seen], axis=1).sum() for order, q in motion.items()}
         lines = []
         for order, q in motion.items():
             if sizes[order] <= _FAINT_SIDEBAND * max(sizes.values()):
@@ -255,16 +303,14 @@ class MeshHarmonicModel:
             at = w + turning.model.shift(order)
             # A motion Re(q e^{iωt}) of a negative ω is Re(conj(q) e^{i|ω|t}).
             moved = q if at > 0.0 else q.conj()
-            by_error, by_shuttling = moved[:count].sum(axis=0), moved[count:].sum(axis=0)
             lines.append(
                 ResponseParts(
                     abs(at),
                     causes,
-                    by_error + by_shuttling,
-                    by_error,
-                    by_shuttling,
+                    moved.sum(axis=(0, 1)),
+                    dict(zip(mechanisms, moved.sum(axis=1), strict=True)),
                     sidebands=tuple(turning.sideband(order, cause) for cause in causes),
-                    phasing=turning.planets.solved([number for number, _ in causes], (q[:count] + q[count:])[:, seen]),
+                    phasing=turning.planets.solved([number for number, _ in causes], q.sum(axis=0)[:, seen]),
                 )
             )
         return lines
@@ -281,7 +327,7 @@ class MeshHarmonicModel:
             rate = abs(self.machine.system.contacts[number].mesh_frequency)
             together.setdefault(round(2.0 * np.pi * harmonic * rate, 6), []).append((number, harmonic))
         for w, causes in together.items():
-            loads = [load for cause in dict.fromkeys(causes) for load in self._turning_loads(w, cause)]
+            loads = [load for cause in dict.fromkeys(causes) for load in self._turning_loads(w, cause).values()]
             for sense in (1.0, -1.0):
                 order = model.order_of(sense * line.frequency - w)
                 if order is None:
@@ -306,13 +352,19 @@ class MeshHarmonicModel:
             return np.ones(machine.system.size, dtype=np.bool_)
         return np.asarray(np.any(machine.rows(machine.housing.name, np.eye(machine.housing.size)) != 0.0, axis=0))
 
-    def _turning_loads(self, w: float, cause: Cause) -> tuple[dict[Order, ComplexArray], dict[Order, ComplexArray]]:
-        """Return k e d(t) and the moments of load shuttling of a cause at ω by order."""
+    def _turning_loads(self, w: float, cause: Cause) -> dict[str, dict[Order, ComplexArray]]:
+        """Return the loads of a cause at ω by mechanism and order; every cause has the same mechanisms."""
         number, harmonic = cause
-        force = self.contact.stiffness[number] * self._errors[number][harmonic - 1]
+        model, force = self.turning.model, self.contact.stiffness[number] * self._errors[number][harmonic - 1]
         amplitude, frame = self._shuttling[number].get(harmonic), self.turning.frame_of_contact(number)
-        by_error = self.turning.model.force_along(number, force)
-        return by_error, {} if amplitude is None else self.turning.by_order(w, HarmonicLoad(w, amplitude), frame)
+        loads = {
+            "transmission_error": model.force_along(number, force),
+            "load_shuttling": {} if amplitude is None else self.turning.by_order(w, HarmonicLoad(w, amplitude), frame),
+        }
+        if self._has_friction:
+            rubbed = self.friction(cause)
+            loads["friction"] = {} if rubbed is None else rubbed.by_order(model)
+        return loads
 
     def dynamic_stiffness(self, frequency: float) -> ComplexArray:
         """Z at a frequency [rad/s], shape (n, n), with directions that turn as they stand at t = 0."""
@@ -333,11 +385,8 @@ class MeshHarmonicModel:
             Number of mesh periods that the phases of ``mesh`` cover.
         count : int
         """
-        contact = self.machine.system.contacts[number]
         phasors = transmission_error_phasors(mesh, count, hunting_period)
-        phasors = phasors.conj() if contact.mesh_frequency < 0.0 else phasors
-        orders = np.arange(1, count + 1)
-        return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * orders * contact.phase))
+        return at_time_zero(phasors, self.machine.system.contacts[number], np.arange(1, count + 1))
 
     def shuttling_loads(self, number: int, face: MeshFace, force: float) -> dict[int, ComplexArray]:
         """Moments of load shuttling by harmonic, of the flanks of a face under a force [N], shape (n,) each."""
@@ -371,26 +420,93 @@ class MeshHarmonicModel:
                 harmonics.append((w, (cause,)))
         return harmonics
 
-    def _load(self, causes: tuple[Cause, ...]) -> ComplexArray:
-        """Return f by the meshes alone, shape (n,): torque ripple of a mesh's frequency has no part in it."""
-        return self._error_load(causes) + self._shuttling_load(causes)
+    def _loads(self, causes: Sequence[Cause]) -> dict[str, ComplexArray]:
+        """Return f by the mechanisms of the meshes alone: torque ripple of a mesh's frequency has no part in it."""
+        loads = self._mean_loads(causes)
+        if self.stiffness_varies and not self.machine.system.turns:
+            directions = np.array([self.machine.system.contacts[number].direction for number, _ in causes])
+            forces = [self._stiffness_forces[number].harmonic(harmonic) for number, harmonic in causes]
+            loads["varying_stiffness"] = np.asarray(forces @ directions)
+        return loads
 
-    def _error_load(self, causes: tuple[Cause, ...]) -> ComplexArray:
-        """Return Σ k e d, shape (n,)."""
-        system = self.machine.system
-        total = np.zeros(system.size, dtype=np.complex128)
+    def _mean_loads(self, causes: Sequence[Cause]) -> dict[str, ComplexArray]:
+        """Return Σ k e d, the moments of load shuttling, and friction where teeth have any, shape (n,) each."""
+        contacts, size = self.machine.system.contacts, self.machine.system.size
+        loads = {name: np.zeros(size, dtype=np.complex128) for name in ("transmission_error", "load_shuttling")}
+        if self._has_friction:
+            loads["friction"] = np.zeros(size, dtype=np.complex128)
         for number, harmonic in causes:
-            direction = system.contacts[number].direction
-            total += self.contact.stiffness[number] * self._errors[number][harmonic - 1] * direction
-        return total
+            force = self.contact.stiffness[number] * self._errors[number][harmonic - 1]
+            loads["transmission_error"] += force * contacts[number].direction
+            loads["load_shuttling"] += self._shuttling[number].get(harmonic, 0.0)
+            if (rubbed := self.friction((number, harmonic))) is not None:
+                loads["friction"] += rubbed.load
+        return loads
 
-    def _shuttling_load(self, causes: tuple[Cause, ...]) -> ComplexArray:
-        """Return the moments of load shuttling, shape (n,)."""
-        total = np.zeros(self.machine.system.size, dtype=np.complex128)
-        for number, harmonic in causes:
-            if harmonic in self._shuttling[number]:
-                total += self._shuttling[number][harmonic]
-        return total
+    @property
+    def _has_friction(self) -> bool:
+        return any(self.machine.system.contacts[number].sliding is not None for number in self.loaded)
+
+    def friction(self, cause: Cause) -> Force | None:
+        """Friction of a contact's teeth at a mesh harmonic under its mean force; None without friction."""
+        number, harmonic = cause
+        contact, (mesh, friction) = self.machine.system.contacts[number], self.alike[number]
+        if friction is None or contact.sliding is None:
+            return None
+        shares = at_time_zero(polygon_phasors(mesh.phases, friction, [harmonic]), contact, harmonic)
+        return Force(contact.sliding.directions, -shares[:, 0], contact.sliding.turning)
+
+    @cached_property
+    def alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
+        """Mesh of every loaded contact over a period with all teeth alike, and its friction force by position.
+
+        The friction is μ F (A, B) [N], shape (n, 2), see
+        `gearwhine.coupling.machine.tooth_friction.friction_of`.
+        """
+        meshes = {}
+        for number in self.loaded:
+            contact = self.machine.system.contacts[number]
+            law = contact.contact.teeth_alike
+            phases = mesh_period_phases(law, _POINTS)
+            if contact.sliding is not None:
+                steps = np.array(contact.sliding.friction.event_phases)
+                phases = np.unique(np.concatenate([phases, (steps - _BESIDE_STEP) % 1.0, (steps + _BESIDE_STEP) % 1.0]))
+            mesh = loaded_transmission_error(law, self._force(number), phases)
+            meshes[number] = (mesh, _friction(replace(contact, contact=law), mesh))
+        return meshes
+
+    def varying_meshes(self, limit: float | None = None) -> list[VaryingMesh]:
+        """Return the loaded meshes with the orders that count up to a limit [rad/s], by default some harmonics."""
+        contacts, stiffness = self.machine.system.contacts, self.contact.stiffness
+        return [
+            varying_mesh(
+                number,
+                contacts[number],
+                float(stiffness[number]),
+                self.meshes[number],
+                2.0 * np.pi * HARMONICS * abs(contacts[number].mesh_frequency) if limit is None else limit,
+            )
+            for number in self.loaded
+        ]
+
+    def stiffness_forces(self, meshes: Sequence[VaryingMesh]) -> dict[int, StiffnessForce]:
+        """Force -g of meshes along their lines of action, by the number of the contact."""
+        machine = DampedMachine(*self._matrices)
+        motions = {
+            cause: machine.motion(load.frequency, load.load) for load in self.loads(np.inf) for cause in load.causes
+        }
+        directions = self.machine.system.contact_directions
+        return stiffness_forces(meshes, self.contact, directions, machine, motions)
+
+    @cached_property
+    def _stiffness_forces(self) -> dict[int, StiffnessForce]:
+        """As `stiffness_forces`, of the mesh harmonics alone."""
+        return self.stiffness_forces([mesh.of_harmonics for mesh in self.varying_meshes()])
+
+    def _force(self, number: int) -> float:
+        """Mean force of a contact [N]."""
+        assert self.contact.force is not None
+        return float(self.contact.force[number])
 
     @cached_property
     def _errors(self) -> dict[int, ComplexArray]:
@@ -405,17 +521,14 @@ class MeshHarmonicModel:
     @cached_property
     def _shuttling(self) -> dict[int, dict[int, ComplexArray]]:
         """Return the moments of every loaded contact by harmonic."""
-        assert self.contact.force is not None
-        contacts, force, face = self.machine.system.contacts, self.contact.force, self.machine.face
-        return {n: self.shuttling_loads(n, face(n, contacts[n].contact), float(force[n])) for n in self.loaded}
+        contacts, face = self.machine.system.contacts, self.machine.face
+        return {n: self.shuttling_loads(n, face(n, contacts[n].contact), self._force(n)) for n in self.loaded}
 
     def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
         """Mesh of the contact law ``law`` under the mean force of a contact."""
-        assert self.contact.force is not None
-        force = float(self.contact.force[number])
         if law.hunting_period > 1:
-            return hunting_period_mesh(law, force)
-        return loaded_transmission_error(law, force, mesh_period_phases(law, points))
+            return hunting_period_mesh(law, self._force(number))
+        return loaded_transmission_error(law, self._force(number), mesh_period_phases(law, points))
 
     def _error(self, number: int, mesh: LoadedMesh) -> ComplexArray:
         """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
@@ -436,9 +549,34 @@ def _merged(lines: Sequence[ResponseParts]) -> list[ResponseParts]:
             last.frequency,
             (*last.causes, *line.causes),
             last.motion + line.motion,
-            last.by_error + line.by_error,
-            last.by_shuttling + line.by_shuttling,
+            {mechanism: motion + line.parts[mechanism] for mechanism, motion in last.parts.items()},
             sidebands=(*last.sidebands, *line.sidebands),
             phasing=larger.phasing,
         )
     return merged
+
+
+def sum_of(loads: Mapping[str, ComplexArray]) -> ComplexArray:
+    """Sum of loads or motions by mechanism, shape (n,)."""
+    return np.asarray(np.sum([*loads.values()], axis=0))
+
+
+def at_time_zero(phasors: ComplexArray, contact: ContactConnector, order: float | IntArray) -> ComplexArray:
+    """Return phasors by the mesh phase as those at t = 0, by e^{iωt} with ω > 0."""
+    if contact.mesh_frequency < 0.0:
+        phasors = phasors.conj()
+    return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * order * contact.phase))
+
+
+def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:
+    """Friction force of a contact by the phase under its mean force, shape (n, 2) [N]; None without friction."""
+    if contact.sliding is None:
+        return None
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
+
+    sliding = contact.sliding.friction
+    law, by_slices = contact.friction_law
+    compression = np.ascontiguousarray(mesh.transmission_error)
+    shares = friction_history(mesh.phases, compression, law, by_slices, sliding.pitch_point, sliding.path_end)
+    sense = np.sign(contact.sliding.nominal[1])
+    return np.asarray(sense * sliding.coefficient * mesh.force * shares)

@@ -29,12 +29,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
-from gearwhine.coupling.gears.loaded.transmission_error import period_mean, phasors_between, polygon_phasors
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    LoadedMesh,
+    period_mean,
+    phasors_between,
+    polygon_phasors,
+)
+from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
+Cause = tuple[int, int]
+"""Number of a contact in the system, and harmonic of its mesh frequency."""
+
 _FURTHER = 3  # orders beyond the limit whose coupling counts
+LEAST_REACH = 15
+"""Number of harmonics at least: a mesh vibrates on its stiffness far above the modes of a housing."""
 _SECANT = 0.1  # part of the mean compression over which the stiffness is taken
 _AT_ONCE = 4000  # orders whose amplitudes are summed together
 _WHOLE = 1e-9  # distance from a whole order below which a line is a mesh harmonic
@@ -80,6 +89,11 @@ class VaryingMesh:
         return np.asarray(self.fractions[:, None] + np.arange(-self.reach, self.reach + 1))
 
     @property
+    def one_sided(self) -> npt.NDArray[np.bool_]:
+        """Orders that hold each line once: at 0 and at half a mesh frequency a set has the conjugates, too."""
+        return np.asarray((self.orders > 0.0) | ((self.fractions % 0.5 != 0.0)[:, None] & (self.orders < 0.0)))
+
+    @property
     def coupling(self) -> ComplexArray:
         """κ_{n-m} from a mesh harmonic m to an order n, shape (r, 2 J + 1, 2 J + 1)."""
         places = np.arange(2 * self.reach + 1)
@@ -90,6 +104,12 @@ class VaryingMesh:
         passed = np.where(self.damped[:, None], 1j * ratio * self.rate * self.orders * damping, 0.0)
         return np.asarray((stiffness + passed) * self.error)
 
+    @property
+    def of_harmonics(self) -> "VaryingMesh":
+        """The mesh with the mesh harmonics alone."""
+        rows = {name: getattr(self, name)[:1] for name in ("fractions", "error", "stiffness", "damped")}
+        return replace(self, **rows)
+
     def up_to(self, limit: float, ratio: float) -> "VaryingMesh":
         """Return the mesh with the orders that count up to a limit [rad/s] at the part ``ratio`` of the speed."""
         less = self.reach - _reach(limit, ratio * self.rate)
@@ -98,8 +118,8 @@ class VaryingMesh:
         stiffness = self.stiffness[:, 2 * less : -2 * less]
         return replace(self, error=self.error[:, less:-less], stiffness=stiffness)
 
-    def forces_between(self, compression: ComplexArray, loads: ComplexArray, receptance: ComplexArray) -> ComplexArray:
-        """Return the loads less g of the sets between the mesh harmonics [N], shape (r - 1, 2 J + 1).
+    def forces(self, compression: ComplexArray, loads: ComplexArray, receptance: ComplexArray) -> ComplexArray:
+        """Return the force -g at the orders [N], shape (r, 2 J + 1).
 
         Parameters
         ----------
@@ -110,25 +130,35 @@ class VaryingMesh:
         receptance : ndarray of complex, shape (r, 2 J + 1)
             G at the orders [m/N].
         """
-        own, by_harmonics = self.coupling[0], self.coupling[1:] @ compression
-        g_1 = receptance[1:]
-        moved = g_1 * (loads[1:] - by_harmonics) - self.error[1:]
-        further = np.linalg.solve(np.eye(len(own)) + g_1[:, :, None] * own, moved[:, :, None])[:, :, 0]
-        return np.asarray(loads[1:] - by_harmonics - further @ own.T)
+        by_harmonics = self.coupling @ compression
+        own, between = self.coupling[0], receptance[1:]
+        moved = between * (loads[1:] - by_harmonics[1:]) - self.error[1:]
+        further = np.linalg.solve(np.eye(len(own)) + between[:, :, None] * own, moved[:, :, None])[:, :, 0]
+        return -np.concatenate([by_harmonics[:1], by_harmonics[1:] + further @ own.T])
 
 
 def _reach(limit: float, rate: float) -> int:
-    return int(np.ceil(limit / rate - _WHOLE)) + _FURTHER
+    return max(int(np.ceil(limit / rate - _WHOLE)) + _FURTHER, LEAST_REACH)
 
 
-def varying_meshes(model: MeshHarmonicModel, limit: float) -> list[VaryingMesh]:
-    """Return the loaded meshes with the orders that count up to a limit at nominal speed [rad/s]."""
-    return [_varying_mesh(model, number, limit) for number in model.loaded]
+def varying_mesh(number: int, contact: ContactConnector, mean: float, mesh: LoadedMesh, limit: float) -> VaryingMesh:
+    """Return a loaded mesh with the orders that count up to a limit.
 
+    Parameters
+    ----------
+    number : int
+        Number of the contact in the system.
+    contact : ContactConnector
+    mean : float
+        Its mean mesh stiffness k̄ [N/m].
+    mesh : LoadedMesh
+        The mesh under its mean force over the mesh periods that differ.
+    limit : float
+        Highest frequency at nominal speed [rad/s].
+    """
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
 
-def _varying_mesh(model: MeshHarmonicModel, number: int, limit: float) -> VaryingMesh:
-    contact, mesh = model.machine.system.contacts[number], model.meshes[number]
-    mean, force = float(model.contact.stiffness[number]), mesh.force
+    force = mesh.force
     rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
     reach = _reach(limit, rate)
     still, away = np.zeros(mesh.phases.size), _SECANT * force / mean

@@ -17,13 +17,12 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import linalg
 
-from gearwhine.coupling.linear.mesh_harmonics import Cause
-from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh, harmonic_compressions
+from gearwhine.coupling.linear.parametric_stiffness import Cause, VaryingMesh, harmonic_compressions
 from gearwhine.coupling.statics.mean_mesh import ContactState
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -105,6 +104,35 @@ class DampedMachine:
 
 
 @dataclass(frozen=True, eq=False)
+class StiffnessForce:
+    """Force -g of a mesh by its stiffness that varies, along its line of action.
+
+    Attributes
+    ----------
+    mesh : VaryingMesh
+    amplitudes : ndarray of complex, shape (r, 2 J + 1)
+        Two-sided, at the orders of the mesh at t = 0 [N].
+    """
+
+    mesh: VaryingMesh
+    amplitudes: ComplexArray
+
+    def harmonic(self, harmonic: int) -> complex:
+        """Amplitude at a mesh harmonic, by e^{iωt} with ω > 0 [N]; 0 beyond those that are known."""
+        known = harmonic <= self.mesh.reach
+        return 2.0 * complex(self.amplitudes[0, self.mesh.reach + harmonic]) if known else 0.0j
+
+    @cached_property
+    def lines(self) -> tuple[FloatArray, ComplexArray]:
+        """Orders of the mesh frequency, ascending, and the amplitudes there by e^{iωt} with ω > 0 [N]."""
+        orders, kept = self.mesh.orders, self.mesh.one_sided
+        order, amplitude = np.abs(orders[kept]), 2.0 * self.amplitudes[kept]
+        amplitude = np.where(orders[kept] < 0.0, amplitude.conj(), amplitude)
+        ascending = np.argsort(order, kind="stable")
+        return order[ascending], amplitude[ascending]
+
+
+@dataclass(frozen=True, eq=False)
 class LinesOfMeshes:
     """Accelerations along some rows by all that varies with the phase of the meshes, at one speed.
 
@@ -123,13 +151,35 @@ class LinesOfMeshes:
     between: ComplexArray
 
 
+class _Solved(NamedTuple):
+    """A mesh with the motions along rows by a unit load along it (o, r, 2 J + 1), and two-sided forces on it [N]."""
+
+    mesh: VaryingMesh
+    answer: ComplexArray
+    load: ComplexArray
+    change: ComplexArray
+
+
+def stiffness_forces(
+    meshes: Sequence[VaryingMesh],
+    state: ContactState,
+    directions: FloatArray,
+    machine: DampedMachine,
+    motions: Mapping[Cause, ComplexArray],
+) -> dict[int, StiffnessForce]:
+    """Solve the forces of meshes by their varying stiffness, by contact; parameters as of `lines_of_meshes`."""
+    none = np.empty((0, len(directions)))
+    solved = _solved(meshes, state, directions, none, machine, motions, 1.0)
+    return {one.mesh.number: StiffnessForce(one.mesh, one.change) for one in solved}
+
+
 def lines_of_meshes(
     meshes: Sequence[VaryingMesh],
     state: ContactState,
     directions: FloatArray,
     rows: FloatArray,
     machine: DampedMachine,
-    harmonics: Mapping[Cause, ComplexArray],
+    motions: Mapping[Cause, ComplexArray],
     *,
     ratio: float = 1.0,
     limit: float = np.inf,
@@ -147,13 +197,41 @@ def lines_of_meshes(
         Rows of the motions at sensors.
     machine : DampedMachine
         Linear about its mean load, at this speed.
-    harmonics : mapping of (int, int) to ndarray of complex, shape (n,)
+    motions : mapping of (int, int) to ndarray of complex, shape (n,)
         Motion at mesh harmonics with the mean stiffness, by all that drives it, by contact and harmonic.
     ratio : float
         Speed over the nominal one.
     limit : float
         Highest frequency of the lines between mesh harmonics [rad/s].
     """
+    by_stiffness = dict[Cause, ComplexArray]()
+    frequencies, between = [np.empty(0)], [np.empty((len(rows), 0), dtype=np.complex128)]
+    for mesh, answer, load, change in _solved(meshes, state, directions, rows, machine, motions, ratio):
+        w = ratio * mesh.rate * mesh.orders
+        for harmonic in range(1, mesh.reach + 1):
+            at = 0, mesh.reach + harmonic
+            by_stiffness[mesh.number, harmonic] = -2.0 * w[at] ** 2 * answer[:, *at] * change[at]
+        lines = -2.0 * w[1:] ** 2 * answer[:, 1:] * (load + change)[1:]
+        kept = (np.abs(w[1:]) <= limit * (1.0 + _WITHIN)) & mesh.one_sided[1:]
+        frequencies.append(np.abs(w[1:])[kept])
+        between.append(np.where(w[1:] < 0.0, lines.conj(), lines)[:, kept])
+    every, parts = np.concatenate(frequencies), np.concatenate(between, axis=1)
+    alike = np.round(every / max((mesh.rate for mesh in meshes), default=1.0), _ALIKE_DIGITS)
+    _, first, line = np.unique(alike, return_index=True, return_inverse=True)
+    together = np.zeros((len(first), len(rows)), dtype=np.complex128)
+    np.add.at(together, line, parts.T)
+    return LinesOfMeshes(by_stiffness, every[first], together.T)
+
+
+def _solved(
+    meshes: Sequence[VaryingMesh],
+    state: ContactState,
+    directions: FloatArray,
+    rows: FloatArray,
+    machine: DampedMachine,
+    motions: Mapping[Cause, ComplexArray],
+    ratio: float,
+) -> list[_Solved]:
     along = directions[:, [mesh.number for mesh in meshes]]
     outputs, sensors = np.vstack([rows, along.T]), len(rows)
     answers, compressions, loads = list[ComplexArray](), list[ComplexArray](), list[ComplexArray]()
@@ -166,38 +244,21 @@ def lines_of_meshes(
         answer[sensors + place, 0, mesh.reach] = 1.0 / k
         load = mesh.loads(k, float(state.damping[mesh.number]), ratio)
         moved = answer[sensors + place, 0] * load[0]
-        for (number, harmonic), motion in harmonics.items():
+        for (number, harmonic), motion in motions.items():
             if number == mesh.number and harmonic <= mesh.reach:
                 moved[mesh.reach + harmonic] = 0.5 * (along[:, place] @ motion)
                 moved[mesh.reach - harmonic] = moved[mesh.reach + harmonic].conj()
         answers.append(answer)
         loads.append(load)
         compressions.append(moved - mesh.error[0])
-    by_stiffness = dict[Cause, ComplexArray]()
-    frequencies, between = list[FloatArray](), list[ComplexArray]()
+    solved = []
     rates = np.array([mesh.rate for mesh in meshes])
     for rate in np.unique(np.round(rates, 6)).tolist():
         group = np.flatnonzero(np.round(rates, 6) == rate).tolist()
         receptance = [[answers[column][sensors + row, 0] for column in group] for row in group]
         pressed = harmonic_compressions([meshes[n] for n in group], [compressions[n] for n in group], receptance)
         for number, compression in zip(group, pressed, strict=True):
-            mesh, answer = meshes[number], answers[number]
-            w, force = ratio * mesh.rate * mesh.orders, mesh.coupling[0] @ compression
-            for harmonic in range(1, mesh.reach + 1):
-                at = mesh.reach + harmonic
-                by_stiffness[mesh.number, harmonic] = 2.0 * w[0, at] ** 2 * answer[:sensors, 0, at] * force[at]
-            further = mesh.forces_between(compression, loads[number], answer[sensors + number])
-            lines = -2.0 * w[1:] ** 2 * answer[:sensors, 1:] * further
-            # At half a mesh frequency a set holds each line and its conjugate.
-            kept = (np.abs(w[1:]) <= limit * (1.0 + _WITHIN)) & ((w[1:] > 0.0) | (mesh.fractions[1:, None] < 0.5))
-            frequencies.append(np.abs(w[1:])[kept])
-            between.append(np.where(w[1:] < 0.0, lines.conj(), lines)[:, kept])
-    every, parts = (
-        np.concatenate([np.empty(0), *frequencies]),
-        np.concatenate([np.empty((sensors, 0)), *between], axis=1),
-    )
-    alike = np.round(every / rates.max(initial=1.0), _ALIKE_DIGITS)
-    _, first, line = np.unique(alike, return_index=True, return_inverse=True)
-    together = np.zeros((len(first), sensors), dtype=np.complex128)
-    np.add.at(together, line, parts.T)
-    return LinesOfMeshes(by_stiffness, every[first], together.T)
+            mesh, answer, load = meshes[number], answers[number], loads[number]
+            change = mesh.forces(compression, load, answer[sensors + number])
+            solved.append(_Solved(mesh, answer[:sensors], load, change))
+    return solved

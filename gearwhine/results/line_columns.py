@@ -9,6 +9,7 @@ LINE_NAME = Column("what it is", "name")
 
 MECHANISMS = {
     "transmission_error": "transmission error",
+    "varying_stiffness": "varying mesh stiffness",
     "load_shuttling": "load shuttling",
     "friction": "tooth friction",
     "pitch_errors": "pitch errors and runout",

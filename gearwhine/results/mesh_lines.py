@@ -15,7 +15,7 @@ _SIDEBANDS = 8  # of each sensor, the highest, where carriers turn
 _LISTED_LEFT = 6  # lines that equal planets would not have, the highest
 _FAINT_LINE = 1e-3  # part of a sensor's highest line below which what is left of a line is not listed
 _ROUNDING = 1e-9  # part of a sensor's highest line up to which a line is not listed
-_PARTS = ("by_transmission_error", "by_load_shuttling", "together")
+_PARTS = ("by_transmission_error", "by_varying_stiffness", "by_load_shuttling", "by_friction", "together")
 
 
 # --------------------------------------------------------------------------- how far lines are followed
@@ -110,7 +110,7 @@ def _limit_sentences(limits: Document) -> Iterator[str]:
 
 
 def line_content(document: Document) -> Iterator[str | Table]:
-    """Yield the highest lines of each sensor by transmission error, by load shuttling and by both."""
+    """Yield the highest lines of each sensor by each mechanism of the teeth and by all."""
     lines = document.get("mesh_lines", [])
     rows: list[dict[str, Any]] = []
     turning = any("kind" in line for line in lines)
@@ -119,7 +119,7 @@ def line_content(document: Document) -> Iterator[str | Table]:
         of_sensor = [
             {"sensor": sensor}
             | {key: line[key] for key in keys if key in line}
-            | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name in _PARTS}
+            | {name: parts[name][sensor] for name in _PARTS if name in (parts := line["sensor_acceleration_m_per_s2"])}
             | ({"band_db": line["band_db"][sensor]} if "band_db" in line else {})
             for line in lines
         ]
@@ -133,7 +133,10 @@ def line_content(document: Document) -> Iterator[str | Table]:
         yield from table_of(_turning_columns(short=short) if turning else _LINE_COLUMNS, rows)
         if short:
             yield "Lines n f_m + k f_c: n harmonic of the planets' meshes, k turns of the carrier, see below."
-        yield "Together: the sum with phase, above or below either part."
+        yield (
+            "By error: transmission error with the mean mesh stiffness; by stiffness: what its variation with the "
+            "phase adds; together: the sum with phase, above or below each part."
+        )
     if turning:
         yield (
             "Phasing: the housing's motion by all planets over the sum of its motions by the meshes of each planet "
@@ -205,8 +208,10 @@ _LINE_COLUMNS = (
     Column("sensor", "sensor"),
     Column("frequency [Hz]", "frequency_hz", ".1f"),
     Column("harmonic", "cause"),
-    Column("by transmission error", "by_transmission_error", ".3g"),
-    Column("by load shuttling", "by_load_shuttling", ".3g"),
+    Column("by error", "by_transmission_error", ".3g"),
+    Column("by stiffness", "by_varying_stiffness", ".3g"),
+    Column("by shuttling", "by_load_shuttling", ".3g"),
+    Column("by friction", "by_friction", ".3g"),
     Column("together", "together", ".3g"),
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
 )

@@ -307,9 +307,11 @@ TRANSMISSIBILITY = (
 """Quantities of the response to the error of one mesh."""
 
 _PARTS = (
-    ("by_transmission_error", "by_error", "by transmission error alone"),
-    ("by_load_shuttling", "by_shuttling", "by load shuttling alone"),
-    ("together", "motion", "by transmission error and load shuttling together"),
+    ("by_transmission_error", "transmission_error", "by transmission error alone"),
+    ("by_varying_stiffness", "varying_stiffness", "by the mesh stiffness that varies alone"),
+    ("by_load_shuttling", "load_shuttling", "by load shuttling alone"),
+    ("by_friction", "friction", "by tooth friction alone"),
+    ("together", None, "by all of these together"),
 )
 
 
@@ -320,11 +322,14 @@ class _Line(NamedTuple):
     line: "ResponseParts"
 
 
-def _line_part(name: str, attribute: str, part: str) -> Quantity:
-    """Declare the amplitudes of the sensors by a part of a line's motion."""
+def _line_part(name: str, mechanism: str | None, part: str) -> Quantity:
+    """Declare the amplitudes of the sensors by a mechanism of a line, or by all."""
 
-    def of(row: _Line) -> dict[str, float]:
-        motion = row.line.frequency**2 * getattr(row.line, attribute)
+    def of(row: _Line) -> dict[str, float] | object:
+        motion = row.line.motion if mechanism is None else row.line.parts.get(mechanism)
+        if motion is None:
+            return ABSENT
+        motion = row.line.frequency**2 * motion
         return {sensor: abs(sensor_row @ motion) for sensor, sensor_row in row.system.machine.sensor_rows.items()}
 
     long_name = f"amplitude of the sensor's acceleration at a mesh harmonic, {part}"
@@ -661,7 +666,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield (
             "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
             "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: "
-            "`load --sensitivity` has the lines by both and what changes them, `steady` the motion."
+            "`load --sensitivity` has the lines by all of these and what changes them, `steady` the motion."
         )
     if document.get("transmissibility") and any("turning_frequency_hz" in mode for mode in modes):
         yield "They are the motions at the frequency of the error; the lines below have the sidebands beside it."

@@ -62,7 +62,13 @@ def test_friction_and_transmission_error_are_those_of_slow_teeth_with_friction_a
     smooth, rough = (slowly(one if carries == "drive" else braked(one)) for one in given)
     without, whole = (equilibria(one, order) for one in (smooth, rough))
     motions = predicted(rough, order)
-    assert list(motions) == ["transmission_error", "friction"]
+    assert list(motions) == ["transmission_error", "friction", "varying_stiffness"]
+    # The force that friction adds to the mean one meets a stiffness that varies.
+    changed = motions["friction"] + motions["varying_stiffness"]
+    assert off(changed, whole - without) < off(motions["friction"], whole - without)
+    # The mean force alone is the same at each phase, about which the stiffness makes no difference.
+    alone = predicted(smooth, order)
+    assert np.linalg.norm(alone["varying_stiffness"]) < 1e-3 * np.linalg.norm(without)
     assert off(motions["transmission_error"], without) < 0.01
     # Friction changes the mesh force as well, by its moments: of the second order in its coefficient.
     assert off(motions["friction"], whole - without) < 0.02
@@ -75,7 +81,8 @@ def test_load_shuttling_is_what_its_moments_do(hand: float) -> None:
     still = replace(machine, system=replace(system, harmonic_loads=()))
     whole, without = equilibria(machine, 1), equilibria(still, 1)
     motions = predicted(machine, 1)
-    assert list(motions) == ["transmission_error", "load_shuttling"]
+    assert set(motions) == {"transmission_error", "load_shuttling", "varying_stiffness"}
+    assert np.linalg.norm(motions["varying_stiffness"]) < 0.01 * np.linalg.norm(without)
     assert off(motions["transmission_error"], without) < 0.01
     assert off(motions["load_shuttling"], whole - without) < 0.01
 

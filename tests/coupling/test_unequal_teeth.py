@@ -15,7 +15,6 @@ from gearwhine.coupling.gears.loaded.transmission_error import phasors_between, 
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.linear.parametric_stiffness import varying_meshes
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
@@ -63,7 +62,7 @@ def test_each_line_has_what_its_mechanisms_have_there(torque: str) -> None:
     """Of constant stiffness: pitch errors and runout, found for a line alone, at both sensors; also on other flanks."""
     machine = uneven_machine(torque)
     model, mechanisms = MeshHarmonicModel(machine), LineMechanisms(machine)
-    (mesh,) = varying_meshes(model, LIMIT)
+    (mesh,) = model.varying_meshes(LIMIT)
     mesh = replace(mesh, stiffness=0.0 * mesh.stiffness)
     stiffness, damping = linear_matrices(machine.system, model.contact)
     rows = np.array(list(machine.sensor_rows.values()))

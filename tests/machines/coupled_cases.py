@@ -6,7 +6,6 @@ import gearwhine as gw
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
-from gearwhine.coupling.linear.lines_over_speed import sensor_rms
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import HousingModes
@@ -35,10 +34,7 @@ def about_operating_point(case: Case, housing: HousingModes | HousingComponent |
 
 
 def sensor_level(study: gw.CaseStudy, sensor: str) -> float:
-    """Level of all lines of the teeth at a sensor [dB re 1 µm/s²], of the linear machine about its operating point."""
-    machine = study.machine
-    coupled, housing = load_machine(machine, machine.operating_point()).coupled, machine.housing_component
-    assert housing is not None
-    assert housing.complete_below is not None
-    rms = sensor_rms(coupled, housing.complete_below)[[*coupled.sensor_rows].index(sensor)]
-    return float(20.0 * np.log10(rms / 1e-6))
+    """Level of all mesh harmonics at a sensor [dB re 1 µm/s²], of the lines that ``system`` gives."""
+    lines = study.system().document["mesh_lines"]
+    sizes = np.array([line["sensor_acceleration_m_per_s2"]["together"][sensor] for line in lines])
+    return float(20.0 * np.log10(np.sqrt(0.5 * np.sum(sizes**2)) / 1e-6))
