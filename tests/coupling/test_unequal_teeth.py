@@ -86,6 +86,32 @@ def test_each_line_has_what_its_mechanisms_have_there(torque: str) -> None:
         np.testing.assert_allclose(found.between[:, orders == order][:, 0], expected, rtol=1e-6)
 
 
+def test_mechanisms_add_up_to_the_lines_of_the_teeth() -> None:
+    """At a mesh harmonic and between them, with the stiffness that varies; the unbalance has a part of its own."""
+    machine = uneven_machine()
+    model, mechanisms = MeshHarmonicModel(machine), LineMechanisms(machine)
+    rows = np.array(list(machine.sensor_rows.values()))
+    damped = DampedMachine(*linear_matrices(machine.system, model.contact))
+    mean = {cause: damped.motion(load.frequency, load.load) for load in model.loads(np.inf) for cause in load.causes}
+    meshes, directions = model.varying_meshes(), machine.system.contact_directions
+    found = lines_of_meshes(meshes, model.contact, directions, rows, damped, mean)
+    shaft = abs(machine.speed)
+    (harmonic,) = (one for one in model.responses(LIMIT) if one.causes == ((0, 1),))
+    for order in (1, 11, 13, 27, 28, 29, 42):
+        ((_, by_mechanism),) = mechanisms.motions(order * shaft, 1e-6 * shaft)
+        # A wheel's eccentricity and unbalance turn with one shaft, pitch with the other.
+        moved = -((order * shaft) ** 2) * (rows @ sum(q for name, q in by_mechanism.items() if name != "unbalance"))
+        if order == 28:
+            # Teeth that are alike have more phases in a mesh period than all teeth of the hunting period.
+            np.testing.assert_allclose(moved, -(harmonic.frequency**2) * (rows @ harmonic.motion), rtol=2e-3)
+            continue
+        place = int(np.argmin(np.abs(found.frequency - order * shaft)))
+        np.testing.assert_allclose(found.between[:, place], moved, rtol=1e-6)
+        assert (
+            np.linalg.norm(rows @ by_mechanism["varying_stiffness"]) * (order * shaft) ** 2 > 1e-3 * np.abs(moved).max()
+        )
+
+
 def test_answers_of_a_machine_without_modes_are_solved_directly() -> None:
     """Free masses have two equal eigenvectors each, which span nothing: they move as the load on them accelerates."""
     free, frequency = np.zeros((3, 3)), np.arange(80.0).reshape(2, 40)
