@@ -332,9 +332,7 @@ class LineMechanisms:
     @cached_property
     def _stiffness_forces(self) -> dict[int, StiffnessForce]:
         """Forces by the mesh stiffness that varies, by contact; none where directions turn."""
-        if self.machine.system.turns or not self.model.stiffness_varies:
-            return {}
-        return self.model.stiffness_forces(self.model.varying_meshes())
+        return self.model.stiffness_forces(self.model.varying_meshes()) if self.model.varying_harmonics else {}
 
     @cached_property
     def _hunting(self) -> dict[int, tuple[LoadedMesh, LoadedMesh]]:

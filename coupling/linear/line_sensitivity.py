@@ -10,6 +10,14 @@ Re gᵀ dq. One adjoint solve for each line gives its derivative by any paramete
 ∂J its change at the same motion. Of a sensor this is the gradient of one point, of the sound power one over the
 housing's surface; the sound power is that of the same linear lines.
 
+*Stiffness that varies*: the harmonics n of a mesh are coupled (:mod:`gearwhine.coupling.linear.parametric_stiffness`),
+Z_n q_n = f_n - d Σ_m κ_{n-m} u_m with u_m = dᵀ q_m - e_m, and so are the adjoint states of a line at the harmonic ν,
+
+    Z_mᵀ μ_m = δ_{mν} g - d h_m,      h_m = Σ_n κ_{n-m} dᵀ μ_n,
+    dJ = Re Σ_n [μ_nᵀ (df_n - dZ_n q_n - d Σ_m dκ_{n-m} u_m) + h_n de_n] + ∂J,
+
+over positive and negative harmonics, which the static force is no part of.
+
 *Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports
 (:mod:`gearwhine.coupling.linear.housing_rates`). Its modes and residual modes are a fixed basis for the derivative. The
 output errs by the product of what the basis lacks of the motion and of the adjoint field, the derivative by either. So
@@ -31,17 +39,18 @@ tilt.
 A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
 with the matrices changed to first order (:meth:`LineModel.stepped_housing`), which needs no new modes.
 
-Left out are the change of mean mesh forces where meshes share a torque, that of the ratios ζ and of dashpots, friction
-of the teeth, and all that is not linear about the mean mesh: contact loss and the variation of k over the mesh period
-times the motion.
+Left out are the change of mean mesh forces where meshes share a torque, that of the ratios ζ and of dashpots, that of
+friction and of the housing's fields at other harmonics than the line's beyond its basis, and all that is not linear
+about the mean mesh: contact loss.
 """
 
-from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from scipy import linalg
+import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
@@ -50,6 +59,8 @@ from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import LineOutput, SensorAmplitude
 from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response, sum_of
+from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine
 from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.machine.connectors import LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
@@ -62,6 +73,47 @@ _GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of tra
 _STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch
 _STIFFNESS_POINTS = 2000  # number of phases of a mesh period in the differences of k
 _BEARING_STEP = 1e-4  # step over a bearing's deflection, in the differences of its tangent
+_SAME_FREQUENCY = 1e-6  # relative difference below which a field is at a harmonic
+
+IntArray = npt.NDArray[np.intp]
+
+
+class LineField(NamedTuple):
+    """Motion of a line at a mesh harmonic, and its adjoint state.
+
+    Attributes
+    ----------
+    frequency : float
+        Circular frequency ω, below 0 of a negative harmonic [rad/s].
+    motion, adjoint : ndarray of complex, shape (n,)
+        q and μ, output per unit of a load.
+    """
+
+    frequency: float
+    motion: ComplexArray
+    adjoint: ComplexArray
+
+
+class _LineMesh(NamedTuple):
+    """A contact whose stiffness varies, in a line: its harmonics are those of `fields`.
+
+    Attributes
+    ----------
+    fields : tuple of LineField
+    places : ndarray of int, shape (f,)
+        Place of each field's harmonic among the orders -J ... J.
+    compression, force : ndarray of complex, shape (2 J + 1,)
+        u [m] and g [N], twice their two-sided amplitudes.
+    adjoint, coupled : ndarray of complex, shape (2 J + 1,)
+        dᵀ μ [output/N] and h [output/m].
+    """
+
+    fields: tuple[LineField, ...]
+    places: IntArray
+    compression: ComplexArray
+    force: ComplexArray
+    adjoint: ComplexArray
+    coupled: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +127,22 @@ class Line(Response):
         Output J, in its unit.
     adjoint : ndarray of complex, shape (n,)
         Adjoint state μ, output per unit of a load.
+    further : tuple of LineField
+        Motions and adjoint states at the other harmonics, which the stiffness that varies couples with the line.
+    meshes : mapping of int to _LineMesh
+        Contacts whose stiffness varies, by number.
     """
 
     output: LineOutput
     value: float
     adjoint: ComplexArray
+    further: tuple[LineField, ...] = field(default=(), kw_only=True)
+    meshes: Mapping[int, _LineMesh] = field(default_factory=dict, kw_only=True)
+
+    @property
+    def fields(self) -> tuple[LineField, ...]:
+        """Motion and adjoint state of the line, and those at other harmonics."""
+        return (LineField(self.frequency, self.motion, self.adjoint), *self.further)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,15 +153,18 @@ class _GapRates:
     ----------
     stiffness : ndarray, shape (j, 3, 3)
         Derivative of the mesh's stiffness over mean approach, slope and tilt; of the first, k, [N/m per m].
-    error : ndarray of complex, shape (j, harmonics)
+    error : ndarray of complex, shape (j, J)
         Derivative of e [m per m].
     shuttling : ndarray of complex, shape (j, harmonics, n)
         Derivative of the moments on the coordinates.
+    varying : ndarray of complex, shape (j, 4 J + 1)
+        Derivative of the stiffness k̄ + κ by its two-sided amplitudes [N/m per m].
     """
 
     stiffness: FloatArray
     error: ComplexArray
     shuttling: ComplexArray
+    varying: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,8 +231,108 @@ class LineModel(MeshHarmonicModel):
                 "stand still"
             )
         w, motion = response.frequency, response.motion
-        adjoint = linalg.solve(self._dynamic(w).T, output.adjoint_load(w, motion))
-        return Line(w, response.causes, motion, output, output.value(w, motion), adjoint)
+        adjoint = self.damped.motion(w, output.adjoint_load(w, motion), transposed=True)
+        coupled = [self._coupled(response, group, adjoint) for group in self._groups(response.causes)]
+        own = adjoint + sum((change for change, _ in coupled), np.zeros_like(adjoint))
+        at_line, meshes, further = LineField(w, motion, own), dict[int, _LineMesh](), list[LineField]()
+        for _, group in coupled:
+            for number, mesh in group.items():
+                meshes[number] = mesh._replace(
+                    fields=tuple(at_line if one.frequency == w else one for one in mesh.fields)
+                )
+            further += [one for one in next(iter(group.values())).fields if one.frequency != w]
+        value = output.value(w, motion)
+        return Line(w, response.causes, motion, output, value, own, further=tuple(further), meshes=meshes)
+
+    def _groups(self, causes: Sequence[Cause]) -> list[list[VaryingMesh]]:
+        """Meshes whose stiffness varies, those of one mesh frequency together, for each that drives a line."""
+        varying = self.varying_harmonics
+        rates = {round(varying[number].rate, 6) for number, _ in causes if number in varying}
+        return [[mesh for mesh in varying.values() if round(mesh.rate, 6) == rate] for rate in sorted(rates)]
+
+    def _coupled(
+        self, response: Response, group: Sequence[VaryingMesh], adjoint: ComplexArray
+    ) -> tuple[ComplexArray, dict[int, _LineMesh]]:
+        """Return the change of a line's adjoint state by meshes of one frequency, and what they have of the line.
+
+        Parameters
+        ----------
+        response : Response
+        group : sequence of VaryingMesh
+        adjoint : ndarray of complex, shape (n,)
+            Adjoint state with the mean mesh stiffness.
+        """
+        reach, rate = group[0].reach, group[0].rate
+        orders = np.arange(-reach, reach + 1)
+        along = self.machine.system.contact_directions[:, [mesh.number for mesh in group]]
+        size, at = len(orders), reach + round(response.frequency / rate)
+        matrix = np.eye(len(group) * size, dtype=np.complex128)
+        given = np.zeros((len(group), size), dtype=np.complex128)
+        if at < size:
+            given[:, at] = adjoint @ along
+        for column, mesh in enumerate(group):
+            # dᵀ Z⁻ᵀ d of the mesh and every other is dᵀ Z⁻¹ d the other way round.
+            answer = self.damped.answers(along.T, along[:, column], rate * np.abs(orders))
+            answer = np.where(orders < 0, answer.conj(), answer)
+            # As in the motion, a free train turns until its mesh carries the mean force again.
+            answer[:, reach] = 0.0
+            answer[column, reach] = 1.0 / float(self.contact.stiffness[mesh.number])
+            for row, other in enumerate(group):
+                block = slice(column * size, (column + 1) * size), slice(row * size, (row + 1) * size)
+                matrix[block] += answer[row][:, None] * other.coupling[0].T
+        pressed = np.linalg.solve(matrix, given.ravel()).reshape(given.shape)
+        coupled = np.array([other.coupling[0].T @ one for other, one in zip(group, pressed, strict=True)])
+        change, fields, places = np.zeros_like(adjoint), list[LineField](), list[int]()
+        for place, order in enumerate(orders.tolist()):
+            if order == 0:
+                continue
+            w, load = abs(order) * rate, -(along @ coupled[:, place])
+            moved = self.damped.motion(w, load if order > 0 else load.conj(), transposed=True)
+            motion = response.motion if place == at else self._motion_at(group, abs(order))
+            if place == at:
+                change = moved
+                w = response.frequency
+            conjugate = order < 0
+            fields.append(LineField(-w, motion.conj(), moved.conj()) if conjugate else LineField(w, motion, moved))
+            places.append(place)
+        forces = self._stiffness_forces
+        return change, {
+            mesh.number: _LineMesh(
+                tuple(fields),
+                np.array(places),
+                2.0 * forces[mesh.number].compression,
+                -2.0 * forces[mesh.number].amplitudes[0],
+                pressed[row],
+                coupled[row],
+            )
+            for row, mesh in enumerate(group)
+        }
+
+    def _motion_at(self, group: Sequence[VaryingMesh], harmonic: int) -> ComplexArray:
+        """Motion at a harmonic of meshes of one frequency."""
+        key = group[0].number, harmonic
+        if key not in self._harmonic_motions:
+            w, known = harmonic * group[0].rate, self._driven
+            if key in known:
+                load = sum_of(self._loads(known[key]))
+            else:
+                numbers = [mesh.number for mesh in group]
+                errors = [2.0 * mesh.error[0, mesh.reach + harmonic] for mesh in group]
+                forces = [self._stiffness_forces[number].harmonic(harmonic) for number in numbers]
+                through = self.contact.stiffness[numbers] * np.array(errors) + np.array(forces)
+                load = self.machine.system.contact_directions[:, numbers] @ through
+            self._harmonic_motions[key] = self.damped.motion(w, load)
+        return self._harmonic_motions[key]
+
+    @cached_property
+    def _driven(self) -> dict[Cause, tuple[Cause, ...]]:
+        """All causes of the line that a cause has a part in."""
+        return {cause: causes for _, causes in self._harmonics(np.inf) for cause in causes}
+
+    @cached_property
+    def _harmonic_motions(self) -> dict[Cause, ComplexArray]:
+        """Motions of `_motion_at`."""
+        return {}
 
     def bearing_loads(self, line: Line, bearing: str) -> tuple[ComplexArray, ComplexArray]:
         """Return the loads of a bearing on its seat, x, y, z and about x, y, in the motion and in the adjoint field.
@@ -203,80 +369,92 @@ class LineModel(MeshHarmonicModel):
 
     def by_bearing_stiffness(self, line: Line, bearing: str) -> float:
         """Differentiate the output by a factor 1 + p on a bearing's tangent stiffness, at the same equilibrium."""
-        law = self._connector(bearing)
-        moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        return -float((self._with_damping(line, bearing) * (adjoint @ law.stiffness @ moved)).real)
+        return -float(np.sum(self._connector(bearing).stiffness * self._tangent_weights(line, bearing)))
 
     def by_bearing_position(self, line: Line, bearing: str) -> float:
         """Differentiate the output by a bearing's position on its shaft, towards +z, at the same static motions."""
-        law, axes = self._connector(bearing), list(self._connector(bearing).axes)
-        force = self._dynamic_force(law, line.frequency, line.motion)
-        against = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
-        load = self.point.bearing(bearing)
-        slope = self._bearing_slope(load)[axes]
-        direct = -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
+        law, load = self._connector(bearing), self.point.bearing(bearing)
+        direct = -self._by_moved_bearing(line, law, self._bearing_slope(load)[list(law.axes)])
         # The bearing's static deflection changes with its place too.
         return direct + float(self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load))
 
     def by_housing(self, line: Line, rates: HousingRates) -> FloatArray:
         """Differentiate the output by parameters of the housing, at the same operating point, shape (p,)."""
-        coordinates, w = self.housing, line.frequency
-        motion, adjoint = line.motion[coordinates], line.adjoint[coordinates]
-        dynamic = rates.stiffness - w**2 * rates.mass + 1j * w * rates.damping
-        total = -np.einsum("a,pab,b->p", adjoint, dynamic, motion, optimize=True).real
+        coordinates, w = self.housing, np.array([one.frequency for one in line.fields])[:, None]
+        motion = np.array([one.motion[coordinates] for one in line.fields])
+        adjoint = np.array([one.adjoint[coordinates] for one in line.fields])
+        total = np.zeros(len(rates.stiffness))
+        for matrices, factor in ((rates.stiffness, 1.0 + 0.0 * w), (rates.mass, -(w**2)), (rates.damping, 1j * w)):
+            total -= np.tensordot(matrices, ((factor * adjoint).T @ motion).real, 2)
         for number, bearings in enumerate(rates.bearings):
             for name, rows in bearings.items():
                 law = self._connector(name)
-                at_bearing = rows[list(law.axes)]
-                force = self._dynamic_force(law, w, line.motion)
-                against = self._dynamic_force(law, w, line.adjoint, transposed=True)
-                total[number] += float(((at_bearing @ adjoint) @ force + against @ (at_bearing @ motion)).real)
+                moved = np.zeros((len(law.axes), self.machine.system.size))
+                moved[:, coordinates] = rows[list(law.axes)]
+                total[number] += self._by_moved_bearing(line, law, moved)
             total[number] += self._by_seats(line, rates, number)
-            total[number] += line.output.by_housing(rates, number, w, line.motion)
+            total[number] += line.output.by_housing(rates, number, line.frequency, line.motion)
         return np.asarray(total)
+
+    def _by_moved_bearing(self, line: Line, law: LinearConnector, moved: FloatArray) -> float:
+        """Differentiate the output as the motions of a bearing's place change by rows, shape (axes, n)."""
+        return sum(
+            float(
+                (
+                    (moved @ adjoint) @ self._dynamic_force(law, w, motion)
+                    + self._dynamic_force(law, w, adjoint, transposed=True) @ (moved @ motion)
+                ).real
+            )
+            for w, motion, adjoint in line.fields
+        )
 
     def stepped_bearing_stiffness(self, line: Line, bearing: str, part: float) -> float:
         """Change of the output by a factor 1 + part on a bearing's tangent, the response solved anew."""
 
-        def dynamic() -> ComplexArray:
-            law = self._connector(bearing)
-            change = part * self._with_damping(line, bearing) * (law.directions @ law.stiffness @ law.directions.T)
-            return self._dynamic(line.frequency) + change
+        def machine() -> DampedMachine:
+            law, (stiffness, damping) = self._connector(bearing), self._matrices
+            change = part * (law.directions @ law.stiffness @ law.directions.T)
+            time = self.point.bearing(bearing).mounted.damping_time
+            return DampedMachine(stiffness + change, damping + time * change)
 
-        return self._solved_anew(line, ("bearing stiffness", bearing, part), dynamic)
+        return self._solved_anew(line, ("bearing stiffness", bearing, part), machine)
 
     def stepped_bearing_position(self, line: Line, bearing: str, step: float) -> float:
         """Change of the output as a bearing moves along its shaft, the response solved anew."""
         law, load = self._connector(bearing), self.point.bearing(bearing)
 
-        def dynamic() -> ComplexArray:
-            inner = law.stiffness + 1j * line.frequency * law.damping
+        def machine() -> DampedMachine:
             moved = law.directions + step * self._bearing_slope(load)[list(law.axes)].T
-            return self._dynamic(line.frequency) + moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+            stiffness, damping = (
+                matrix + moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+                for matrix, inner in zip(self._matrices, (law.stiffness, law.damping), strict=True)
+            )
+            return DampedMachine(stiffness, damping)
 
         by_tangent = self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load)
-        return self._solved_anew(line, ("bearing position", bearing, step), dynamic) + step * float(by_tangent)
+        return self._solved_anew(line, ("bearing position", bearing, step), machine) + step * float(by_tangent)
 
     def stepped_housing(self, line: Line, rates: HousingRates, number: int, step: float) -> float:
         """Change of the output by a step of a parameter of the housing, the response solved anew.
 
         Matrices and ports change to first order, so that resonances move with them.
         """
-        coordinates, w = self.housing, line.frequency
+        coordinates = self.housing
 
-        def dynamic() -> ComplexArray:
-            total = self._dynamic(w)
-            change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
-            total[coordinates, coordinates] += step * change
+        def machine() -> DampedMachine:
+            stiffness, damping = (matrix.copy() for matrix in self._matrices)
+            mass = np.eye(len(stiffness))
+            for matrix, rate in ((stiffness, rates.stiffness), (damping, rates.damping), (mass, rates.mass)):
+                matrix[coordinates, coordinates] += step * rate[number]
             for name, rows in rates.bearings[number].items():
                 law = self._connector(name)
                 moved = law.directions.copy()
                 moved[coordinates] -= step * rows[list(law.axes)].T
-                inner = law.stiffness + 1j * w * law.damping
-                total += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
-            return total
+                for matrix, inner in ((stiffness, law.stiffness), (damping, law.damping)):
+                    matrix += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+            return DampedMachine(stiffness, damping, mass)
 
-        change = self._solved_anew(line, (rates, number, step), dynamic, line.output.moved(rates, number, step))
+        change = self._solved_anew(line, (rates, number, step), machine, line.output.moved(rates, number, step))
         return change + step * self._by_seats(line, rates, number)
 
     def _by_seats(self, line: Line, rates: HousingRates, number: int) -> float:
@@ -287,24 +465,37 @@ class LineModel(MeshHarmonicModel):
         )
 
     def _solved_anew(
-        self, line: Line, change: Hashable, dynamic: Callable[[], ComplexArray], output: LineOutput | None = None
+        self, line: Line, change: Hashable, machine: Callable[[], DampedMachine], output: LineOutput | None = None
     ) -> float:
-        """Change of the output with another dynamic stiffness, whose motion all lines of a frequency share.
+        """Change of the output with another machine, whose motion all lines of a frequency share.
 
         Parameters
         ----------
         line : Line
         change : hashable
             What changes, and by how much.
-        dynamic : callable
-            Returns the dynamic stiffness with the change, shape (n, n).
+        machine : callable
+            Returns the machine with the change and the mean mesh stiffness.
         output : LineOutput, optional
             Output with the change, where that moves it.
         """
         key = (line.frequency, line.causes, change)
         if key not in self._motions:
-            self._motions[key] = linalg.solve(dynamic(), sum_of(self._loads(line.causes)))
+            if change not in self._machines:
+                self._machines.clear()
+                self._machines[change] = machine()
+            changed, load = self._machines[change], sum_of(self._mean_loads(line.causes))
+            if groups := self._groups(line.causes):
+                meshes = [mesh for group in groups for mesh in group]
+                forces = self.stiffness_forces(meshes, changed)
+                load = load + self._stiffness_load([one for one in line.causes if one[0] in forces], forces)
+            self._motions[key] = changed.motion(line.frequency, load)
         return (output or line.output).value(line.frequency, self._motions[key]) - line.value
+
+    @cached_property
+    def _machines(self) -> dict[Hashable, DampedMachine]:
+        """The last machine with a change."""
+        return {}
 
     @cached_property
     def _motions(self) -> dict[Hashable, ComplexArray]:
@@ -339,8 +530,9 @@ class LineModel(MeshHarmonicModel):
         compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
         standing, face = system.contacts[number], self.machine.face(number, law)
-        stiffness = np.zeros((FACE_STATIONS, 3, 3))
-        error = np.zeros((FACE_STATIONS, HARMONICS), dtype=np.complex128)
+        stiffness, mesh_of = np.zeros((FACE_STATIONS, 3, 3)), self.varying_harmonics.get(number)
+        varying = np.zeros((FACE_STATIONS, 1 if mesh_of is None else mesh_of.stiffness.shape[1]), dtype=np.complex128)
+        error = np.zeros((FACE_STATIONS, LEAST_REACH), dtype=np.complex128)
         shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
 
         def moved(station: int, step: float) -> ToothContact:
@@ -355,31 +547,67 @@ class LineModel(MeshHarmonicModel):
                 stiffness[station] += face.with_contact(far).law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
                 step = way * _GAP_STEP * compression
                 near = moved(station, step)
-                error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
+                pressed = self._mesh(number, near)
+                error[station] += self._error(number, pressed, LEAST_REACH) / (2.0 * step)
+                if mesh_of is not None:
+                    apart = varying_mesh(number, replace(standing, contact=near), 0.0, pressed, between=False)
+                    varying[station] += apart.stiffness[0] / (2.0 * step)
                 moments = face.with_contact(near).shuttling(force, standing.phase, standing.mesh_frequency)
                 for load in moments[1]:
                     order = round(load.frequency / (2.0 * np.pi * rate))
                     if order <= HARMONICS:
                         shuttling[station, order - 1] += load.amplitude / (2.0 * step)
-        return _GapRates(stiffness, error, shuttling)
+        return _GapRates(stiffness, error, shuttling, varying)
 
     def _by_gap(self, line: Line, number: int) -> FloatArray:
         """Differentiate the output by a contact's gap at the stations of the face, shape (j,)."""
         rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
-        stiffness, w = float(self.contact.stiffness[number]), line.frequency
+        stiffness = float(self.contact.stiffness[number])
+        rate = 2.0 * np.pi * abs(self.machine.system.contacts[number].mesh_frequency)
         face, law = self._faces[number]
-        along, deflection = face.rows @ line.adjoint, face.rows @ line.motion
-        # The damping is c/k times the law: c = 2 ζ sqrt(k m), or given.
-        lost = 1j * w * float(self.contact.damping[number]) / stiffness
         falls = 0.5 if self.pairs[mesh].pair.damping is None else 1.0
-        change = (1.0 + lost) * rates.stiffness - falls * lost / stiffness * rates.stiffness[:, :1, :1] * law
-        total = -(change @ deflection) @ along
-        for cause, harmonic in line.causes:
-            if cause == number:
-                driven = np.outer(rates.error[:, harmonic - 1], law[0])
-                driven = driven + rates.stiffness[:, 0] * self._errors[number][harmonic - 1]
-                total = total + driven @ along + rates.shuttling[:, harmonic - 1] @ line.adjoint
+        total, errors = (
+            np.zeros(FACE_STATIONS, dtype=np.complex128),
+            self._error(number, self.meshes[number], LEAST_REACH),
+        )
+        for w, motion, adjoint in line.fields:
+            along, deflection = face.rows @ adjoint, face.rows @ motion
+            # The damping is c/k times the law: c = 2 ζ sqrt(k m), or given.
+            lost = 1j * w * float(self.contact.damping[number]) / stiffness
+            change = (1.0 + lost) * rates.stiffness - falls * lost / stiffness * rates.stiffness[:, :1, :1] * law
+            total -= (change @ deflection) @ along
+            harmonic, conjugate = round(abs(w) / rate), np.conj if w < 0.0 else np.asarray
+            if harmonic > LEAST_REACH or abs(harmonic * rate - abs(w)) > _SAME_FREQUENCY * abs(w):
+                continue
+            driven = np.outer(rates.error[:, harmonic - 1], law[0]) + rates.stiffness[:, 0] * errors[harmonic - 1]
+            total += conjugate(driven) @ along
+            if harmonic <= HARMONICS:
+                total += conjugate(rates.shuttling[:, harmonic - 1]) @ adjoint
+        if (varying := line.meshes.get(number)) is not None:
+            total += self._by_varying_stiffness(varying, rates, face, law)
         return np.asarray(total.real)
+
+    def _by_varying_stiffness(self, line: _LineMesh, rates: _GapRates, face: MeshFace, law: FloatArray) -> ComplexArray:
+        """Differentiate the output by a contact's gap at the stations, by what it changes of κ, e and d there."""
+        size, k = len(line.compression), law[0, 0]
+        reach, places = size // 2, np.arange(size)
+        # -Σ v_n dκ_{n-m} u_m, and h_n de_n at the harmonics on either side.
+        changed = rates.varying.copy()
+        changed[:, 2 * reach] -= rates.stiffness[:, 0, 0]
+        total = -np.einsum(
+            "n,jnm,m->j", line.adjoint, changed[:, places[:, None] - places + 2 * reach], line.compression
+        )
+        # At rest the mesh carries the mean force: k u = -g.
+        total -= line.adjoint[reach] * line.compression[reach] * rates.stiffness[:, 0, 0]
+        known = min(reach, rates.error.shape[1])
+        total += rates.error[:, :known] @ line.coupled[reach + 1 : reach + 1 + known]
+        total += rates.error[:, :known].conj() @ line.coupled[reach - known : reach][::-1]
+        # The force -g acts along d, a row of the law over k, which u is taken along, too.
+        turned = (rates.stiffness[:, 0] - rates.stiffness[:, 0, :1] * law[0] / k) / k
+        for place, (_, motion, adjoint) in zip(line.places.tolist(), line.fields, strict=True):
+            total -= line.force[place] * (turned @ (face.rows @ adjoint))
+            total -= line.coupled[place] * (turned @ (face.rows @ motion))
+        return np.asarray(total)
 
     @cached_property
     def _faces(self) -> dict[int, tuple[MeshFace, FloatArray]]:
@@ -396,17 +624,19 @@ class LineModel(MeshHarmonicModel):
         """Differentiate the output by a bearing's static deflection, through its tangent, shape (5,)."""
         if bearing not in self._tangent_rates:
             return np.zeros(5)
-        law = self._connector(bearing)
-        among_axes = np.ix_(list(law.axes), list(law.axes))
-        moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        factor = self._with_damping(line, bearing)
-        return np.array(
-            [-float((factor * (adjoint @ change[among_axes] @ moved)).real) for change in self._tangent_rates[bearing]]
-        )
+        axes = list(self._connector(bearing).axes)
+        changes = self._tangent_rates[bearing][:, axes][:, :, axes]
+        return -np.tensordot(changes, self._tangent_weights(line, bearing), 2)
 
-    def _with_damping(self, line: Line, bearing: str) -> complex:
-        """Dynamic over static change 1 + iωτ of a bearing's tangent, whose damping is τ times its stiffness."""
-        return 1.0 + 1j * line.frequency * self.point.bearing(bearing).mounted.damping_time
+    def _tangent_weights(self, line: Line, bearing: str) -> FloatArray:
+        """Fall of the output by each entry of a bearing's tangent, whose damping is τ times its stiffness."""
+        law, time = self._connector(bearing), self.point.bearing(bearing).mounted.damping_time
+        return np.asarray(
+            sum(
+                ((1.0 + 1j * w * time) * np.outer(law.directions.T @ adjoint, law.directions.T @ motion)).real
+                for w, motion, adjoint in line.fields
+            )
+        )
 
     @cached_property
     def _tangent_rates(self) -> dict[str, FloatArray]:

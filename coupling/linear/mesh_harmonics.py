@@ -423,11 +423,14 @@ class MeshHarmonicModel:
     def _loads(self, causes: Sequence[Cause]) -> dict[str, ComplexArray]:
         """Return f by the mechanisms of the meshes alone: torque ripple of a mesh's frequency has no part in it."""
         loads = self._mean_loads(causes)
-        if self.stiffness_varies and not self.machine.system.turns:
-            directions = np.array([self.machine.system.contacts[number].direction for number, _ in causes])
-            forces = [self._stiffness_forces[number].harmonic(harmonic) for number, harmonic in causes]
-            loads["varying_stiffness"] = np.asarray(forces @ directions)
+        if self.varying_harmonics:
+            loads["varying_stiffness"] = self._stiffness_load(causes, self._stiffness_forces)
         return loads
+
+    def _stiffness_load(self, causes: Sequence[Cause], forces: Mapping[int, StiffnessForce]) -> ComplexArray:
+        """Return -Σ g d of meshes by their stiffness that varies, shape (n,)."""
+        directions = np.array([self.machine.system.contacts[number].direction for number, _ in causes])
+        return np.asarray([forces[number].harmonic(harmonic) for number, harmonic in causes] @ directions)
 
     def _mean_loads(self, causes: Sequence[Cause]) -> dict[str, ComplexArray]:
         """Return Σ k e d, the moments of load shuttling, and friction where teeth have any, shape (n,) each."""
@@ -475,33 +478,58 @@ class MeshHarmonicModel:
             meshes[number] = (mesh, _friction(replace(contact, contact=law), mesh))
         return meshes
 
-    def varying_meshes(self, limit: float | None = None) -> list[VaryingMesh]:
-        """Return the loaded meshes with the orders that count up to a limit [rad/s], by default some harmonics."""
+    def varying_meshes(self, limit: float = 0.0, *, between: bool = True) -> list[VaryingMesh]:
+        """Return the loaded meshes with the orders that count up to a limit [rad/s], `LEAST_REACH` harmonics at least.
+
+        Parameters
+        ----------
+        limit : float
+        between : bool
+            Whether orders between the mesh harmonics are wanted.
+        """
         contacts, stiffness = self.machine.system.contacts, self.contact.stiffness
         return [
-            varying_mesh(
-                number,
-                contacts[number],
-                float(stiffness[number]),
-                self.meshes[number],
-                2.0 * np.pi * HARMONICS * abs(contacts[number].mesh_frequency) if limit is None else limit,
-            )
-            for number in self.loaded
+            varying_mesh(number, contacts[number], float(stiffness[number]), mesh, limit, between=between)
+            for number, mesh in self.meshes.items()
         ]
 
-    def stiffness_forces(self, meshes: Sequence[VaryingMesh]) -> dict[int, StiffnessForce]:
-        """Force -g of meshes along their lines of action, by the number of the contact."""
-        machine = DampedMachine(*self._matrices)
+    def stiffness_forces(
+        self, meshes: Sequence[VaryingMesh], machine: DampedMachine | None = None
+    ) -> dict[int, StiffnessForce]:
+        """Force -g of meshes along their lines of action, by the number of the contact.
+
+        Parameters
+        ----------
+        meshes : sequence of VaryingMesh
+        machine : DampedMachine, optional
+            Machine with the mean mesh stiffness, by default the model's.
+        """
+        machine, numbers = machine or self.damped, {mesh.number for mesh in meshes}
         motions = {
-            cause: machine.motion(load.frequency, load.load) for load in self.loads(np.inf) for cause in load.causes
+            cause: machine.motion(w, sum_of(self._mean_loads(causes)))
+            for w, causes in self._harmonics(np.inf)
+            for cause in causes
+            if cause[0] in numbers
         }
         directions = self.machine.system.contact_directions
         return stiffness_forces(meshes, self.contact, directions, machine, motions)
 
     @cached_property
+    def damped(self) -> DampedMachine:
+        """The machine with the mean mesh stiffness."""
+        return DampedMachine(*self._matrices)
+
+    @cached_property
+    def varying_harmonics(self) -> dict[int, VaryingMesh]:
+        """Loaded meshes with their mesh harmonics, by contact; none where the stiffness is the mean one."""
+        if not self.stiffness_varies or self.machine.system.turns:
+            return {}
+        return {mesh.number: mesh for mesh in self.varying_meshes(between=False)}
+
+    @cached_property
     def _stiffness_forces(self) -> dict[int, StiffnessForce]:
         """As `stiffness_forces`, of the mesh harmonics alone."""
-        return self.stiffness_forces([mesh.of_harmonics for mesh in self.varying_meshes()])
+        return self.stiffness_forces([*self.varying_harmonics.values()])
 
     def _force(self, number: int) -> float:
         """Mean force of a contact [N]."""
@@ -530,10 +558,10 @@ class MeshHarmonicModel:
             return hunting_period_mesh(law, self._force(number))
         return loaded_transmission_error(law, self._force(number), mesh_period_phases(law, points))
 
-    def _error(self, number: int, mesh: LoadedMesh) -> ComplexArray:
-        """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
+    def _error(self, number: int, mesh: LoadedMesh, count: int = HARMONICS) -> ComplexArray:
+        """Harmonics of the transmission error of a contact at t = 0 [m], shape (count,)."""
         period = self.machine.system.contacts[number].contact.hunting_period
-        return self.transmission_error(number, mesh, hunting_period=period)
+        return self.transmission_error(number, mesh, hunting_period=period, count=count)
 
 
 def _merged(lines: Sequence[ResponseParts]) -> list[ResponseParts]:

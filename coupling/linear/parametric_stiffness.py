@@ -104,12 +104,6 @@ class VaryingMesh:
         passed = np.where(self.damped[:, None], 1j * ratio * self.rate * self.orders * damping, 0.0)
         return np.asarray((stiffness + passed) * self.error)
 
-    @property
-    def of_harmonics(self) -> "VaryingMesh":
-        """The mesh with the mesh harmonics alone."""
-        rows = {name: getattr(self, name)[:1] for name in ("fractions", "error", "stiffness", "damped")}
-        return replace(self, **rows)
-
     def up_to(self, limit: float, ratio: float) -> "VaryingMesh":
         """Return the mesh with the orders that count up to a limit [rad/s] at the part ``ratio`` of the speed."""
         less = self.reach - _reach(limit, ratio * self.rate)
@@ -141,7 +135,9 @@ def _reach(limit: float, rate: float) -> int:
     return max(int(np.ceil(limit / rate - _WHOLE)) + _FURTHER, LEAST_REACH)
 
 
-def varying_mesh(number: int, contact: ContactConnector, mean: float, mesh: LoadedMesh, limit: float) -> VaryingMesh:
+def varying_mesh(
+    number: int, contact: ContactConnector, mean: float, mesh: LoadedMesh, limit: float = 0.0, *, between: bool = True
+) -> VaryingMesh:
     """Return a loaded mesh with the orders that count up to a limit.
 
     Parameters
@@ -155,37 +151,38 @@ def varying_mesh(number: int, contact: ContactConnector, mean: float, mesh: Load
         The mesh under its mean force over the mesh periods that differ.
     limit : float
         Highest frequency at nominal speed [rad/s].
+    between : bool
+        Whether the sets between the mesh harmonics are wanted.
     """
     from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
 
-    force = mesh.force
     rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
     reach = _reach(limit, rate)
-    still, away = np.zeros(mesh.phases.size), _SECANT * force / mean
+    still, away = np.zeros(mesh.phases.size), _SECANT * mesh.force / mesh.mean_mesh_stiffness
     pressed, eased = (
         tooth_force_history(mesh.phases, mesh.transmission_error + by, still, *contact.contact.kernel_arguments)[:, 0]
         for by in (away, -away)
     )
     secant = (pressed - eased) / (2.0 * away)
     count = (2 * reach + 1) * periods
-    whole = np.arange(periods // 2 + 1)
+    whole = np.arange(periods // 2 + 1 if between else 1)
 
     def two_sided(values: FloatArray, widest: int) -> ComplexArray:
         """Amplitudes at the orders k/H + j, j up to ``widest`` on either side, without the mean."""
-        orders = np.arange(1, count + 1)
-        if periods == 1:
-            found = polygon_phasors(mesh.phases, values, orders)
+        orders = np.arange(1, count + 1) if between else periods * np.arange(1, 2 * reach + 1)
+        if periods == 1 or not between:
+            found = polygon_phasors(mesh.phases, values, orders / periods, periods)
         else:
             parts = np.array_split(orders, -(-count // _AT_ONCE))
             found = np.concatenate([phasors_between(mesh.phases, values, some) for some in parts])
         found = 0.5 * found * np.exp(2j * np.pi * contact.phase / periods * orders)
         found = np.concatenate([[0.0], found if contact.mesh_frequency > 0.0 else found.conj()])
-        at = whole[:, None] + periods * np.arange(-widest, widest + 1)
+        at = whole[:, None] + (periods if between else 1) * np.arange(-widest, widest + 1)
         return np.asarray(np.where(at < 0, found[np.abs(at)].conj(), found[np.abs(at)]))
 
     error, stiffness = two_sided(mesh.transmission_error, reach), two_sided(secant, 2 * reach)
     stiffness[0, 2 * reach] = period_mean(mesh.phases, secant) - mean
-    runout = list(_runout(contact.errors, rate, reach))
+    runout = list(_runout(contact.errors, rate, reach)) if between else []
     return VaryingMesh(
         number,
         rate,

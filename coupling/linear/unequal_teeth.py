@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from scipy import linalg
@@ -35,26 +35,33 @@ _WITHIN = 1e-9  # part of a limit
 
 @dataclass(frozen=True, eq=False)
 class DampedMachine:
-    """A linear machine of unit modal masses at one speed.
+    """A linear machine at one speed.
 
     Attributes
     ----------
     stiffness, damping : ndarray, shape (n, n)
+    mass : ndarray, shape (n, n), optional
+        By default unit modal masses.
     """
 
     stiffness: FloatArray
     damping: FloatArray
+    mass: FloatArray | None = None
 
-    def motion(self, w: float, load: FloatArray | ComplexArray) -> ComplexArray:
-        """Motion by a harmonic load (n,) at a frequency [rad/s]."""
+    def motion(self, w: float, load: FloatArray | ComplexArray, *, transposed: bool = False) -> ComplexArray:
+        """Motion by a harmonic load (n,) at a frequency [rad/s], or that of the transposed dynamic stiffness."""
         key = round(w, 6)
         if key not in self._factors:
             if len(self._factors) >= _FEW:
                 self._factors.clear()
             dynamic = self.stiffness + 1j * w * self.damping
-            dynamic[np.diag_indices_from(dynamic)] -= w**2
+            if self.mass is None:
+                dynamic[np.diag_indices_from(dynamic)] -= w**2
+            else:
+                dynamic -= w**2 * self.mass
             self._factors[key] = linalg.lu_factor(dynamic, overwrite_a=True, check_finite=False)
-        return np.asarray(linalg.lu_solve(self._factors[key], load, check_finite=False))
+        trans: Literal[0, 1] = 1 if transposed else 0
+        return np.asarray(linalg.lu_solve(self._factors[key], load, trans=trans, check_finite=False))
 
     def answers(self, outputs: FloatArray, direction: FloatArray, frequency: FloatArray) -> ComplexArray:
         """Motions along rows (o, n) by a unit load along a direction (n,), shape (o, *frequency.shape).
@@ -68,7 +75,7 @@ class DampedMachine:
         return np.asarray(found[:, places.ravel()].reshape(-1, *frequency.shape))
 
     def _answers(self, outputs: FloatArray, direction: FloatArray, frequencies: FloatArray) -> ComplexArray:
-        if frequencies.size > _FEW:
+        if frequencies.size > _FEW and self.mass is None:
             with suppress(np.linalg.LinAlgError):
                 found = self._by_modes(outputs, direction, frequencies)
                 highest = int(np.argmax(np.max(np.abs(found), axis=0)))
@@ -112,10 +119,13 @@ class StiffnessForce:
     mesh : VaryingMesh
     amplitudes : ndarray of complex, shape (r, 2 J + 1)
         Two-sided, at the orders of the mesh at t = 0 [N].
+    compression : ndarray of complex, shape (2 J + 1,)
+        u of the mesh harmonics, two-sided [m].
     """
 
     mesh: VaryingMesh
     amplitudes: ComplexArray
+    compression: ComplexArray
 
     def harmonic(self, harmonic: int) -> complex:
         """Amplitude at a mesh harmonic, by e^{iωt} with ω > 0 [N]; 0 beyond those that are known."""
@@ -158,6 +168,7 @@ class _Solved(NamedTuple):
     answer: ComplexArray
     load: ComplexArray
     change: ComplexArray
+    compression: ComplexArray
 
 
 def stiffness_forces(
@@ -170,7 +181,7 @@ def stiffness_forces(
     """Solve the forces of meshes by their varying stiffness, by contact; parameters as of `lines_of_meshes`."""
     none = np.empty((0, len(directions)))
     solved = _solved(meshes, state, directions, none, machine, motions, 1.0)
-    return {one.mesh.number: StiffnessForce(one.mesh, one.change) for one in solved}
+    return {one.mesh.number: StiffnessForce(one.mesh, one.change, one.compression) for one in solved}
 
 
 def lines_of_meshes(
@@ -206,7 +217,7 @@ def lines_of_meshes(
     """
     by_stiffness = dict[Cause, ComplexArray]()
     frequencies, between = [np.empty(0)], [np.empty((len(rows), 0), dtype=np.complex128)]
-    for mesh, answer, load, change in _solved(meshes, state, directions, rows, machine, motions, ratio):
+    for mesh, answer, load, change, _ in _solved(meshes, state, directions, rows, machine, motions, ratio):
         w = ratio * mesh.rate * mesh.orders
         for harmonic in range(1, mesh.reach + 1):
             at = 0, mesh.reach + harmonic
@@ -260,5 +271,5 @@ def _solved(
         for number, compression in zip(group, pressed, strict=True):
             mesh, answer, load = meshes[number], answers[number], loads[number]
             change = mesh.forces(compression, load, answer[sensors + number])
-            solved.append(_Solved(mesh, answer[:sensors], load, change))
+            solved.append(_Solved(mesh, answer[:sensors], load, change, compression))
     return solved

@@ -233,9 +233,7 @@ def solve_lines(
         extended = housing.with_modes(modes, modal_damping(modes, matrices) if matrices.damping.nnz else None)
         part = component_of_housing(extended, participates=about.moves_housing_as_a_body, with_coarser=False)
         stands = replace(about, housing=part)
-        model = LineModel(
-            stands.assemble(pairs, components, run), point, pairs, misalignment_is_found, stiffness_varies=False
-        )
+        model = LineModel(stands.assemble(pairs, components, run), point, pairs, misalignment_is_found)
         lines = model.lines(limit, count)
         field = extended.displacement_field
         return SolvedLines(model, lines, _sound(acoustics, field, model, radiation, heard, progress), extended)

@@ -111,11 +111,12 @@ def amplitudes(solved: Solved) -> FloatArray:
 
 @pytest.mark.slow
 def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
-    """Walls, length with its seats, springs and a modulus together: to 1e-4 of the sum of their parts.
+    """Walls, length with its seats, springs and a modulus together: to 5e-4 of the sum of their parts.
 
     Differences of mesh, modes, equilibrium, assembly and line; over steps from 1e-6 to 3e-5 they err by at most 4e-5.
     The mean mesh stiffness over the solved phases is constant over these steps, as no slice of the face comes into
-    touch at any of the phases; so its derivative, 1e-4 of the sum, is left out here.
+    touch at any of the phases; so its derivative, 1e-4 of the sum, is left out here. The motions at other harmonics,
+    which the stiffness that varies couples with a line, are not exact in the basis.
     """
     housing, point, found = solved
     found = replace(found, model=without_stiffness(found.model))
@@ -139,7 +140,7 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
         np.testing.assert_allclose(near[2].model.contact.stiffness, found.model.contact.stiffness, rtol=1e-9)
         either.append(amplitudes(near))
     expected = (either[0] - either[1]) / (2.0 * step)
-    assert (np.abs(own @ way - expected) < 1e-4 * np.abs(own * way).sum(axis=1)).all()
+    assert (np.abs(own @ way - expected) < 5e-4 * np.abs(own * way).sum(axis=1)).all()
     # Each line answers to the step as its slope says.
     number = [number.given.name for number in fitted.numbers].index("bottom wall")
     small = 1e-6 / slopes[number]
@@ -180,8 +181,8 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
 def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved, typed_damping: bool) -> None:
     """A bearing's law that is stiffer in the equilibrium alone: by tangents, damping, mesh stiffness and errors.
 
-    To 1e-6 over a step in which no slice of the face comes into touch at any of the solved phases, so that the mean
-    mesh stiffness stays. Over longer ones to 2e-3, by which the differences differ: the mean stiffness moves in steps.
+    To 1e-4 over a step in which no slice of the face comes into touch at any of the solved phases, so that the mean
+    mesh stiffness stays. Over longer ones to 1e-2, by which the differences differ: the stiffness moves in steps.
     """
     housing, point, found = solved
     if not typed_damping:  # damping in proportion to the stiffness, which follows the equilibrium as it does
@@ -215,7 +216,7 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved,
 
     model = without_stiffness(found.model)
     kept = np.array([adjoint(point, model.by_static(one)).by_bearing_stiffness(name) for one in chosen(found.lines)])
-    for step, derivative, tolerance in ((1e-4, kept, 1e-6), (5e-4, own, 2e-3)):
+    for step, derivative, tolerance in ((1e-6, kept, 1e-4), (5e-4, own, 1e-2)):
         either = [at_point(case, solved, stiffer(size)) for size in (step, -step)]
         expected = (either[0] - either[1]) / (2.0 * step)
         assert (np.abs(derivative - expected) < tolerance * np.abs(expected).max()).all()
@@ -237,7 +238,7 @@ def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
     assert pair.carrying_part == 1.0
     places = face_stations(faces.face_width)
     tilt = 2.0 * places / faces.face_width
-    step, either = 1e-10, []
+    step, either = 1e-11, []
     for way in (1.0, -1.0):
         gap = faces.gap + way * step * 2.0 * faces.z / faces.face_width
         changed = replace(mesh, contact=replace(mesh.contact, faces=replace(faces, gap=gap)))
@@ -267,7 +268,9 @@ def test_mesh_stiffness_by_another_stiffness(solved: Solved) -> None:
     contact = model.machine.system.contacts[0]
     arms = np.append(1.0, model.machine.face(0, contact.contact).tangent(float(model.contact.force[0])).centre)  # type: ignore[index]
     by_stiffness = np.tile(np.outer(arms, arms), (5, 1, 1))
-    even = replace(rates, stiffness=by_stiffness, error=0.0 * rates.error, shuttling=0.0 * rates.shuttling)
+    even = replace(rates, stiffness=by_stiffness)
+    for name in ("error", "shuttling", "varying"):
+        even = replace(even, **{name: 0.0 * getattr(rates, name)})
     vars(own)["_gap_rates"] = {0: even}
     lines, either = chosen(solved[2].lines), []
     for size in (1e-5, -1e-5):
