@@ -7,12 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
+from scipy.linalg import lapack
 
 FloatArray = npt.NDArray[np.float64]
 
 MOST_ITERATIONS = 500
 # Part of the largest eigenvalue below which an eigenvalue's direction is flat.
 _FLAT_DIRECTION_SHARE = 1e-14
+# Part of the largest pivot above which those of a Hessian's Cholesky factor have no flat direction.
+_STIFF_DIRECTION_SHARE = 1e-9
 # Distance, in first radii, beyond which a function that still falls is taken to have no minimum.
 _FARTHEST = 1e12
 _EPSILON = float(np.finfo(np.float64).eps)
@@ -104,6 +107,12 @@ def _residual(local: Local) -> float:
 
 def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
     """Minimiser of the local quadratic within the radius, and the decrease of the quadratic."""
+    factor, failure = lapack.dpotrf(local.hessian, lower=True)
+    pivots = np.diagonal(factor) ** 2
+    if not failure and pivots.size and pivots.min() > _STIFF_DIRECTION_SHARE * pivots.max():
+        step, _ = lapack.dpotrs(factor, -local.gradient, lower=True)
+        if _norm(step) <= radius:
+            return step, -0.5 * float(local.gradient @ step)
     values, vectors = linalg.eigh(local.hessian, check_finite=False)
     values = np.maximum(values, 0.0)
     slope = vectors.T @ local.gradient

@@ -16,8 +16,8 @@ the compliance C = Eᵀ K₀⁻¹ E = S Sᵀ between the connectors, and ν = S�
     z = z_f + S ν,      Π(ν) = ½ νᵀ ν + Σ (φ(z) - ½ zᵀ k₀ z + zᵀ k₀ z₀).
 
 S has the eigenvectors of C times the roots of its eigenvalues, without those that are rounding. A trust region finds
-the minimum of Π(ν), first with meshes at few phases; from there Newton's method takes the connectors' own tangents,
-which may be unsymmetric.
+the minimum of Π(ν), first with linear meshes, then with meshes at few phases; from there Newton's method takes the
+connectors' own tangents, which may be unsymmetric.
 """
 
 from __future__ import annotations
@@ -29,18 +29,19 @@ from functools import cached_property, lru_cache, partial
 import numpy as np
 from scipy import linalg, sparse
 
-from gearwhine.coupling.statics.static_model import ConnectorLaw, FaceContactLaw, LinearLaw, replace_linear
+from gearwhine.coupling.statics.static_model import ConnectorLaw, FaceContactLaw, LinearLaw, OffsetLaw, replace_linear
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.trust_region import Local, minimise
 
 _TOLERANCE = 1e-9  # from there Newton's method converges in one step or two
+_SETTLED = 0.1  # tolerance with linear meshes
 _COARSE = 1e-3  # tolerance with meshes at few phases
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
 # Error over the deflections below which steps are not halved, and end where it hardly falls.
 _ROUNDED_DEFLECTION_ERROR = 1e-11
-_ROUNDINGS = 4.0  # error over the deflections, in units of rounding, that is that of the deflections themselves
+_ROUNDING = 1e-13  # error over the deflections that is that of the structure's solution
 _FALLS = 0.5  # largest part of the error that a step leaves, unless the error is rounding
 _NO_COMPLIANCE = 1e-13  # part of the largest eigenvalue of the compliance below which one is rounding
 
@@ -142,8 +143,7 @@ class ConnectedStructure:
         # The first radius of the search is the size of the motions under the loads.
         radius = max(float(np.sqrt(abs(self.load @ self._under_nominal_laws))), 1e-9)
         place, iterations = np.zeros(self._held.spread.shape[1]), 0
-        coarse = [law.coarse if isinstance(law, FaceContactLaw) else law for law in self._conservative_laws]
-        for laws, tolerance in ((coarse, _COARSE), (self._conservative_laws, _TOLERANCE)):
+        for laws, tolerance in self._stages:
             minimum = minimise(partial(self._potential, laws), place, radius, tolerance)
             place, iterations = minimum.place, iterations + minimum.iterations
         x, steps = self._polished(self._start + self._held.spread @ place)
@@ -199,6 +199,21 @@ class ConnectedStructure:
             for part, law in zip(self.parts, self.laws, strict=True)
         ]
 
+    @property
+    def _stages(self) -> list[tuple[list[ConnectorLaw], float]]:
+        """Laws and tolerance of each stage of the search: meshes are linear while bearings settle, then at few phases.
+
+        The nominal law of a bearing can be far off, as across its axial clearance; that of a mesh is close.
+        """
+        laws = self._conservative_laws
+        meshes = [isinstance(law, FaceContactLaw) for law in laws]
+        if not any(meshes):
+            return [(laws, _TOLERANCE)]
+        nominal = (OffsetLaw(LinearLaw(self.nominal[part, part]), self.offset[part]) for part in self.parts)
+        linear = [other if mesh else law for law, other, mesh in zip(laws, nominal, meshes, strict=True)]
+        coarse = [law.coarse if isinstance(law, FaceContactLaw) else law for law in laws]
+        return [(linear, _SETTLED), (coarse, _COARSE), (laws, _TOLERANCE)]
+
     def _potential(self, laws: Sequence[ConnectorLaw], nu: FloatArray) -> Local:
         """Π(ν), its gradient and its second derivatives."""
         spread = self._held.spread
@@ -230,7 +245,7 @@ class ConnectedStructure:
         imbalance, steps = self._imbalance(z), 0
         for _ in range(_NEWTON_STEPS):
             before, size = imbalance.norm, float(np.linalg.norm(z / self._held.size))
-            if before <= _ROUNDINGS * np.finfo(np.float64).eps * size:
+            if before <= _ROUNDING * size:
                 break
             step = self._held.size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
             rounded = before <= _ROUNDED_DEFLECTION_ERROR * size

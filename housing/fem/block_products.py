@@ -92,7 +92,9 @@ class BlockProduct:
         kernel: Any = _add_stiffness if entries.ndim == 3 else _add_mass
         self._add: Callable[[FloatArray, FloatArray], None] = partial(kernel, pointer, neighbors, entries)
         self._order = 3 * (len(pointer) - 1)
-        self._free, self._threads, self._further = free, threads, further
+        # A slice copies rows at twice the speed of a list of places.
+        self._free: IntArray | slice = slice(None) if len(free) == self._order else free
+        self._threads, self._further = threads, further
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:

@@ -200,6 +200,44 @@ class Matrices:
         return sparse.csr_array(solid + self.attached_mass.matrix(self.n_nodes))
 
     @cached_property
+    def stiffness_operator(self) -> Operator:
+        """K to multiply with [N/m]; of more than 50,000 nodes no matrix is assembled."""
+        return self.product_of(self.blocks) if self._is_large else self.stiffness
+
+    @cached_property
+    def absolute_stiffness_operator(self) -> Operator:
+        """Absolute values of the entries of K, to multiply with [N/m]."""
+        return self.product_of(np.abs(self.blocks)) if self._is_large else abs(self.stiffness)
+
+    @cached_property
+    def mass_operator(self) -> Operator:
+        """M to multiply with [kg]."""
+        return self.product_of(self.node_mass, self.attached_mass) if self._is_large else self.mass
+
+    @property
+    def _is_large(self) -> bool:
+        return self.n_nodes > _NODES_BY_BLOCKS
+
+    def product_of(
+        self,
+        entries: FloatArray,
+        attached: NodeBlocks | None = None,
+        free: IntArray | None = None,
+        threads: int = 2,
+    ) -> Operator:
+        """Matrix on the free degrees of freedom, by default all, that is multiplied from blocks on the pattern.
+
+        ``entries`` (n_blocks, 3, 3) or (n_blocks,) and ``attached`` blocks add up.
+        """
+        from gearwhine.housing.fem.block_products import BlockProduct
+
+        places = np.arange(3 * self.n_nodes) if free is None else free
+        further = None
+        if attached is not None and len(attached):
+            further = sparse.csr_array(attached.matrix(self.n_nodes)[places][:, places])
+        return BlockProduct(self.pointer, self.neighbors, entries, places, threads, further)
+
+    @cached_property
     def damping(self) -> sparse.csr_array:
         """C [N s/m] of the fixtures, shape (3 n_nodes, 3 n_nodes), symmetric; empty where nothing damps."""
         return self.attached_damping.matrix(self.n_nodes)
@@ -364,22 +402,15 @@ class FreeSystem:
         """K [N/m]."""
         if not self.by_blocks:
             return self.assembled(self._matrices.blocks)
-        from gearwhine.housing.fem.block_products import BlockProduct
-
-        matrices = self._matrices
-        return BlockProduct(matrices.pointer, matrices.neighbors, matrices.blocks, self.free, self.threads)
+        return self._matrices.product_of(self._matrices.blocks, None, self.free, self.threads)
 
     @cached_property
     def mass(self) -> Operator:
         """M [kg]."""
         if not self.by_blocks:
             return FreeMass(self._matrices, self.free, self.threads)
-        from gearwhine.housing.fem.block_products import BlockProduct
-
         matrices = self._matrices
-        attached = matrices.attached_mass
-        further = sparse.csr_array(attached.matrix(self.n_nodes)[self.free][:, self.free]) if len(attached) else None
-        return BlockProduct(matrices.pointer, matrices.neighbors, matrices.node_mass, self.free, self.threads, further)
+        return matrices.product_of(matrices.node_mass, matrices.attached_mass, self.free, self.threads)
 
     def shifted(self, shift: float) -> "ShiftedMatrix":
         """K - shift M, always on the same pattern [rad²/s²]."""

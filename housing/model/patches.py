@@ -83,7 +83,7 @@ def rigid_body(points: FloatArray, matrices: Matrices) -> RigidBody:
     """
     middle = points.mean(axis=0)
     field = rigid_motions(points, middle).reshape(-1, 6)
-    whole = field.T @ (matrices.mass @ field)
+    whole = field.T @ (matrices.mass_operator @ field)
     mass = float(np.trace(whole[:3, :3])) / 3.0
     # The off-diagonal block is -m [arm]x, the matrix of the cross product with the arm from the middle to the centre.
     moment = 0.5 * (whole[:3, 3:] - whole[:3, 3:].T)
