@@ -323,8 +323,8 @@ class FreeSystem:
     threads : int
         Threads that multiply K and M with vectors; the products are the same to the last bit for any number.
     by_blocks : bool, optional
-        Whether products are made of the blocks, without matrices: by default those of more than 50,000 nodes, where
-        the memory counts.
+        Whether products with K are made of its blocks, without a matrix: by default those of more than 50,000 nodes,
+        where the memory counts.
 
     Attributes
     ----------
@@ -372,14 +372,7 @@ class FreeSystem:
     @cached_property
     def mass(self) -> Operator:
         """M [kg]."""
-        if not self.by_blocks:
-            return FreeMass(self._matrices, self.free, self.threads)
-        from gearwhine.housing.fem.block_products import BlockProduct
-
-        matrices = self._matrices
-        attached = matrices.attached_mass
-        further = sparse.csr_array(attached.matrix(self.n_nodes)[self.free][:, self.free]) if len(attached) else None
-        return BlockProduct(matrices.pointer, matrices.neighbors, matrices.node_mass, self.free, self.threads, further)
+        return FreeMass(self._matrices, self.free, self.threads)
 
     def shifted(self, shift: float) -> "ShiftedMatrix":
         """K - shift M, always on the same pattern [rad²/s²]."""
@@ -478,7 +471,9 @@ class FreeMass:
 
     def __init__(self, matrices: Matrices, free: IntArray, threads: int = 1, *, least: int = _WORTH_A_THREAD) -> None:
         nodes = np.unique(free // 3)
-        scalar = matrices.scalar_mass
+        # Not matrices.scalar_mass, which keeps the pattern of both triangles.
+        upper = sparse.csr_array((matrices.node_mass, matrices.neighbors, matrices.pointer))
+        scalar = sparse.csr_array(upper + sparse.triu(upper, k=1, format="csr").T)
         if len(nodes) < matrices.n_nodes:
             scalar = sparse.csr_array(scalar[nodes][:, nodes])
         threads = max(1, min(threads, scalar.nnz // least))
