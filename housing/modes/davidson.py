@@ -9,7 +9,9 @@ mode,
 
 By the first form S extended by F⁻¹ r is the Krylov space of F⁻¹ M, and the modes converge as they do in block Lanczos;
 by the second one each step also removes what E has left in x (Davidson 1975; Morgan and Scott 1986). Only the accuracy
-of r limits that of the modes. Where S is full, it keeps the lowest Ritz vectors, which costs hardly a step.
+of r limits that of the modes. As long as the space has hardly more vectors than modes are wanted, E does not matter,
+and it is extended by F⁻¹ M of its last block, which takes fewer products. Where S is full, it keeps the lowest Ritz
+vectors, which costs hardly a step.
 
 A block has sixteen columns, since the direct solver takes as long for eight.
 """
@@ -71,26 +73,25 @@ def davidson_modes(
     """
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
-    most, kept = 4 * count + 4 * width, 3 * count + width
+    most, kept, begin = 4 * count + 4 * width, 3 * count + width, count + 4 * width
     space = _RitzSpace(stiffness, mass, most, BlockAlgebra(n, threads))
     residuals = np.full(count, np.inf)
-    start = np.random.default_rng(seed).standard_normal((n, width))
-    block = solve_approximately(np.ascontiguousarray(mass @ start))
-    del start
+    block = np.random.default_rng(seed).standard_normal((n, width))
+    block = mass @ block
     for _ in range(_STEPS + 8 * count // width):
         if space.size + block.shape[1] > most:
             space.shrink(kept)
-        extended = space.extend(block)
-        values, mixture = linalg.eigh(space.stiffness)
-        values, mixture = values[:count], mixture[:, :count]
-        scales, found = np.abs(values) + abs(values[-1]) + floor, len(values)
-        block = np.empty((n, 0))
-        while extended and not block.shape[1]:
-            open_ones = np.flatnonzero(residuals[:found] > tolerance)
-            if not len(open_ones):
-                break
+        if not space.extend(solve_approximately(block)):
+            break
+        if space.size < begin:
+            block = mass @ space.last
+            continue
+        values, mixture = space.ritz(count)
+        scales = np.abs(values) + abs(values[-1]) + floor
+        block = block[:, :0]
+        while not block.shape[1] and (residuals > tolerance).any():
             # The largest first: those of the modes that wait for a step are the larger ones of the next.
-            worst = open_ones[np.argsort(-residuals[open_ones], kind="stable")[:width]]
+            worst = np.argsort(-residuals, kind="stable")[: min(width, np.count_nonzero(residuals > tolerance))]
             vectors = space.combined(mixture[:, worst])
             forces, inertia = stiffness @ vectors, mass @ vectors
             del vectors
@@ -101,10 +102,11 @@ def davidson_modes(
             sizes = np.linalg.norm(forces, axis=0) / (scales[worst] * lengths)
             stalled = (sizes < _CLOSE) & (sizes > residuals[worst])
             residuals[worst] = np.where(stalled, 0.0, sizes)
-            block = np.ascontiguousarray(forces[:, residuals[worst] > tolerance])
+            block = forces[:, residuals[worst] > tolerance]
+            del forces
         if not block.shape[1]:
             break
-        block = solve_approximately(block)
+    values, mixture = space.ritz(count)
     return values, space.combined(mixture)
 
 
@@ -123,8 +125,18 @@ class _RitzSpace:
         self._stiffness, self._mass, self._algebra = stiffness, mass, algebra
         # The operating system allocates only the pages that are used.
         self._vectors = np.empty((mass.shape[0], most), order="F")
-        self.size = 0
+        self._before = self.size = 0
         self.stiffness = np.empty((0, 0))
+
+    @property
+    def last(self) -> FloatArray:
+        """Vectors by which the space was last extended, shape (n, r)."""
+        return self._vectors[:, self._before : self.size]
+
+    def ritz(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Lowest Ritz values, shape (count,), and their vectors in terms of V, shape (size, count)."""
+        values, mixture = linalg.eigh(self.stiffness)
+        return values[:count], mixture[:, :count]
 
     @property
     def _basis(self) -> FloatArray:
@@ -167,14 +179,14 @@ class _RitzSpace:
         own = mixture.T @ (own - shared - shared.T + within.T @ self.stiffness @ within) @ mixture
         coupling = (coupling - self.stiffness @ within) @ mixture
         algebra.subtract(block, self._basis, within)
-        size = self.size + mixture.shape[1]
-        self._vectors[:, self.size : size] = algebra.combined(block, mixture)
-        self.size = size
+        added = algebra.combined(block, mixture)
+        self._before, self.size = self.size, self.size + added.shape[1]
+        self._vectors[:, self._before : self.size] = added
         self.stiffness = np.block([[self.stiffness, coupling], [coupling.T, 0.5 * (own + own.T)]])
         return True
 
     def shrink(self, kept: int) -> None:
         """Keep the lowest Ritz vectors."""
-        values, mixture = linalg.eigh(self.stiffness)
-        self._algebra.replace(self._basis, mixture[:, :kept])
-        self.stiffness, self.size = np.diag(values[:kept]), kept
+        values, mixture = self.ritz(kept)
+        self._algebra.replace(self._basis, mixture)
+        self.stiffness, self.size = np.diag(values), kept
