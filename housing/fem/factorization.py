@@ -267,9 +267,10 @@ class Factorization:
         if self.precision == "double":
             return self._factor.solve(right)
         # Small numbers in double precision may be none in single.
-        scale = np.max(np.abs(right), axis=0)
+        scale = np.maximum(right.max(axis=0), -right.min(axis=0))
         scale = np.where(scale > 0.0, scale, 1.0)
-        solution = self._factor.solve(right / scale)
+        scaled = np.divide(right, scale, out=np.empty(right.shape, np.float32), casting="same_kind")
+        solution = self._factor.solve(scaled)
         solution *= scale
         return solution
 

@@ -164,13 +164,11 @@ class BlockAlgebra:
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
     def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
-        """LᵀR, shape (columns of L, columns of R); in single precision where L is."""
-        right = right.astype(left.dtype, copy=False)
-        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])), dtype=np.float64)
+        """LᵀR, shape (columns of L, columns of R)."""
+        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])))
 
     def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
-        """Subtract B p from a block of columns, in place; the product is in single precision where B is."""
-        parts = parts.astype(basis.dtype, copy=False)
+        """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
             block[rows] -= (parts.T @ basis[rows].T).T  # one column after another: half the time of basis[rows] @ parts

@@ -212,30 +212,18 @@ class Matrices:
     @cached_property
     def mass_operator(self) -> Operator:
         """M to multiply with [kg]."""
-        return self.product_of(self.node_mass, self.attached_mass) if self._is_large else self.mass
+        return FreeMass(self, np.arange(3 * self.n_nodes), 2) if self._is_large else self.mass
 
     @property
     def _is_large(self) -> bool:
         return self.n_nodes > _NODES_BY_BLOCKS
 
-    def product_of(
-        self,
-        entries: FloatArray,
-        attached: NodeBlocks | None = None,
-        free: IntArray | None = None,
-        threads: int = 2,
-    ) -> Operator:
-        """Matrix on the free degrees of freedom, by default all, that is multiplied from blocks on the pattern.
-
-        ``entries`` (n_blocks, 3, 3) or (n_blocks,) and ``attached`` blocks add up.
-        """
+    def product_of(self, blocks: FloatArray, free: IntArray | None = None, threads: int = 2) -> Operator:
+        """Matrix to multiply with of blocks (n_blocks, 3, 3), on the free degrees of freedom, by default on all."""
         from gearwhine.housing.fem.block_products import BlockProduct
 
         places = np.arange(3 * self.n_nodes) if free is None else free
-        further = None
-        if attached is not None and len(attached):
-            further = sparse.csr_array(attached.matrix(self.n_nodes)[places][:, places])
-        return BlockProduct(self.pointer, self.neighbors, entries, places, threads, further)
+        return BlockProduct(self.pointer, self.neighbors, blocks, places, threads)
 
     @cached_property
     def damping(self) -> sparse.csr_array:
@@ -361,8 +349,8 @@ class FreeSystem:
     threads : int
         Threads that multiply K and M with vectors; the products are the same to the last bit for any number.
     by_blocks : bool, optional
-        Whether products are made of the blocks, without matrices: by default those of more than 50,000 nodes, where
-        the memory counts.
+        Whether products with K are made of its blocks, without a matrix: by default those of more than 50,000 nodes,
+        where the memory counts.
 
     Attributes
     ----------
@@ -402,15 +390,12 @@ class FreeSystem:
         """K [N/m]."""
         if not self.by_blocks:
             return self.assembled(self._matrices.blocks)
-        return self._matrices.product_of(self._matrices.blocks, None, self.free, self.threads)
+        return self._matrices.product_of(self._matrices.blocks, self.free, self.threads)
 
     @cached_property
     def mass(self) -> Operator:
         """M [kg]."""
-        if not self.by_blocks:
-            return FreeMass(self._matrices, self.free, self.threads)
-        matrices = self._matrices
-        return matrices.product_of(matrices.node_mass, matrices.attached_mass, self.free, self.threads)
+        return FreeMass(self._matrices, self.free, self.threads)
 
     def shifted(self, shift: float) -> "ShiftedMatrix":
         """K - shift M, always on the same pattern [rad²/s²]."""
@@ -509,7 +494,9 @@ class FreeMass:
 
     def __init__(self, matrices: Matrices, free: IntArray, threads: int = 1, *, least: int = _WORTH_A_THREAD) -> None:
         nodes = np.unique(free // 3)
-        scalar = matrices.scalar_mass
+        # Not matrices.scalar_mass, which keeps the pattern of both triangles.
+        upper = sparse.csr_array((matrices.node_mass, matrices.neighbors, matrices.pointer))
+        scalar = sparse.csr_array(upper + sparse.triu(upper, k=1, format="csr").T)
         if len(nodes) < matrices.n_nodes:
             scalar = sparse.csr_array(scalar[nodes][:, nodes])
         threads = max(1, min(threads, scalar.nnz // least))

@@ -21,8 +21,8 @@ from gearwhine.housing.fem.factorization import Factorization, Factorizer, check
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.housing.fem.matrices import FreeSystem
 from gearwhine.housing.fem.slepc import SlepcRanks
-from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, block_lanczos, nearest_modes
-from gearwhine.housing.modes.mode_correction import corrected_modes
+from gearwhine.housing.modes.davidson import davidson_modes
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
 from gearwhine.numerics.arrays import FloatArray
 
 RESIDUAL_BOUND = 1e-8
@@ -68,9 +68,7 @@ _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away fr
 MOST_MODES = 2000
 """Largest number of modes of one search: the basis of more would exceed any memory."""
 _DRAFT = 1e-4  # residual of the last modes of a draft; modes of half their frequency then have all digits
-_IN_SINGLE = 1e-3  # residual of the modes of a factor in single precision, before they are corrected
-_COMPANIONS = 0.1  # the same of modes next to the shift that the correction needs
-_CORRECTED = 0.2 * RESIDUAL_BOUND
+_IN_SINGLE = 0.2 * RESIDUAL_BOUND  # residual of the modes of a factor in single precision
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
@@ -196,7 +194,16 @@ class CertifiedSearch:
             if isinstance(self._factorizer, SlepcRanks):
                 return self._factorizer.modes(shift, count, above=above, seed=attempt)
             if factor.precision == "single" and self._solver == "lanczos":
-                return self._corrected(factor, shift, count, above=above, attempt=attempt)
+                return davidson_modes(
+                    system.stiffness,
+                    self._mass,
+                    factor.solve_approximately,
+                    count,
+                    floor=self.floor,
+                    tolerance=_IN_SINGLE,
+                    seed=attempt,
+                    threads=system.threads,
+                )
             return nearest_modes(
                 self._solver,
                 factor.solve,
@@ -215,33 +222,6 @@ class CertifiedSearch:
             return np.empty(0), np.empty((system.size, 0))
         finally:
             self.seconds["eigensolver"] += time.perf_counter() - start
-
-    def _corrected(
-        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int
-    ) -> tuple[FloatArray, FloatArray]:
-        """Uncertified modes of a factor in single precision, corrected in double."""
-        system = self._system
-        return corrected_modes(
-            system.stiffness,
-            self._mass,
-            factor.solve_approximately,
-            block_lanczos(
-                factor.solve_approximately,
-                self._mass,
-                shift,
-                count,
-                above=above,
-                seed=attempt,
-                threads=system.threads,
-                tolerance=_IN_SINGLE,
-                precision="single",
-                companion_tolerance=_COMPANIONS,
-            )[1],
-            count,
-            floor=self.floor,
-            tolerance=_CORRECTED,
-            threads=system.threads,
-        )
 
     def _certify(
         self, values: FloatArray, vectors: FloatArray, limit: float, below: int

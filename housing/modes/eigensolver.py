@@ -29,7 +29,7 @@ import numpy as np
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from gearwhine.housing.errors import IncompleteModesError
-from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator, Precision
+from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
 from gearwhine.numerics.arrays import FloatArray
 
 TOLERANCE = 1e-9
@@ -37,7 +37,6 @@ TOLERANCE = 1e-9
 
 _BLOCK = 8
 _DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
-_DEPENDENT_IN_SINGLE = 1e-6  # the same, where the basis is in single precision
 _NEARLY_WITHIN = 1e-4  # remainder of a column, as a part of it, below which its rounding shows
 _ORTHONORMAL = 1e-14  # largest error of the products of a new block's columns from those of orthonormal ones
 _DEPENDENT_COLUMN_CORRELATION = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
@@ -53,8 +52,6 @@ def block_lanczos(
     seed: int = 0,
     threads: int = 1,
     tolerance: float = TOLERANCE,
-    precision: Precision = "double",
-    companion_tolerance: float = 0.0,
 ) -> tuple[FloatArray, FloatArray]:
     """Solve for the modes nearest to a shift on one side of it by block Lanczos.
 
@@ -77,17 +74,12 @@ def block_lanczos(
     tolerance : float
         Tolerance of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of
         that.
-    precision : {"double", "single"}
-        Precision in which the basis is kept.
-    companion_tolerance : float
-        Where positive, further modes come behind the wanted ones: those next to the shift on its upper side, beyond the
-        wanted modes or across the shift from them, whose residuals are below this.
 
     Returns
     -------
-    values : ndarray, shape (count,) or more
+    values : ndarray, shape (count,)
         λ, ascending [rad²/s²].
-    vectors : ndarray, shape (n, count) or more
+    vectors : ndarray, shape (n, count)
         φ, with φᵀ M φ = 1.
 
     Raises
@@ -98,9 +90,8 @@ def block_lanczos(
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
     most = min(n, 8 * count + 40 * width)
-    kind = np.dtype(np.float64 if precision == "double" else np.float32)
     # The operating system allocates only the pages that are used.
-    basis = np.empty((n, most + width), dtype=kind, order="F")
+    basis = np.empty((n, most + width), order="F")
     small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
     sign = -1.0 if above else 1.0
 
@@ -128,11 +119,7 @@ def block_lanczos(
             errors = np.linalg.norm(remainder @ mixtures[begin:], axis=0)
             wanted = ranked[:count]
             if whole or (np.all(sign * nu[wanted] > 0.0) and np.all(errors[wanted] < tolerance * np.abs(nu[wanted]))):
-                others = (
-                    (ranked[count:] if sign > 0.0 else ranked[: count - 1 : -1]) if companion_tolerance else wanted[:0]
-                )
-                others = others[(nu[others] > 0.0) & (errors[others] < companion_tolerance * np.abs(nu[others]))]
-                chosen = np.concatenate([wanted[np.argsort(1.0 / nu[wanted])], others])
+                chosen = wanted[np.argsort(1.0 / nu[wanted])]
                 mixture = mixtures[:, chosen]
                 # Basis and block are orthonormal, so that the norms follow from the coefficients.
                 step = remainder @ mixture[begin:] / nu[chosen]
@@ -183,7 +170,7 @@ def orthonormal(
     Parameters
     ----------
     basis : ndarray, shape (n, m)
-        V, in double or single precision.
+        V.
     block : ndarray, shape (n, width)
     mass : operator, shape (n, n)
     algebra : BlockAlgebra
@@ -201,8 +188,7 @@ def orthonormal(
     products = algebra.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
     norms = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
-    dependent = _DEPENDENT if basis.dtype == np.float64 else _DEPENDENT_IN_SINGLE
-    independent = left > dependent * norms
+    independent = left > _DEPENDENT * norms
     values, turn = np.linalg.eigh(
         products[np.ix_(independent, independent)] / np.outer(left[independent], left[independent])
     )

@@ -13,7 +13,7 @@ from gearwhine.housing.fem import factorization, memory
 from gearwhine.housing.fem.factorization import Factorizer, RslabSolver, UnprovedInertiaError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 from gearwhine.housing.fem.matrices import Matrices
-from gearwhine.housing.modes.eigensolver import block_lanczos
+from gearwhine.housing.modes.davidson import davidson_modes
 from gearwhine.meshes import Mesh
 
 pytest.importorskip("rslab")
@@ -230,30 +230,31 @@ def test_precisions_that_are_not_there_are_named() -> None:
         Factorizer(backend="superlu", precision="single")
 
 
-@pytest.mark.parametrize("above", [True, False])
-def test_companions_are_the_next_modes_on_the_upper_side_of_the_shift(cube: tuple[Mesh, Matrices], above: bool) -> None:
-    """Across the shift from modes below it, and behind the wanted ones above it, the nearest first."""
-    _, matrices = cube
-    values = dense_values(matrices)
-    mass = matrices.mass.toarray()
-    place = next(place for place in range(30, 60) if values[place] > 1.01 * values[place - 1])
-    shift, count = 0.5 * (values[place - 1] + values[place]), place if above else 4
-    inverse = np.linalg.inv(matrices.shifted(shift).toarray())
-    found, vectors = block_lanczos(
-        lambda right: inverse @ right,
-        mass,
-        shift,
-        count,
-        above=above,
-        precision="single",
-        tolerance=1e-4,
-        companion_tolerance=1e-2,
+@pytest.mark.parametrize("spoilt", [0.0, 300.0])
+def test_modes_of_a_chain_from_an_inverse_of_another_chain(spoilt: float) -> None:
+    """Λ = 2 - 2 cos kπ/(n+1) of a chain of unit springs and masses, with the inverse of one on springs to the ground.
+
+    These are random, of 300 times the lowest eigenvalue; the steps then fill the space more than once.
+    """
+    n, count = 1500, 12
+    exact = 2.0 - 2.0 * np.cos(np.arange(1, n + 1) * np.pi / (n + 1))
+    chain = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), format="csr")
+    shift = 0.5 * (exact[count - 1] + exact[count])
+    ground = spoilt * exact[0] * np.random.default_rng(1).standard_normal(n)
+    banded = np.stack([np.r_[0.0, -np.ones(n - 1)], 2.0 - shift + ground, np.r_[-np.ones(n - 1), 0.0]])
+    widths: list[int] = []
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        widths.append(right.shape[1])
+        return linalg.solve_banded((1, 1), banded, right)
+
+    values, vectors = davidson_modes(
+        chain, sparse.eye_array(n, format="csr"), solve, count, floor=exact[0], tolerance=1e-9
     )
-    wanted, companions = found[:count], found[count:]
-    first = 0 if above else place
-    np.testing.assert_allclose(wanted[wanted > 1e7], values[first : first + count][wanted > 1e7], rtol=1e-4)
-    assert len(companions) >= 3
-    assert vectors.shape == (195, len(found))
-    behind = values[place if above else place + count :]
-    np.testing.assert_allclose(companions[0], behind[0], rtol=1e-3)
-    assert (np.diff(companions) > -1e-3 * companions[1:]).all()
+    np.testing.assert_allclose(values, exact[:count], rtol=1e-9)
+    residuals = np.linalg.norm(chain @ vectors - vectors * values, axis=0)
+    assert (residuals < 1.001e-9 * (values + values[-1] + exact[0])).all()
+    places = np.arange(1, n + 1)[:, None] * np.arange(1, count + 1) * np.pi / (n + 1)
+    shapes = np.sqrt(2.0 / (n + 1)) * np.sin(places)
+    np.testing.assert_allclose(np.abs(shapes.T @ vectors), np.eye(count), atol=1e-6)
+    assert (sum(widths) > 4 * count + 64) == (spoilt > 0.0)
