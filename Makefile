@@ -79,7 +79,7 @@ browser: | $(VENV)/.installed
 	@sh scripts/system_libraries.sh $(BIN)/python --browser
 
 # Sources of kernels: what is compiled from others is out of date, and each process of the tests would compile it anew.
-KERNELS := $(shell grep -rl --include='*.py' '\.compiled import' numerics rotors coupling)
+KERNELS := $(shell grep -rlE --include='*.py' '\.compiled import|numba\.njit' numerics rotors coupling housing)
 
 # After what it needs of the system, therefore last.
 $(VENV)/.compiled: pyproject.toml constraints.txt $(KERNELS) | $(BIN)/python
