@@ -78,8 +78,11 @@ system: | $(VENV)/.installed
 browser: | $(VENV)/.installed
 	@sh scripts/system_libraries.sh $(BIN)/python --browser
 
+# Sources of kernels: what is compiled from others is out of date, and each process of the tests would compile it anew.
+KERNELS := $(shell grep -rlE --include='*.py' '\.compiled import|numba\.njit' numerics rotors coupling housing)
+
 # After what it needs of the system, therefore last.
-$(VENV)/.compiled: pyproject.toml constraints.txt | $(BIN)/python
+$(VENV)/.compiled: pyproject.toml constraints.txt $(KERNELS) | $(BIN)/python
 	@echo "Compiling the kernels (about five minutes of processor time, once) ..."
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python scripts/compile_kernels.py
 	@touch $@

@@ -213,6 +213,7 @@ def _cells(row: Row) -> list[str]:
 
 
 _KEPT_HOUSINGS = 8  # the last ones: their shapes take memory
+_KEPT_MOTIONS = 12  # two of each periodic motion, the closed and the refined one
 
 # A single white point, in place of a rendered figure.
 _POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg==")
@@ -310,6 +311,45 @@ def modes_solved_once(_solved_modes: OrderedDict[str, tuple[Any, list[str]]]) ->
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "_solve_modes", solved)
+        yield
+
+
+@pytest.fixture(scope="session")
+def _periodic_motions() -> OrderedDict[str, Any]:
+    return OrderedDict()
+
+
+@pytest.fixture(scope="module")
+def periodic_motions_found_once(_periodic_motions: OrderedDict[str, Any]) -> Iterator[None]:
+    """Find the periodic motion of a machine once for the cases of a process that differ in the rest.
+
+    The key has every number that the search takes: matrices, contacts, period, segments, elements, start and tolerance.
+    """
+    from gearwhine.coupling.periodic import shooting
+    from gearwhine.coupling.time.transient import fingerprint
+
+    search, refine = shooting._search, shooting.refined
+
+    def once(solve: Callable[[], Any], ready: Any, *more: Any) -> Any:
+        coarsest = shooting.coarsest_element(ready.system, ready.period)
+        key = fingerprint(ready.part, ready.contacts, ready.recovery, ready.period, ready.segments, coarsest, more)
+        if key not in _periodic_motions:
+            _periodic_motions[key] = solve()
+            if len(_periodic_motions) > _KEPT_MOTIONS:
+                _periodic_motions.popitem(last=False)
+        return _periodic_motions[key]
+
+    def searched(ready: Any, level: int, state: Any) -> Any:
+        return once(lambda: search(ready, level, state), ready, "search", level, state)
+
+    def refined(ready: Any, motion: Any, level: int, tolerance: float, steps: int, *, near: bool = False) -> Any:
+        more = motion.start, level, tolerance, steps, near
+        found = once(lambda: refine(ready, motion, level, tolerance, steps, near=near), ready, "refine", *more)
+        return replace(found, system=ready.system)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(shooting, "_search", searched)
+        patch.setattr(shooting, "refined", refined)
         yield
 
 

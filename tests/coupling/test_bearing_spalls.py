@@ -6,28 +6,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import root
+from test_spalls_in_machines import SPEED, machine
 
 from gearwhine.coupling import (
-    CoupledMachine,
     CoupledSystem,
-    MachineLoads,
-    MountedBearing,
     RollingLaw,
     TransientOutputs,
     TransientSettings,
-    assemble_machine,
     simulate,
 )
 from gearwhine.coupling.connector_forces.bearing_kernels import bearing_force
 from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
-from gearwhine.coupling.machine.components import Component, rotor_component
+from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, NonlinearConnector
 from gearwhine.coupling.machine.driving_frequencies import spall_strikes
 from gearwhine.coupling.signals import line_names
 from gearwhine.coupling.signals.condition_indicators import envelope_spectrum
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors import Disc, Rotor, RotorError, Segment, ShaftMaterial, modal_rotor
+from gearwhine.rotors import RotorError
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
     RollerRow,
@@ -36,7 +33,6 @@ from gearwhine.rotors.rolling_bearings import (
     RollingState,
     TaperedRollerRow,
     characteristic_frequencies,
-    linearised_bearing,
     paired,
     rolling_equilibrium,
     rolling_state,
@@ -173,29 +169,6 @@ def test_slow_passing_is_a_row_of_equilibria(on: str, azimuth: float) -> None:
 
 # -------------------------------------------------------------------------------------------------------- the machine
 
-STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
-SPEED = 2.0 * math.pi * 25.0
-
-
-def machine(spall: RollingSpall | None) -> CoupledMachine:
-    """A shaft with a disc, its weight on two ball bearings, the first of which is damaged."""
-    bearing = RollingBearing([BALLS])
-    state = rolling_equilibrium(bearing, [0.0, -500.0, 0.0, 0.0, 0.0], held={"z": 0.0, "rx": 0.0, "ry": 0.0})
-    shaft = Rotor("shaft", [Segment(0.1, 0.04, 0.0, STEEL)] * 4, [Disc(0.2, 50.0, 0.5, 0.3)])
-    bearings = [
-        replace(linearised_bearing(state, name, at), damping=3e4 * np.eye(2))
-        for name, at in (("left", 0.05), ("right", 0.35))
-    ]
-    modal = modal_rotor(shaft, bearings, count=3)
-    laws = [RollingLaw(state, spalls=() if spall is None else (spall,)), RollingLaw(state)]
-    return assemble_machine(
-        [rotor_component("shaft", modal, start=0.0, damping_ratio=0.02)],
-        None,
-        speeds={"shaft": SPEED},
-        bearings=[MountedBearing(one, "shaft", None, law) for one, law in zip(bearings, laws, strict=True)],
-        loads=MachineLoads(gravity=(0.0, -9.81, 0.0)),
-    )
-
 
 @pytest.mark.parametrize(
     ("on", "tone", "turning"),
@@ -207,21 +180,22 @@ def test_the_envelope_of_a_force_has_the_tone_of_the_damaged_part(on: str, tone:
     The cage of this bearing turns at 0.4 of the shaft's speed, 10 Hz.
     """
     spall = RollingSpall(on, 1.5e-3, 40e-6, azimuth=-0.5 * math.pi)  # type: ignore[arg-type]
+    bearing = RollingBearing([BALLS])
     known = characteristic_frequencies(BALLS, SPEED).named()[tone] / (2.0 * math.pi)
     interval = 1.0 / 16384.0
     chosen = TransientSettings(0.62, 0.1, interval, 2e-5, tolerance=1e-3)
     height = []
-    for damaged in (spall, None):
-        parts = machine(damaged)
+    for spalls in ((spall,), ()):
+        parts = machine(bearing, *spalls, housing=False)
         result = simulate(parts.system, chosen, transient_outputs(parts))
         assert result.energy.error < 2e-3
         force = histories(parts, result).bearing_force["left"][:, 1]
         frequencies, lines = envelope_spectrum(force - force.mean(), interval, (2000.0, 4000.0))
         height.append(float(np.interp(known, frequencies, lines)))
-        if damaged is not None:
+        if spalls:
             assert height[0] > 0.1 * lines[0]
     assert height[0] > 1e3 * height[1]
-    parts = machine(spall)
+    parts = machine(bearing, spall, housing=False)
     (strikes,) = spall_strikes(parts.system)
     assert strikes.frequency == pytest.approx(known, rel=1e-12)
     assert strikes.turning_frequency == pytest.approx(turning)

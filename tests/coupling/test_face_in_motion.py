@@ -133,9 +133,8 @@ def test_an_overhung_helical_pair_answers_as_springs_over_its_face(sense: int) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sense", [1, -1])
-def test_a_helical_pair_in_the_middle_of_its_shafts_answers_as_springs_over_its_face(sense: int) -> None:
-    np.testing.assert_allclose(compared(mid_span(sense)), 1.0, atol=0.01)
+def test_a_helical_pair_in_the_middle_of_its_shafts_answers_as_springs_over_its_face() -> None:
+    np.testing.assert_allclose(compared(mid_span(-1)), 1.0, atol=0.01)
 
 
 @pytest.mark.slow
@@ -145,10 +144,9 @@ def test_lines_of_contact_that_pass_over_the_face_act_as_their_mean() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sense", [1, -1])
-def test_a_spur_power_split_answers_as_springs_over_its_faces(sense: int) -> None:
+def test_a_spur_power_split_answers_as_springs_over_its_faces() -> None:
     """Gears in two meshes, each of which moves the face of the other; with few modes of the shafts."""
-    np.testing.assert_allclose(compared(power_split(sense, ConstantStiffness(4e8))), 1.0, atol=0.003)
+    np.testing.assert_allclose(compared(power_split(1, ConstantStiffness(4e8))), 1.0, atol=0.003)
 
 
 @pytest.mark.slow

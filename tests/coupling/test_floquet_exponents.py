@@ -72,7 +72,13 @@ def _farthest(exponents: ComplexArray, found: ComplexArray, period: float) -> fl
 def isotropic_machine(carrier_speed: float, *, standing: bool) -> CoupledMachine:
     """A set alike all round, its sun and carrier in the carrier's coordinates or in such as stand still."""
     parts = plane_set(
-        equal_angles(3), pressure_angle=np.radians(20.0), with_ring=False, damping=1e-5, material=STEEL, diameter=0.05
+        equal_angles(3),
+        pressure_angle=np.radians(20.0),
+        with_ring=False,
+        damping=1e-5,
+        material=STEEL,
+        diameter=0.05,
+        mode_count=1,
     )
     # A bearing with a force of its own, even of zero, is not taken as alike all round.
     parts["bearings"] = [

@@ -94,9 +94,9 @@ def test_lines_of_the_settled_motion_are_the_linear_ones() -> None:
 @pytest.mark.slow
 def test_multipliers_are_those_of_a_turn() -> None:
     """The largest is that of the monodromy by Magnus's series, within its error."""
-    machine = turning_machine(ANISOTROPIC, speed=3000.0)
+    machine = turning_machine(ANISOTROPIC, speed=3000.0, mode_count=None)
     settled = settled_response(machine.system, closure=1e-6)
-    exact = multipliers(machine.system, settled.period, 120)
+    exact = multipliers(machine.system, settled.period, 60)
     # Without the rotation of the train and the torsion of shafts that no force moves, which nothing damps.
     largest = np.abs(exact[np.abs(exact) < 1.0 - 1e-4]).max()
     assert largest == pytest.approx(0.9539, abs=1e-4)
@@ -247,9 +247,9 @@ def test_a_curve_through_the_critical_speeds_of_an_unsymmetric_shaft() -> None:
 @pytest.mark.slow
 def test_sensors_over_speed_are_those_of_the_linear_lines() -> None:
     described = turning_set(ANISOTROPIC)
-    steady = solve_steady(described.assembled, over_speed=(290.0, 310.0), points=3)
+    steady = solve_steady(described.assembled, over_speed=(290.0, 310.0), points=2)
     assert steady.curve is not None
-    assert steady.curve.speeds == pytest.approx([290.0, 300.0, 310.0])
+    assert steady.curve.speeds == pytest.approx([290.0, 310.0])
     assert len(steady.motions) == 1
     for number, speed in enumerate(steady.curve.speeds.tolist()):
         machine = described.assembled.at_speed(speed)

@@ -49,8 +49,8 @@ def bolted_stage() -> dict[str, Any]:
         "sensor": [{"name": "top", "position": ["20 mm", "320 mm", "30 mm"], "direction": "y"}],
     }
     document["operation"] = {"speed": "1000 rpm", "torque": f"{TORQUE} N*m"}
-    # Two turns of the carrier, 9 revolutions of the sun, after one to settle.
-    document["transient"] = {"revolutions": 13.5, "discard": 4.5, "tolerance": 5e-3}
+    # Two turns of the carrier, 9 revolutions of the sun, after half a one to settle.
+    document["transient"] = {"revolutions": 11.25, "discard": 2.25, "tolerance": 5e-3}
     return document
 
 

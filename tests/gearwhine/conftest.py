@@ -9,5 +9,10 @@ def _modes_solved_once(modes_solved_once: None) -> None:
 
 
 @pytest.fixture(scope="module", autouse=True)
+def _periodic_motions_found_once(periodic_motions_found_once: None) -> None:
+    """Periodic motions of a machine that another test of this process has found are not sought again."""
+
+
+@pytest.fixture(scope="module", autouse=True)
 def _figures_unrendered(unrendered: None) -> None:
     """Render no figures, but in a module marked ``rendered``."""

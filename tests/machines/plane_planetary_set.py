@@ -44,10 +44,11 @@ def plane_set(
     material: ShaftMaterial = RIGID,
     diameter: float = 0.03,
     teeth: tuple[int, int] = TEETH,
+    mode_count: int | None = None,
 ) -> dict[str, Any]:
     """Parts of a machine: sun, carrier, planets at the angles and perhaps the ring; without it the carrier is held.
 
-    ``damping`` is that of bearings and meshes over their stiffness [s].
+    ``damping`` is that of bearings and meshes over their stiffness [s]; ``mode_count`` that of each shaft.
     """
     numbers_of_teeth = {"sun": teeth[0], "planet": teeth[1], "ring": teeth[0] + 2 * teeth[1]}
     radius = {name: 0.5 * MODULE * z * math.cos(pressure_angle) for name, z in numbers_of_teeth.items()}
@@ -56,9 +57,8 @@ def plane_set(
 
     def body(kind: str, name: str, **where: Any) -> None:
         disc = Disc(_MIDDLE, MASS[kind], *[INERTIA[kind] * radius[kind] ** 2] * 2)
-        shafts.append(
-            Shaft(Rotor(name, [Segment(_LENGTH, diameter, 0.0, material)], [disc]), damping_ratio=0.0, **where)
-        )
+        rotor = Rotor(name, [Segment(_LENGTH, diameter, 0.0, material)], [disc])
+        shafts.append(Shaft(rotor, damping_ratio=0.0, mode_count=mode_count, **where))
         law = 0.5 * np.diag([BEARING_STIFFNESS, BEARING_STIFFNESS, 0.0, 2e3, 2e3])
         for end, at in (("left", 0.0), ("right", _LENGTH)):
             bearings.append(MountedBearing(Bearing(f"{name} {end}", at, law, damping * law), name, None))

@@ -59,7 +59,7 @@ def pairs(draw: st.DrawFn) -> GearPairGeometry:
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=12)
 @given(pairs(), st.floats(-1e-3, 1e-3), st.floats(1e3, 3e5), st.sampled_from([1, -1]))
 def test_every_mesh_balances_its_load_with_finite_stiffness(
     pair: GearPairGeometry, misalignment: float, line_load: float, sense: int
@@ -85,7 +85,7 @@ def test_every_mesh_balances_its_load_with_finite_stiffness(
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=12)
 @given(pairs(), st.floats(1e4, 3e5))
 def test_exchanging_the_gears_changes_nothing(pair: GearPairGeometry, line_load: float) -> None:
     # Driven by the other gear the mesh runs its path backwards; slices keep their places, hands exchange.
@@ -102,7 +102,7 @@ def test_exchanging_the_gears_changes_nothing(pair: GearPairGeometry, line_load:
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=12)
 @given(pairs(), st.floats(1e4, 3e5), st.floats(0.3, 3.0))
 def test_compression_knows_no_size(pair: GearPairGeometry, line_load: float, scale: float) -> None:
     # Plane elasticity without lengths of its own: all sizes and deviations scaled at the same load per width.

@@ -165,7 +165,7 @@ def free_ring(ring: Ring, fineness: float, state: PlaneState) -> tuple[skfem.Bas
     return basis, elasticity(basis, ring, state)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=12)
 def held_ring(ring: Ring, held: Held, fineness: float, state: PlaneState) -> HeldBody:
     """A ring held at its outside."""
     basis, matrix = free_ring(ring, fineness, state)

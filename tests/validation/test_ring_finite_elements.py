@@ -76,14 +76,19 @@ def dent(gear: Gear, radius: np.ndarray) -> np.ndarray:
     return np.asarray(2.0 * (1.0 - nu**2) / (math.pi * gear.youngs_modulus * gear.face_width) * parts)
 
 
-@pytest.mark.parametrize("place", [None, 5.0, 20.0, 30.0, 45.0])
-@pytest.mark.parametrize("ring", RINGS.values(), ids=RINGS)
-def test_a_tooth_and_the_next_one_between_bolts(ring: Ring, place: float | None) -> None:
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [(name, place) for name in RINGS for place in (None, 30.0)]
+    # Every place on the thinnest rim, which its bolts bend the most.
+    + [(min(RINGS, key=lambda name: RINGS[name].rim / RINGS[name].module), place) for place in (5.0, 20.0, 45.0)],
+)
+def test_a_tooth_and_the_next_one_between_bolts(name: str, place: float | None) -> None:
     """By the place between two bolts, with loads from the tip to near the form circle.
 
     Near the root, where a tooth is no beam and its axis lies in the rim, the surface tells: tooth and dent. On the form
     circle itself, where no pinion reaches, the sum is 10 to 13 % too soft.
     """
+    ring = RINGS[name]
     gear, radii = gear_of(ring), loaded_radii(ring, 4)
     still = found = ring_deflections(ring, radii)
     own = ElasticRingStiffness().tooth(gear, -radii).total

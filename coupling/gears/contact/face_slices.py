@@ -447,6 +447,8 @@ class SlicedMeshes:
         repeated = np.broadcast_to(shapes, (len(approaches), *shapes.shape))
         self._motions = np.concatenate([approaches, repeated], axis=2)
         self._shared = np.ascontiguousarray(slices.shared[: shapes.shape[1], : shapes.shape[1]])
+        # As the whole matrix is: the kernels are compiled apart for arrays that may be written to.
+        self._shared.flags.writeable = False
         # Approaches of all pairs alone are of meshes that are solved once.
         rows = count if len(approaches) > 1 else int(np.diff(self._first).max(initial=1))
         size = self._motions.shape[2]

@@ -94,7 +94,7 @@ def bending_compliance(gear: Gear, stub: float) -> float:
         whole, _ = occ.fragment(toothed, [end])
         occ.intersect(whole, [(3, occ.addBox(0.0, 0.0, 0.0, far, far, far))])
         occ.synchronize()
-        gmsh.option.setNumber("Mesh.MeshSizeMax", max(1.2, 0.04 * gear.teeth) * gear.module)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", max(1.2, 0.05 * gear.teeth) * gear.module)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
         gmsh.model.mesh.generate(3)
         mesh = skfem.MeshTet(*elements(gmsh, 4, 4))

@@ -14,8 +14,8 @@ from gearwhine.cli import run_command
 
 CRACK = 'gear.pinion.fault={ kind = "crack", tooth = 3, depth = "1 mm" }'
 SHORT = [
-    *("transient.revolutions=12", "transient.discard=6", "transient.tolerance=2e-3"),
-    *("housing.frequency_limit=2.8 kHz", "housing.box.mesh_size=40 mm"),
+    *("transient.revolutions=12", "transient.discard=6", "transient.tolerance=5e-3"),
+    *("housing.frequency_limit=2.8 kHz", "housing.box.mesh_size=60 mm"),
 ]
 STUDY = """
 [detection]

@@ -12,7 +12,7 @@ from idler_case import idler
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling import SpeedProfile
-from gearwhine.coupling.analyses.run_up import run_signature_warnings, solve_run_signature
+from gearwhine.coupling.analyses.run_up import RunSignature, run_signature_warnings, solve_run_signature
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run
@@ -166,13 +166,20 @@ def with_sensor(solved: SolvedTransient) -> SolvedTransient:
     )
 
 
-@pytest.mark.slow
-def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
-    """An order that rises with the speed is highest at the limit; a mesh force goes on to the end of the run."""
+@cache
+def heard_run_up() -> tuple[Case, SolvedTransient, RunSignature]:
+    """The long run with a sensor, and its orders."""
     case, solved = run_up((27, 29), 0.06)
     run = with_sensor(solved)
     found = solve_run_signature(run, tracking_of(case.transient))
     assert found is not None
+    return case, run, found
+
+
+@pytest.mark.slow
+def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
+    """An order that rises with the speed is highest at the limit; a mesh force goes on to the end of the run."""
+    case, run, found = heard_run_up()
     rows = {(row["signal"], row["order"]): row for row in run_signature_document(found)["orders"]}
     # The amplitude is that at the speed, not a mean over the window.
     for order, slope, within in ((27.0, 10.0, 0.01), (81.0, 50.0, 0.01)):
@@ -224,10 +231,7 @@ def words(document: dict[str, Any]) -> str:
 @pytest.mark.slow
 def test_peaks_of_a_run_are_the_highest_of_its_orders() -> None:
     """Not lines of the whole record, in which an order is smeared over all frequencies that it passes."""
-    case, solved = run_up((27, 29), 0.06)
-    run = with_sensor(solved)
-    found = solve_run_signature(run, tracking_of(case.transient))
-    assert found is not None
+    _, run, found = heard_run_up()
     document = transient_document(run, None, found)
     (sensor,), (pair,) = document["sensors"], document["gear_pairs"]
     told = {(row.signal, row.name): row for row in found.highest()}

@@ -45,7 +45,7 @@ def sphere_efficiencies(surface: RadiatingSurface, ka: float) -> tuple[np.ndarra
 
 # π and 4.4934 are natural frequencies of the air inside, at which the plain equation fails.
 @pytest.mark.slow
-@pytest.mark.parametrize("ka", [0.25, 0.5, 1.0, 2.0, np.pi, 4.493409457909064, 5.0])
+@pytest.mark.parametrize("ka", [0.25, 1.0, np.pi, 4.493409457909064, 5.0])
 def test_sphere(sphere_2000, ka):
     found, field = sphere_efficiencies(sphere_2000, ka)
     for n in range(4):

@@ -92,7 +92,7 @@ def test_the_error_depends_little_on_the_place_of_the_source():
     assert len(order) > 200
     assert deep[shallow].max() < 1.6 * SOURCE_DEPTH < 2.2 * SOURCE_DEPTH < deep[deepest].max()
     # Near the source the linear functions err by the bend of 1/r; at few edges a wavelength that of the wave counts.
-    for edges, largest, rms in ((12.0, 2.0, 1.2), (6.0, 1.1, 1.2), (3.05, 1.1, 1.2)):
+    for edges, largest, rms in ((12.0, 2.0, 1.2), (3.05, 1.1, 1.2)):
         known = field_at(elements, elements.highest_frequency(edges)).known
         assert known is not None
         for errors, bar in ((known.errors.max(axis=0), largest), (np.sqrt((known.errors**2).mean(axis=0)), rms)):
