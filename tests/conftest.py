@@ -246,6 +246,15 @@ def unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session")
+def texts_read_back() -> Iterator[None]:
+    """Hold the numbers in the texts of every result against its document, see ``gearwhine/numbers_of_texts.py``."""
+    from numbers_of_texts import numbers_held
+
+    with numbers_held():
+        yield
+
+
 @pytest.fixture(scope="module")
 def swept_here() -> Iterator[None]:
     """Solve the points of a sweep in a thread of this process, not in one of its own, which takes seconds to start.

@@ -18,7 +18,8 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "tests" / "gearwhine" / "results"))
 
-from test_units_of_declarations import NAMES, SHOWN, dimension_of  # noqa: E402
+from shown_units import SHOWN, dimension_of
+from test_units_of_declarations import NAMES  # noqa: E402
 
 ROOMS = ("coupling", "gearwhine")
 """Rooms whose texts and tables users see."""
