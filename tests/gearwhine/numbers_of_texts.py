@@ -1,8 +1,9 @@
-"""Every number with a unit in the texts of a result is a number of its document, in that unit, to the digits shown.
+"""Numbers with units in the texts of a result are in its document, and the heights of its curves in its file.
 
 Sentences and tables are composed from the document by hand, for the terminal, the report and its first page. Whatever
 result a test makes, its texts are composed here and read back: a factor, a unit or a sign that is wrong in one of them
-leaves a number which the document does not have.
+leaves a number which the document does not have. A figure that a test draws is looked at in the same way: the highest
+point of a curve, or its swing, is that of an array of the results file in the unit of the axis.
 """
 
 import re
@@ -11,9 +12,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
-from math import hypot
+from math import hypot, pi
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
 import pytest
 from shown_units import SHOWN, dimension_of
 
@@ -28,6 +31,7 @@ _BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±) $")
 """Words before a number of the settings, or of the sentence itself, which need not be in the document."""
 _OF_SENTENCES = re.compile(
     r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |dB (with|re) |20 µPa|1 pW|damping|falls to"
+    r"|^\+1(0 %| mm)$"
 )
 _OF_MANY = ("optimise", "vary", "detect", "sweep")
 """Commands whose numbers have the units of the case's keys, which their names do not say."""
@@ -61,7 +65,7 @@ def shown_in(section: Section) -> Iterator[Shown]:
     for item in section.content:
         if isinstance(item, Table):
             yield from shown_in_table(item)
-        elif not _OF_SENTENCES.search(str(item)):
+        else:
             yield from shown_in_text(str(item))
     for inner in section.inner:
         yield from shown_in(inner)
@@ -69,6 +73,8 @@ def shown_in(section: Section) -> Iterator[Shown]:
 
 def shown_in_text(text: str) -> Iterator[Shown]:
     """Numbers with units in a text."""
+    if _OF_SENTENCES.search(text):
+        return
     for found in _WITH_UNIT.finditer(text):
         if not _BOUNDS.search(text[: found.start()]):
             yield Shown(text, found[1], found[2])
@@ -88,12 +94,18 @@ def shown_in_table(table: Table) -> Iterator[Shown]:
                 yield from (Shown(text, number, unit) for number in re.findall(_NUMBER, row[place]))
 
 
-def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
-    """Numbers of texts that the document does not have."""
+def known_numbers(document: Mapping[str, Any]) -> defaultdict[str, list[float]]:
+    """Numbers of a document by their dimensions; parts of 1, and those of no dimension, in per cent."""
     known: defaultdict[str, list[float]] = defaultdict(list)
     for path, value in leaves(document):
         dimension, factor = _unit_of(path)
         known[dimension].append(factor * value)
+    return known
+
+
+def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
+    """Numbers of texts that the document does not have."""
+    known = known_numbers(document)
     return [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
 
 
@@ -129,26 +141,98 @@ def _composers() -> dict[str, list[Callable[[Any], Iterable[Section]]]]:
     from gearwhine.cli.study_commands import STUDY_COMMANDS, _sections
     from gearwhine.results import chapters_of
 
+    longer = {"check": "check.sections"}  # of what every document holds
     return {
-        entry.name: [chapters_of, *(_sections(place) for place in (entry.sections, entry.longer[1]) if place)]
+        entry.name: [chapters_of, *(_sections(one) for one in (entry.sections, longer.get(entry.name)) if one)]
         for entry in STUDY_COMMANDS
         if entry.name not in _OF_MANY
     }
 
 
+_OWN_TEXTS = re.compile(r"-shaft|load-shaft|-static|-pattern|transmission-error|orbits")
+"""Figures whose texts have sums, means, and components in the plane of the figure."""
+_OWN_CURVES = re.compile(
+    r"diameter|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
+)
+"""Figures, with the label of the axis, of curves whose highest points are not in the file."""
+_FILE_UNITS = {"m s-2": "m/s2", "m s-2 m-1": "m/s2", "N m-1": "N/m", "1": "%", "": "%", "percent": "%"}
+_FEWEST_POINTS, _ROUNDING = 8, 1e-12
+_NEAR = 4e-3  # part by which a curve that is drawn smoothly may rise above its samples
+
+Heights = Mapping[str, npt.NDArray[np.float64]]
+
+
+def heights_of(dataset: Any) -> Heights:
+    """Highest values of the arrays of a dataset along their longest dimension, and the swings there, by dimension."""
+    found: defaultdict[str, list[npt.NDArray[np.float64]]] = defaultdict(list)
+    for variable in dataset.variables.values():
+        if variable.dtype.kind not in "fc" or variable.size < 2:
+            continue
+        unit = variable.attrs.get("units", "")
+        factor = {"rad s-1": 30.0 / pi, "percent": 0.01}.get(unit, 1.0)
+        values = variable.values
+        for part in (np.abs(values), values.real, values.imag) if variable.dtype.kind == "c" else (values,):
+            scaled = factor * np.nan_to_num(part)
+            longest = int(np.argmax(scaled.shape))
+            several = np.abs(scaled).max(axis=longest), np.ptp(scaled, axis=longest), np.abs(scaled).max()
+            found["rpm" if unit == "rad s-1" else _FILE_UNITS.get(unit, unit)] += [np.ravel(one) for one in several]
+    return {dimension: np.concatenate(several) for dimension, several in found.items()}
+
+
+def foreign_curves(name: str, figure: Any, heights: Heights) -> list[str]:
+    """Curves of a figure that are neither as high nor swing as far as an array of the unit of their axis."""
+    foreign = []
+    for axes in figure.axes:
+        label = axes.get_ylabel()
+        dimension, size = SHOWN.get(label.rpartition("[")[2].partition("]")[0].split(",")[0], ("", 1.0))
+        if dimension not in heights or _OWN_CURVES.search(f"{name} {label}"):
+            continue
+        for line in axes.get_lines():
+            drawn = np.asarray(line.get_ydata(), dtype=float) * size * (1e-2 if dimension == "%" else 1.0)
+            drawn = drawn[np.isfinite(drawn)]
+            if drawn.size < _FEWEST_POINTS or np.abs(drawn).max() < _ROUNDING:
+                continue
+            high = np.array([[np.abs(drawn).max()], [np.ptp(drawn)]])
+            if not (np.abs(heights[dimension] - high) <= _NEAR * high).any():
+                foreign.append(f"{line.get_label()} over {label}, up to {high[0, 0]:.4g} in SI")
+    return foreign
+
+
+def foreign_in_texts(name: str, figure: Any, document: Mapping[str, Any]) -> list[Shown]:
+    """Numbers in the texts of a figure that the document does not have."""
+    from matplotlib.text import Text
+
+    if _OWN_TEXTS.search(name):
+        return []
+    known = known_numbers(document)
+    texts = [text.get_text() for text in figure.findobj(Text)]
+    return [one for text in texts for one in shown_in_text(text) if not _is_known(one, known)]
+
+
 @contextmanager
 def numbers_held() -> Iterator[None]:
-    """Compose and read the texts of every result that is made."""
+    """Compose and read the texts of every result that is made, and look at the curves of every figure that is drawn."""
     result = import_module("gearwhine.analyses.result").Result
-    as_made = result.__post_init__
+    as_made, drawn = result.__post_init__, result.figures
 
     def read_back(self: Any) -> None:
         as_made(self)
+        if self.solved is None:  # made up by a test
+            return
         document = {"command": self.command} | self.document
         for compose in _composers().get(self.command, ()):
             foreign = foreign_numbers(document, compose(document))
             assert not foreign, f"{self.command}: not in the document: {foreign}"
 
+    def looked_at(self: Any, *given: Any) -> Iterator[tuple[str, Any]]:
+        heights = heights_of(self.dataset) if self.solved is not None and self.command in _composers() else {}
+        for name, figure in drawn(self, *given):
+            if heights:
+                foreign = [*foreign_curves(name, figure, heights), *foreign_in_texts(name, figure, self.document)]
+                assert not foreign, f"{self.command}, {name}: neither in the file nor in the document: {foreign}"
+            yield name, figure
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(result, "__post_init__", read_back)
+        patch.setattr(result, "figures", looked_at)
         yield
