@@ -27,7 +27,7 @@ _NUMBER = r"(?<![\w.,/-])[-+]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 _NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
 # A unit may stand behind the second of two numbers.
 _WITH_UNIT = re.compile(rf"({_NUMBER})(?=(?:(?: to | and | ± ){_NUMBER})? ?({_NAMES})(?![\w/·*²(°-]))")
-_BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±) $")
+_BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±) $|±$")
 """Words before a number of the settings, or of the sentence itself, which need not be in the document."""
 _OF_SENTENCES = re.compile(
     r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |dB (with|re) |20 µPa|1 pW|damping|falls to"
@@ -129,6 +129,8 @@ def _is_known(one: Shown, known: defaultdict[str, list[float]]) -> bool:
     value = size * float(one.number)
     if "⌀" in one.text:
         value, step = 0.5 * value, 0.5 * step
+    if one.unit == "%" and "% below" in one.text:
+        value = -value
     if dimension == "rpm":  # of either sense
         value = abs(value)
         return any(abs(value - abs(other)) <= 0.51 * step + 1e-9 * value for other in known[dimension])
@@ -163,7 +165,7 @@ Heights = Mapping[str, npt.NDArray[np.float64]]
 
 
 def heights_of(dataset: Any) -> Heights:
-    """Highest values of the arrays of a dataset along their longest dimension, and the swings there, by dimension."""
+    """Highest values and swings of a dataset's arrays along their first and longest dimensions, by the unit's dimension."""
     found: defaultdict[str, list[npt.NDArray[np.float64]]] = defaultdict(list)
     for variable in dataset.variables.values():
         if variable.dtype.kind not in "fc" or variable.size < 2:
@@ -173,8 +175,9 @@ def heights_of(dataset: Any) -> Heights:
         values = variable.values
         for part in (np.abs(values), values.real, values.imag) if variable.dtype.kind == "c" else (values,):
             scaled = factor * np.nan_to_num(part)
-            longest = int(np.argmax(scaled.shape))
-            several = np.abs(scaled).max(axis=longest), np.ptp(scaled, axis=longest), np.abs(scaled).max()
+            several = [np.abs(scaled).max()]
+            for along in {0, int(np.argmax(scaled.shape))}:
+                several += [np.abs(scaled).max(axis=along), np.ptp(scaled, axis=along)]
             found["rpm" if unit == "rad s-1" else _FILE_UNITS.get(unit, unit)] += [np.ravel(one) for one in several]
     return {dimension: np.concatenate(several) for dimension, several in found.items()}
 
