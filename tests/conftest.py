@@ -246,12 +246,21 @@ def unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
+_RUNNING = {"slow": False}
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Know in fixtures of a session whether a slow test is running."""
+    _RUNNING["slow"] = item.get_closest_marker("slow") is not None
+
+
 @pytest.fixture(scope="session")
 def texts_read_back() -> Iterator[None]:
-    """Hold the numbers in the texts of every result against its document, see ``gearwhine/numbers_of_texts.py``."""
+    """Hold texts and curves of the results of fast tests against their numbers, see ``numbers_of_texts.py``."""
     from numbers_of_texts import numbers_held
 
-    with numbers_held():
+    with numbers_held(lambda: not _RUNNING["slow"]):
         yield
 
 

@@ -165,7 +165,7 @@ Heights = Mapping[str, npt.NDArray[np.float64]]
 
 
 def heights_of(dataset: Any) -> Heights:
-    """Highest values and swings of a dataset's arrays along their first and longest dimensions, by the unit's dimension."""
+    """Highest values and swings of arrays along their first and longest dimensions, by the dimension of the unit."""
     found: defaultdict[str, list[npt.NDArray[np.float64]]] = defaultdict(list)
     for variable in dataset.variables.values():
         if variable.dtype.kind not in "fc" or variable.size < 2:
@@ -213,14 +213,14 @@ def foreign_in_texts(name: str, figure: Any, document: Mapping[str, Any]) -> lis
 
 
 @contextmanager
-def numbers_held() -> Iterator[None]:
-    """Compose and read the texts of every result that is made, and look at the curves of every figure that is drawn."""
+def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
+    """Read the texts of every result that is made, and look at every figure that is drawn, while it is on."""
     result = import_module("gearwhine.analyses.result").Result
     as_made, drawn = result.__post_init__, result.figures
 
     def read_back(self: Any) -> None:
         as_made(self)
-        if self.solved is None:  # made up by a test
+        if self.solved is None or not is_on():  # one without is made up by a test
             return
         document = {"command": self.command} | self.document
         for compose in _composers().get(self.command, ()):
@@ -228,7 +228,8 @@ def numbers_held() -> Iterator[None]:
             assert not foreign, f"{self.command}: not in the document: {foreign}"
 
     def looked_at(self: Any, *given: Any) -> Iterator[tuple[str, Any]]:
-        heights = heights_of(self.dataset) if self.solved is not None and self.command in _composers() else {}
+        is_held = is_on() and self.solved is not None and self.command in _composers()
+        heights = heights_of(self.dataset) if is_held else {}
         for name, figure in drawn(self, *given):
             if heights:
                 foreign = [*foreign_curves(name, figure, heights), *foreign_in_texts(name, figure, self.document)]
