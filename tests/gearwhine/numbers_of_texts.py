@@ -154,7 +154,7 @@ def _composers() -> dict[str, list[Callable[[Any], Iterable[Section]]]]:
 _OWN_TEXTS = re.compile(r"-shaft|load-shaft|-static|-pattern|transmission-error|orbits")
 """Figures whose texts have sums, means, and components in the plane of the figure."""
 _OWN_CURVES = re.compile(
-    r"diameter|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
+    r"diameter|phase|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
 )
 """Figures, with the label of the axis, of curves whose highest points are not in the file."""
 _FILE_UNITS = {"m s-2": "m/s2", "m s-2 m-1": "m/s2", "N m-1": "N/m", "1": "%", "": "%", "percent": "%"}
