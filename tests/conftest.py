@@ -247,6 +247,24 @@ def unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
+_RUNNING = {"slow": False}
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Know in fixtures of a session whether a slow test is running."""
+    _RUNNING["slow"] = item.get_closest_marker("slow") is not None
+
+
+@pytest.fixture(scope="session")
+def texts_read_back() -> Iterator[None]:
+    """Hold texts and curves of the results of fast tests against their numbers, see ``numbers_of_texts.py``."""
+    from numbers_of_texts import numbers_held
+
+    with numbers_held(lambda: not _RUNNING["slow"]):
+        yield
+
+
 @pytest.fixture(scope="module")
 def swept_here() -> Iterator[None]:
     """Solve the points of a sweep in a thread of this process, not in one of its own, which takes seconds to start.

@@ -18,14 +18,19 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "tests" / "gearwhine" / "results"))
 
-from test_units_of_declarations import NAMES, SHOWN, dimension_of  # noqa: E402
+from shown_units import SHOWN, dimension_of  # noqa: E402
+from test_units_of_declarations import NAMES, text_of  # noqa: E402
 
-ROOMS = ("coupling", "gearwhine")
-"""Rooms whose texts and tables users see."""
+ROOMS = ("numerics", "meshes", "housing", "rotors", "coupling", "gearwhine")
 UNITS = SHOWN | {"dB(A)": ("dB", 1.0), "kg m²": ("kg m2", 1.0), "deg": SHOWN["°"]}
 _UNIT = re.compile(rf"\s?({'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![\w/·*²(°-])")
 _BETWEEN = (" to ", " and ", ", ", " ± ")  # of two numbers of one unit
 WORDS = {"speed": "rpm", "torque": "N m", "force": "N", "frequency": "Hz"}
+WORDS |= dict.fromkeys(("rpm", "speeds", "onset", "widest", "undamped"), "rpm")
+WORDS |= dict.fromkeys(
+    ("hz", "hertz", "frequencies", "mesh_frequency", "limit", "trusted_limit", "spacing", "exciting", "held", "rate"),
+    "Hz",
+)
 """Names without a unit of values in the unit of the document."""
 CONVERTED = {
     (ast.Mult, "RPM"): "converted_rpm",
@@ -238,8 +243,8 @@ def without_unit(name: str) -> str:
     return re.sub(r"_(hz|rpm|n_m|rad|m|s|n)$", "", name.lstrip("_"))
 
 
-MIRRORED = {"start", "pitch_gaps", "pair_variants"}
-"""Of a section seen from its other end, and of flanks that become the back flanks."""
+MIRRORED = {"start", "pitch_gaps", "pair_variants", "first"}
+"""Of a section seen from its other end, of flanks that become the back flanks, and of what overlaps either way."""
 
 
 def swapped(source: Source) -> Slips:
@@ -273,7 +278,8 @@ def wrong_pairs(source: Source) -> Slips:
             if len(words) == len(node.elts) == 2 and words[1] in _SIDES.values() and _SIDES.get(words[0]) != words[1]:
                 yield node.lineno, f"{words[0]}: {words[1]}"
         else:
-            words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+            given = [*node.args, *(one.value for one in node.keywords if one.arg in ("unit", "units", "name"))]
+            words = [one.value for one in given if isinstance(one, ast.Constant) and isinstance(one.value, str)]
             # What stands over a speed is no speed.
             named = [one.partition("_over_")[0].rpartition("_")[2] for one in words if _FILE_NAME.fullmatch(one)]
             units = [one for one in words if one in _FILE_UNITS]
@@ -281,5 +287,129 @@ def wrong_pairs(source: Source) -> Slips:
                 yield node.lineno, f"{named[0]} in {units[0]}"
 
 
+def wrong_rules(source: Source) -> Slips:
+    """Units of the rule of a number that its name has not."""
+    for node in source.of(ast.Dict, ast.Call):
+        if isinstance(node, ast.Dict):
+            entries = [(getattr(key, "value", ""), value) for key, value in zip(node.keys, node.values, strict=True)]
+        else:
+            entries = [(keyword.arg or "", keyword.value) for keyword in node.keywords]
+        for name, rule in entries:
+            if isinstance(rule, ast.Call) and ast.unparse(rule.func) == "Number":
+                (unit,) = [ast.literal_eval(one.value) for one in rule.keywords if one.arg == "unit"] or [""]
+                allowed = NAMES.get(str(name).rpartition("_")[2])
+                if unit and allowed and unit.partition(" per ")[0] not in allowed | {"rad/s", "N m/rad"}:
+                    yield rule.lineno, f"{name} in {unit}"
+
+
 def test_signs_and_units_fit_the_words_beside_them() -> None:
     assert slips(wrong_pairs) == []
+    assert slips(wrong_rules) == []
+
+
+_HEADINGS = {
+    "Hz": "frequency frequencies torsion turning measured model predicted line back before after at below axis rest",
+    "rpm": "speed speeds rotation at between width driver",
+    "N": "force load preload radial axial tangential pin flanks z largest",
+    "N m": "torque moment driver y",
+    "N·m": "torque moment driver",
+    "N/m": "stiffness",
+    "N/µm": "stiffness force load z",
+    "N/mm": "load pairs pair",
+    "MPa": "contact pressure",
+    "GPa": "pressure peak",
+    "µm": "error displacement deflection deviation compression gap mean peak p amplitude largest "
+    "misaligned operation load rms x y",
+    "nm": "p",
+    "mm": "diameter length face centres end point x y",
+    "µrad": "misaligned misalignment tilt twist z",
+    "mrad": "angle",
+    "rad": "angle phase torsion",
+    "°": "angle lag carrier driver turn tip",
+    "ms": "time",
+    "s": "time length",
+    "kg": "mass total",
+    "W": "power takes",
+    "m/s²": "acceleration amplitude rms excited largest load",
+    "dB": "level pressure octaves order damping weighted linear lines transient point L_W L_WA ERP",
+    "%": "apart share error basis expected others ratio load before",
+    "h": "L10 L10r",
+}
+"""Unit in brackets: words before it that have it. The nearest known word to its left counts."""
+_WORDS_OF_HEADINGS = {word for words in _HEADINGS.values() for word in words.split()}
+_HEADING = re.compile(
+    rf"([^][]*)\[({'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?=[],;]| rms| re )"
+)
+
+
+def texts(source: Source) -> Iterator[tuple[int, str]]:
+    """Texts that are no docstrings, with {} for what an f-string puts in."""
+    left_out = {id(node.value) for node in source.of(ast.Expr)}
+    left_out |= {id(part) for node in source.of(ast.JoinedStr) for part in node.values}
+    for node in source.of(ast.Constant, ast.JoinedStr):
+        if id(node) not in left_out and (text := text_of(node)) is not None:
+            yield node.lineno, text
+
+
+def wrong_headings(source: Source) -> Slips:
+    """Units in brackets behind words that have others, as on axes and above columns; parts are in per cent."""
+    for line, text in texts(source):
+        if "‰" in text:
+            yield line, text
+        for before, unit in _HEADING.findall(text):
+            words = [word for word in re.findall(r"[A-Za-z_0-9]+", before) if word in _WORDS_OF_HEADINGS]
+            if "contact" in words:  # pressures of rolling bearings are in GPa
+                words = ["contact"]
+            if unit not in _HEADINGS or (words and words[-1] not in _HEADINGS[unit].split()):
+                yield line, f"{before.strip()} in {unit}"
+
+
+def test_units_in_brackets_fit_the_words_before_them() -> None:
+    assert slips(wrong_headings) == []
+    assert sum(1 for source in sources().values() for _, text in texts(source) if _HEADING.search(text)) > 200
+
+
+_INSIDE = {"m", "N", "N m", "N/m", "rad", "Pa", "kg", "s", "W", "m/s2", "m2", "%"}
+"""Dimensions whose values are in SI's unit, or parts of 1, wherever their names say nothing else."""
+_SHOWN_AS = (
+    "number listed least name value low high largest rms stiffness mean part swing named as_given without out_of_line "
+    "percent worst nearest reached x y z mesh_size thickness shear outer_diameter roller_diameter"
+)
+"""Names of texts, and of values that are in the unit of a table or of a figure."""
+
+
+def assigned(source: Source) -> dict[str, list[tuple[int, ast.expr]]]:
+    """Lines and expressions that give a name its value; of a text, the value in it."""
+    found: defaultdict[str, list[tuple[int, ast.expr]]] = defaultdict(list)
+    for node in source.of(ast.Assign):
+        target, value = node.targets[0], node.value
+        several = isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple)
+        for one, given in zip(target.elts, value.elts, strict=False) if several else [(target, value)]:
+            if isinstance(one, ast.Name):
+                inside = [inner.value for inner in ast.walk(given) if isinstance(inner, ast.FormattedValue)]
+                found[one.id].append((node.lineno, inside[0] if inside else given))
+    return found
+
+
+def unscaled(source: Source) -> Slips:
+    """Values of the inside, in SI, whose factor in a text is not that of the unit behind them."""
+    numbers, named = constants(source.tree), assigned(source)
+    for line, name, factor, shown in values_with_units(source):
+        dimension, size = UNITS[shown]
+        before = [given for at, given in named.get(name, ()) if at < line]
+        if factor == 1.0 and before and (found := factor_and_name(before[-1], numbers)):
+            factor, name = found
+        size *= 1e-2 if dimension == "%" else 1.0
+        if dimension not in _INSIDE or dimension_of(name) is not None or name in _SHOWN_AS.split():
+            continue
+        known = [
+            1.0,
+            2.0 if "radius" in name or name == "inside" else 1.0,
+            size if "deg" in name or "angle" in name else 1.0,
+        ]
+        if not any(isclose(factor * size, one) for one in known):
+            yield line, f"{factor:g} {name} in {shown}"
+
+
+def test_values_of_the_inside_are_scaled_to_the_unit_behind_them() -> None:
+    assert slips(unscaled) == []

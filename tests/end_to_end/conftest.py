@@ -25,6 +25,11 @@ def _figures_unrendered(unrendered: None) -> None:
 
 
 @pytest.fixture(scope="module", autouse=True)
+def _texts_read_back(texts_read_back: None) -> None:
+    """Hold the numbers in the texts of every result against its document."""
+
+
+@pytest.fixture(scope="module", autouse=True)
 def _modes_solved_once(modes_solved_once: None) -> None:
     """Modes of a housing that another test of this process has solved are not solved again."""
 

@@ -16,3 +16,8 @@ def _periodic_motions_found_once(periodic_motions_found_once: None) -> None:
 @pytest.fixture(scope="module", autouse=True)
 def _figures_unrendered(unrendered: None) -> None:
     """Render no figures, but in a module marked ``rendered``."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _texts_read_back(texts_read_back: None) -> None:
+    """Hold the numbers in the texts of every result against its document."""

@@ -1,8 +1,7 @@
 """Units of declared quantities and columns: the key's unit, that of the file and that of the heading are one.
 
 A key says its unit, ``force_n``; the file's unit is that or said beside it, and a heading has a unit, with a factor to
-it that follows from both or is said. The table of units here is this test's own. What is declared in functions is read
-too: the calls are taken from the source.
+it that follows from both or is said. What is declared in functions is read too: the calls are taken from the source.
 """
 
 import ast
@@ -13,70 +12,13 @@ from types import ModuleType
 from typing import NamedTuple
 
 import pytest
+from shown_units import SHOWN, dimension_of
 
 import gearwhine.results as results
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.output.quantity import factor_of, unit_of
 from gearwhine.results.line_columns import MECHANISMS as WORDS
 
-_PI = 3.141592653589793
-# Unit as it is shown: its dimension, and how many of SI's units it is.
-SHOWN = {
-    "m": ("m", 1.0),
-    "mm": ("m", 1e-3),
-    "µm": ("m", 1e-6),
-    "nm": ("m", 1e-9),
-    "mm²": ("m2", 1e-6),
-    "m²": ("m2", 1.0),
-    "N": ("N", 1.0),
-    "kN": ("N", 1e3),
-    "N m": ("N m", 1.0),
-    "N·m": ("N m", 1.0),
-    "N/mm": ("N/m", 1e3),
-    "N/µm": ("N/m", 1e6),
-    "N/m": ("N/m", 1.0),
-    "µrad": ("rad", 1e-6),
-    "mrad": ("rad", 1e-3),
-    "rad": ("rad", 1.0),
-    "°": ("rad", _PI / 180.0),
-    "Hz": ("Hz", 1.0),
-    "rpm": ("rpm", 1.0),
-    "krpm": ("rpm", 1e3),
-    "Pa": ("Pa", 1.0),
-    "MPa": ("Pa", 1e6),
-    "GPa": ("Pa", 1e9),
-    "kg": ("kg", 1.0),
-    "s": ("s", 1.0),
-    "ms": ("s", 1e-3),
-    "h": ("h", 1.0),
-    "W": ("W", 1.0),
-    "m/s²": ("m/s2", 1.0),
-    "m/s": ("m/s", 1.0),
-    "dB": ("dB", 1.0),
-    "%": ("%", 1.0),
-    "‰": ("%", 0.1),
-}
-# End of a key: the dimension of its value, which is in SI's unit, or in turns a minute, hours, decibels.
-ENDS = {
-    "_m_per_s2": "m/s2",
-    "_m_per_s": "m/s",
-    "_n_per_m": "N/m",
-    "_n_m": "N m",
-    "_kg": "kg",
-    "_rad": "rad",
-    "_hz": "Hz",
-    "_rpm": "rpm",
-    "_pa": "Pa",
-    "_n": "N",
-    "_m": "m",
-    "_m2": "m2",
-    "_s": "s",
-    "_h": "h",
-    "_w": "W",
-    "_db": "dB",
-    "_db_a": "dB",
-    "_percent": "percent",
-}
 _WITHIN = {"harmonics", "mean", "maximum", "peak", "peak_of_tooth_pair"}
 """Keys within another that says their unit: of ``transmission_error_m`` and ``line_load_n_per_m``."""
 
@@ -128,15 +70,6 @@ def declared(module: ModuleType) -> Iterator[Declared]:
             yield Declared(where, key, name, "" if through else heading, unit, scale, "document" in given)
 
 
-def dimension_of(key: str) -> str | None:
-    """Dimension that the end of a key says, the last of its steps that says one."""
-    for step in reversed(key.split(".")):
-        for end in sorted(ENDS, key=len, reverse=True):
-            if step.endswith(end):
-                return ENDS[end]
-    return None
-
-
 MODULES = sorted(path.stem for path in Path(results.__path__[0]).glob("[a-z]*.py"))
 DECLARED = [one for name in MODULES for one in declared(importlib.import_module(f"gearwhine.results.{name}"))]
 
@@ -173,6 +106,10 @@ NAMES = {
     "rotation": {"rad"},
     "pressure": {"Pa"},
     "power": {"W"},
+    "angle": {"rad"},
+    "length": {"m"},
+    "mass": {"kg"},
+    "acceleration": {"m/s2"},
     "period": {"s"},
     "time": {"s"},
     "level": {"dB"},

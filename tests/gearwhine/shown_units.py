@@ -1,0 +1,71 @@
+"""Units as texts, tables and keys show them, with their dimensions: the tests' own table."""
+
+import math
+
+SHOWN = {
+    "m": ("m", 1.0),
+    "mm": ("m", 1e-3),
+    "µm": ("m", 1e-6),
+    "nm": ("m", 1e-9),
+    "mm²": ("m2", 1e-6),
+    "m²": ("m2", 1.0),
+    "N": ("N", 1.0),
+    "kN": ("N", 1e3),
+    "N m": ("N m", 1.0),
+    "N·m": ("N m", 1.0),
+    "N/mm": ("N/m", 1e3),
+    "N/µm": ("N/m", 1e6),
+    "N/m": ("N/m", 1.0),
+    "µrad": ("rad", 1e-6),
+    "mrad": ("rad", 1e-3),
+    "rad": ("rad", 1.0),
+    "°": ("rad", math.pi / 180.0),
+    "Hz": ("Hz", 1.0),
+    "rpm": ("rpm", 1.0),
+    "krpm": ("rpm", 1e3),
+    "Pa": ("Pa", 1.0),
+    "MPa": ("Pa", 1e6),
+    "GPa": ("Pa", 1e9),
+    "kg": ("kg", 1.0),
+    "s": ("s", 1.0),
+    "ms": ("s", 1e-3),
+    "h": ("h", 1.0),
+    "W": ("W", 1.0),
+    "m/s²": ("m/s2", 1.0),
+    "m/s": ("m/s", 1.0),
+    "dB": ("dB", 1.0),
+    "%": ("%", 1.0),
+    "‰": ("%", 0.1),
+}
+"""Unit as it is shown: its dimension, and how many of SI's units it is."""
+
+ENDS = {
+    "_m_per_s2": "m/s2",
+    "_m_per_s": "m/s",
+    "_n_per_m": "N/m",
+    "_n_m": "N m",
+    "_kg": "kg",
+    "_rad": "rad",
+    "_hz": "Hz",
+    "_rpm": "rpm",
+    "_pa": "Pa",
+    "_n": "N",
+    "_m": "m",
+    "_m2": "m2",
+    "_s": "s",
+    "_h": "h",
+    "_w": "W",
+    "_db": "dB",
+    "_db_a": "dB",
+    "_percent": "percent",
+}
+"""End of a key: the dimension of its value, which is in SI's unit, or in turns a minute, hours, decibels."""
+
+
+def dimension_of(key: str) -> str | None:
+    """Dimension that the end of a key says, the last of its steps that says one."""
+    for step in reversed(key.split(".")):
+        for end in sorted(ENDS, key=len, reverse=True):
+            if step.endswith(end):
+                return ENDS[end]
+    return None
