@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.connectors import NonlinearConnector
-from gearwhine.rotors.rolling_bearings import BallRow, spall_contacts
+from gearwhine.rotors.rolling_bearings import BallRow, pressed_azimuth, spall_contacts
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -315,7 +315,7 @@ def _rows(law: BearingLaw, speed: float, holder_speed: float) -> Iterator[Row]:
         return
     bearing = law.state.bearing
     for number, row in enumerate(bearing.rows):
-        cage = law.cage_angle, row.cage_speed(speed) + holder_speed
+        cage = pressed_azimuth(row, law.cage_angle), row.cage_speed(speed) + holder_speed
         of_row = [spall for spall in law.spalls if spall.row == number]
         contacts = [one for spall in of_row for one in spall_contacts(spall, bearing, speed)]
         # Raceways turn with what holds their ring; an element spins by the speed between the rings.

@@ -26,6 +26,7 @@ from gearwhine.case.fields import (
     Mass,
     Name,
     OverSpeed,
+    PlanetNumber,
     PositiveLength,
     PositiveStiffness,
     Quantity,
@@ -33,6 +34,7 @@ from gearwhine.case.fields import (
     Stiffness,
     Table,
     Whole,
+    one_of_planets,
     wrong,
 )
 from gearwhine.case.units import Dimension
@@ -688,7 +690,8 @@ class BearingFault(Table):
     """Depth of the floor, which no element drops beyond."""
     azimuth: Annotated[float, Quantity(units.ANGLE)] = 0.0
     """Azimuth of the middle at the start: on a ring from x towards y, on an element from its line to the inner
-    raceway."""
+    raceway. On a ring of a planet that a `[[planetary]]` mounts `count` times it is that at the first one, and turned
+    with the others."""
     row: Annotated[int, Whole(0, 7)] = 0
     """Number of the row of elements, from 0."""
     element: Annotated[int, Whole(0, 999)] = 0
@@ -696,6 +699,9 @@ class BearingFault(Table):
     width: PositiveLength | None = None
     """Width across the rolling direction, in the middle of rollers. Default: all of their length; of balls that of
     their contact."""
+    planet: PlanetNumber | None = None
+    """Number from 1 of the one planet with the fault, of a bearing that a `[[planetary]]` mounts `count` times.
+    Default: all planets have it."""
 
     @model_validator(mode="after")
     def _of_its_part(self) -> BearingFault:
@@ -707,7 +713,7 @@ class BearingFault(Table):
         """Build the spall."""
         from gearwhine.rotors.rolling_bearings import RollingSpall
 
-        return RollingSpall(**{key: getattr(self, key) for key in type(self).model_fields})
+        return RollingSpall(**{key: getattr(self, key) for key in type(self).model_fields if key != "planet"})
 
 
 class StopStiffness(Table):
@@ -804,6 +810,9 @@ class Bearing(Table):
         by_elements = isinstance(self.stiffness, RollingStiffness) and self.stiffness.rolling.law == "nonlinear"
         if self.fault and not by_elements:
             raise wrong('none, or rolling = { …, law = "nonlinear" }, which follows every element', "fault")
+        for number, fault in enumerate(self.fault):
+            if fault.planet is not None:
+                raise wrong(one_of_planets("bearing"), "fault", number, "planet")
         return self
 
     @property

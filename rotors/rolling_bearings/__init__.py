@@ -27,6 +27,7 @@ from gearwhine.rotors.rolling_bearings.frequencies import (
     CharacteristicFrequencies,
     characteristic_frequencies,
     frequencies_in_seat,
+    pressed_azimuth,
 )
 from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity, point_contact
 from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
@@ -65,6 +66,7 @@ __all__ = [
     "paired",
     "point_contact",
     "preload_offset",
+    "pressed_azimuth",
     "rolling_equilibrium",
     "rolling_state",
     "spall_contacts",

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from gearwhine.rotors.errors import require, require_finite
-from gearwhine.rotors.rolling_bearings.frequencies import frequencies_in_seat
+from gearwhine.rotors.rolling_bearings.frequencies import frequencies_in_seat, pressed_azimuth
 from gearwhine.rotors.rolling_bearings.ratings import Row
 from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing
@@ -96,8 +96,9 @@ class SpallContact:
     element : int
         Number of the damaged element; -1 of a raceway, which all elements pass.
     azimuth, rate : float
-        Angle of the spall at t = 0 [rad], and its rate [rad/s]: against the seat; of an element against its line to
-        the raceway.
+        Angle of the spall at t = 0 [rad], and its rate [rad/s]: against the seat, by
+        :func:`gearwhine.rotors.rolling_bearings.frequencies.pressed_azimuth`; of an element against its line to the
+        raceway.
     half : float
         Half the angle of the spall [rad].
     damaged, other : float
@@ -167,8 +168,8 @@ def spall_contacts(spall: RollingSpall, bearing: RollingBearing, speed: float) -
     half = 0.5 * spall.length / contact
     if spall.on != "element":
         rate = speed if (spall.on == "outer") == row.outer_turns else 0.0
-        damaged = curvature[spall.on]
-        return (SpallContact(-1, spall.azimuth, rate, half, damaged, radius, cosine, spall.depth, share),)
+        damaged, azimuth = curvature[spall.on], pressed_azimuth(row, spall.azimuth)
+        return (SpallContact(-1, azimuth, rate, half, damaged, radius, cosine, spall.depth, share),)
     spin, depth = frequencies_in_seat(row, speed).spin, spall.depth
     return tuple(
         SpallContact(spall.element, spall.azimuth + turned, spin, half, radius, curvature[ring], 1.0, depth, share)
