@@ -21,6 +21,7 @@ from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.machine.mounted_parts import GearMesh
 
 _TWO_PI = 2.0 * math.pi
+_WIDEST = 0.25  # half-width of a line over the distance to the next multiple
 _STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line
 _Steps = Sequence[tuple[str, float, float]]
 """Causes of a sideband: name, order of its frequency, signed number of the sideband."""
@@ -41,12 +42,15 @@ class ExcitationLine:
         Frequency over the speed of the leading rotor, positive.
     steps : int
         Number of a sideband, of one by two causes the sum of both numbers; 0 of other lines.
+    half_width : float
+        Half-width of a line that slip makes wide, over the speed of the leading rotor.
     """
 
     name: str
     kind: Literal["shaft", "mesh", "sideband", "bearing", "load"]
     order: float
     steps: float = 0
+    half_width: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -179,15 +183,18 @@ def _with_sidebands(
     order: float,
     harmonics: Sequence[int],
     sidebands: Sequence[_Steps],
+    half_width: float = 0.0,
 ) -> Iterator[ExcitationLine]:
-    """Yield the harmonics of an excitation by its order, with their sidebands."""
+    """Yield the harmonics of an excitation by its order, with their sidebands; the first is as wide as is given."""
     for harmonic in harmonics:
-        yield ExcitationLine(f"{harmonic}× {name}", kind, harmonic * order)
+        # Multiples that run into each other are no lines.
+        width = harmonic**2 * half_width if harmonic**2 * half_width < _WIDEST * order else 0.0
+        yield ExcitationLine(f"{harmonic}× {name}", kind, harmonic * order, half_width=width)
         for steps in sidebands:
             # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
             beside = abs(harmonic * order + sum(number * ratio for _, ratio, number in steps))
             if beside > _STANDSTILL * order:
-                yield ExcitationLine(f"{harmonic}× {name} {_in_words(steps)}", "sideband", beside, _count(steps))
+                yield ExcitationLine(f"{harmonic}× {name} {_in_words(steps)}", "sideband", beside, _count(steps), width)
 
 
 def _bearing_lines(
@@ -217,8 +224,14 @@ def _bearing_lines(
             [(strikes.turning, turn, number)] for number in (_signed(sidebands) if strikes.turning else ())
         ]
         steps = _joined_steps(carried, by_turning, sidebands)
+        per_hz = _TWO_PI / leading
         yield from _with_sidebands(
-            strikes.name, "bearing", strikes.frequency * _TWO_PI / leading, element_passes, steps
+            strikes.name,
+            "bearing",
+            strikes.frequency * per_hz,
+            element_passes,
+            steps,
+            strikes.half_width * per_hz,
         )
 
 

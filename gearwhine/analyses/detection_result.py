@@ -31,7 +31,7 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.results.detection import DETECTION, detection_document
-from gearwhine.rotors.rolling_bearings import RollingSpall
+from gearwhine.rotors.rolling_bearings import BearingDamage
 from gearwhine.solve.machine import plan_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
@@ -66,7 +66,7 @@ class PlannedDetection:
         Change that makes a healthy gearbox.
     gear : str
     monitor : Monitor
-    spall : (str, RollingSpall) or None
+    spall : (str, BearingDamage) or None
         Name of the bearing, and its spall, where that is the fault.
     """
 
@@ -79,7 +79,7 @@ class PlannedDetection:
     without: str
     gear: str
     monitor: Monitor
-    spall: tuple[str, RollingSpall] | None = None
+    spall: tuple[str, BearingDamage] | None = None
 
 
 def plan_detection(source: CaseSource) -> PlannedDetection:
@@ -280,7 +280,7 @@ def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
 
 def _spall(
     document: Mapping[str, Any], bearings: Sequence[Bearing], settings: Detection
-) -> tuple[Bearing | None, RollingSpall | None]:
+) -> tuple[Bearing | None, BearingDamage | None]:
     """Return the bearing whose spall is the fault, with that; twice None where it is another fault.
 
     Of planets that are made of one it is the bearing of the first, which has the speed of all.

@@ -20,7 +20,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors.rolling_bearings import RollingSpall
+from gearwhine.rotors.rolling_bearings import BearingDamage
 from gearwhine.solve.machine import plan_of
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Outcome, VariedCase, outcome_of
@@ -49,7 +49,7 @@ class DetectionCase:
         Sizes as the case writes them, by their value in SI.
     gear : str
         Gear by whose shaft signals are averaged.
-    spall : (str, RollingSpall) or None
+    spall : (str, BearingDamage) or None
         Name of the bearing, and its spall, where that is the fault.
     is_averaged : bool
         Whether an indicator takes the average over the turns of the gear's shaft, which those of planetary sets have
@@ -61,7 +61,7 @@ class DetectionCase:
     without: str
     written: dict[float, str]
     gear: str
-    spall: tuple[str, RollingSpall] | None = None
+    spall: tuple[str, BearingDamage] | None = None
     is_averaged: bool = True
 
     def case(self, point: FloatArray) -> Case:
@@ -113,7 +113,7 @@ class DetectionCase:
             mounted = next(one for one in machine.bearings if one.bearing.name == name)
             if mounted.elements is not None:
                 row = mounted.elements.rows[spall.row]
-                numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted)) / (2.0 * np.pi)
+                numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted), mounted.slip) / (2.0 * np.pi)
         numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
         curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}
         if self.is_averaged:

@@ -34,13 +34,25 @@ from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, stati
 from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
 from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
-from gearwhine.rotors.rolling_bearings.spalls import RollingSpall, SpallContact, spall_contacts
+from gearwhine.rotors.rolling_bearings.slip import NO_SLIP, CageSlip
+from gearwhine.rotors.rolling_bearings.spalls import (
+    BearingDamage,
+    CageFault,
+    RollingSpall,
+    SpallContact,
+    require_possible,
+    spall_contacts,
+)
 
 __all__ = [
     "COORDINATES",
+    "NO_SLIP",
     "ROLLING_DAMPING_TIME",
     "STEEL",
     "BallRow",
+    "BearingDamage",
+    "CageFault",
+    "CageSlip",
     "CharacteristicFrequencies",
     "ContactElasticity",
     "ElementLoads",
@@ -67,6 +79,7 @@ __all__ = [
     "point_contact",
     "preload_offset",
     "pressed_azimuth",
+    "require_possible",
     "rolling_equilibrium",
     "rolling_state",
     "spall_contacts",
