@@ -11,6 +11,7 @@ planet, whose axis turns, nor of the gears that mesh with planets.
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import get_args
 
 import numpy as np
 
@@ -20,7 +21,8 @@ from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.signals.condition_indicators import synchronous_average
 from gearwhine.coupling.signals.decimation import Decimation, decimation
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors.rolling_bearings import frequencies_in_seat
+from gearwhine.rotors.rolling_bearings import CageFault, RollingSpall
+from gearwhine.rotors.rolling_bearings.spalls import Place
 
 LEAST_TURNS = 4
 """Fewest turns of a shaft that are averaged."""
@@ -102,7 +104,7 @@ class ConditionRecord:
 def bearing_tones(machine: Machine) -> dict[str, float]:
     """Characteristic frequencies of the rolling bearings of a machine [Hz], by "bearing: outer raceway" and the like.
 
-    Of the first row of each; those of raceways and elements, as the cage is no place of damage.
+    Of the first row of each; those of raceways and elements, and of cages that are damaged.
     """
     return dict(_bearing_tones(machine))
 
@@ -111,10 +113,18 @@ def _bearing_tones(machine: Machine) -> Iterator[tuple[str, float]]:
     for mounted in machine.bearings:
         if mounted.elements is None:
             continue
-        found = frequencies_in_seat(mounted.elements.rows[0], machine.bearing_speed(mounted)).named()
-        for name in ("outer raceway", "inner raceway", "rolling element"):
-            if found[name] > 0.0:
-                yield f"{mounted.bearing.name}: {name}", found[name] / _TWO_PI
+        row, speed = mounted.elements.rows[0], machine.bearing_speed(mounted)
+        for place in get_args(Place):
+            spall = RollingSpall(place, 1.0, 1.0)
+            if (tone := spall.tone(row, speed, mounted.slip)) > 0.0:
+                yield f"{mounted.bearing.name}: {spall.part}", tone / _TWO_PI
+        faults = dict.fromkeys(fault.row for fault in mounted.spalls if isinstance(fault, CageFault))
+        for number in faults:
+            cage = CageFault(1.0, number)
+            yield (
+                f"{mounted.bearing.name}: cage",
+                cage.tone(mounted.elements.rows[number], speed, mounted.slip) / _TWO_PI,
+            )
 
 
 def condition_record(transient: SolvedTransient, tones_hz: Mapping[str, float] | None = None) -> ConditionRecord:

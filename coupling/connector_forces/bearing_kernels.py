@@ -35,8 +35,32 @@ _SEATING_STEPS = 100
 
 
 @inner()
+def _rolled(bearings: Bearings, row: int, nominal_time: float) -> tuple[float, float]:
+    """Time for which a cage has rolled, and its rate by the nominal time: 1 but for the scatter of its slip."""
+    step = bearings.slip_step[row]
+    if step == 0.0:
+        return nominal_time, 1.0
+    passes = bearings.slipped.shape[1] - 1
+    place = nominal_time / step
+    number = math.floor(place)
+    rounds = math.floor(number / passes)
+    within = int(number - rounds * passes)
+    before, after = bearings.slipped[row, within], bearings.slipped[row, within + 1]
+    beyond = rounds * bearings.slipped[row, passes] + before + (place - number) * (after - before)
+    return nominal_time + beyond, 1.0 + (after - before) / step
+
+
+@inner()
 def _drop(
-    bearings: Bearings, row: int, element: int, azimuth: float, nominal_time: float, place: float
+    bearings: Bearings,
+    row: int,
+    element: int,
+    azimuth: float,
+    cage_rate: float,
+    nominal_time: float,
+    rolled: float,
+    rolling: float,
+    place: float,
 ) -> tuple[float, float]:
     """Drop of an element at an azimuth into the spalls of its row [m], and its rate by the nominal time [m/s].
 
@@ -45,10 +69,11 @@ def _drop(
     total, rate = 0.0, 0.0
     for number in range(bearings.first_spall[row], bearings.first_spall[row + 1]):
         spall = bearings.spalls[number]
-        angle, turning = spall[1] + spall[2] * nominal_time, spall[2]
         if spall[0] < 0.0:
-            angle, turning = azimuth - angle, bearings.cage[row, 1] - turning
-        elif spall[0] != element:
+            angle, turning = azimuth - spall[1] - spall[2] * nominal_time, cage_rate - spall[2]
+        elif spall[0] == element:
+            angle, turning = spall[1] + spall[2] * rolled, spall[2] * rolling
+        else:
             continue
         angle -= 2.0 * math.pi * math.floor(0.5 * angle / math.pi + 0.5)
         inside = spall[3] - abs(angle)
@@ -72,13 +97,14 @@ def _balls(
     bearings: Bearings, row: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
     """Add the forces and tangent of a row of balls; returns its energy [J] and its slope by the nominal time [J/s]."""
-    shape, count, cage_rate = bearings.shape[row], bearings.elements[row], bearings.cage[row, 1]
-    angle = bearings.cage[row, 0] + cage_rate * nominal_time
+    shape, count, cage = bearings.shape[row], bearings.elements[row], bearings.cage[row]
+    rolled, rolling = _rolled(bearings, row, nominal_time)
+    angle, cage_rate = cage[0] + cage[1] * rolled + cage[2] * nominal_time, cage[1] * rolling + cage[2]
     distance, start_r, start_z, before = shape[0], shape[1], shape[2], shape[3]
     reach, place, stiffness = shape[4], shape[5], shape[6]
     energy, slope = 0.0, 0.0
     for ball in range(count):
-        azimuth = angle + 2.0 * math.pi * ball / count
+        azimuth = angle + 2.0 * math.pi * ball / count + bearings.spacing[row, ball]
         c, s = math.cos(azimuth), math.sin(azimuth)
         tilt, swing = q[4] * c - q[3] * s, -q[4] * s - q[3] * c
         moved_r, moved_z = q[0] * c + q[1] * s + place * tilt, q[2] - reach * tilt
@@ -86,7 +112,7 @@ def _balls(
         length = math.sqrt(v_r * v_r + v_z * v_z)
         # |v|² - A² by its terms: |v| - A itself would lose the digits that A has and the approach has not.
         excess = before + 2.0 * (moved_r * start_r + moved_z * start_z) + moved_r * moved_r + moved_z * moved_z
-        drop, drop_rate = _drop(bearings, row, ball, azimuth, nominal_time, 0.0)
+        drop, drop_rate = _drop(bearings, row, ball, azimuth, cage_rate, nominal_time, rolled, rolling, 0.0)
         deep = excess / (length + distance) - drop
         if deep <= 0.0:
             continue
@@ -113,28 +139,31 @@ def _rollers(
     bearings: Bearings, row: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
     """Add the forces and tangent of a row of rollers in slices (n, 2): arm of the normal, gap of the profile."""
-    shape, slices, count, cage_rate = (
+    shape, slices, count, cage = (
         bearings.shape[row],
         bearings.slices[row],
         bearings.elements[row],
-        bearings.cage[row, 1],
+        bearings.cage[row],
     )
-    angle = bearings.cage[row, 0] + cage_rate * nominal_time
+    rolled, rolling = _rolled(bearings, row, nominal_time)
+    angle, cage_rate = cage[0] + cage[1] * rolled + cage[2] * nominal_time, cage[1] * rolling + cage[2]
     free, stiffness, number, across, along = shape[0], shape[1], int(shape[2]), shape[3], shape[4]
     energy, slope = 0.0, 0.0
     for roller in range(count):
-        azimuth = angle + 2.0 * math.pi * roller / count
+        azimuth = angle + 2.0 * math.pi * roller / count + bearings.spacing[row, roller]
         c, s = math.cos(azimuth), math.sin(azimuth)
         level, tilt = across * (q[0] * c + q[1] * s) + along * q[2] + free, q[4] * c - q[3] * s
         level_slope, tilt_slope = across * (q[1] * c - q[0] * s), -q[4] * s - q[3] * c
         load, moment, k, k_place, k_square = 0.0, 0.0, 0.0, 0.0, 0.0
         # All spalls are in the middle: where it has no drop no slice has one.
-        dropped = _drop(bearings, row, roller, azimuth, nominal_time, 0.0)[0] > 0.0
+        dropped = _drop(bearings, row, roller, azimuth, cage_rate, nominal_time, rolled, rolling, 0.0)[0] > 0.0
         for slice_number in range(number):
             place, drop, drop_rate = slices[slice_number, 0], 0.0, 0.0
             if dropped:
                 along_roller = (2.0 * slice_number + 1.0 - number) / number
-                drop, drop_rate = _drop(bearings, row, roller, azimuth, nominal_time, along_roller)
+                drop, drop_rate = _drop(
+                    bearings, row, roller, azimuth, cage_rate, nominal_time, rolled, rolling, along_roller
+                )
             deep = level + place * tilt - slices[slice_number, 1] - drop
             if deep <= 0.0:
                 continue

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.connectors import NonlinearConnector
-from gearwhine.rotors.rolling_bearings import BallRow, spall_contacts
+from gearwhine.rotors.rolling_bearings import BallRow, CageFault, pressed_azimuth, spall_contacts
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -37,7 +37,21 @@ IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
 BEARING_ENERGY, BEARING_POWER = (0, 0), (0, 1)
 
 _SHAPE = 7
-Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray, list[tuple[float, ...]]]
+_NO_SLICES = np.zeros((0, 2))
+
+
+class _Row(NamedTuple):
+    """Row of a law, before it is put with others: see the fields of `Bearings`."""
+
+    kind: int
+    elements: int
+    shape: tuple[float, ...]
+    cage: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    slices: FloatArray = _NO_SLICES
+    spalls: Sequence[tuple[float, ...]] = ()
+    slip_step: float = 0.0
+    slipped: FloatArray = np.zeros(1)
+    spacing: FloatArray = np.zeros(0)
 
 
 class Dynamics(NamedTuple):
@@ -144,7 +158,10 @@ class Bearings(NamedTuple):
     kind: IntArray  # (w,) BALLS, ROLLERS or GAP
     elements: IntArray  # (w,) number of rolling elements
     shape: FloatArray  # (w, 7) geometry and stiffness, by the kind
-    cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the nominal time
+    cage: FloatArray  # (w, 3) azimuth of the first element, rate by the time rolled, and that of the seat
+    slip_step: FloatArray  # (w,) nominal time between the passing of elements; 0 of a cage whose slip does not scatter
+    slipped: FloatArray  # (w, n + 1) time rolled at these beyond the nominal one, which returns after the last
+    spacing: FloatArray  # (w, z) azimuth by which each element is ahead of its place
     slices: FloatArray  # (w, slices, 2) place and gap of the slices of rollers
     first_spall: IntArray  # (w + 1,)
     spalls: FloatArray  # (f, 9) contacts with the spalls of the rows: `gearwhine.rotors.rolling_bearings.SpallContact`
@@ -269,7 +286,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
     b = len(connectors)
     linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
     floating = np.zeros(b, dtype=np.bool_)
-    rows: list[Row] = []
+    rows: list[_Row] = []
     first, first_row = [0], [0]
     for number, connector in enumerate(connectors):
         d = len(connector.axes)
@@ -278,16 +295,18 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         if isinstance(connector.law, RollingLaw):
             preload[number] = connector.law.state.bearing.axial_preload
             floating[number] = connector.law.state.bearing.floating
-        rows += _rows(connector.law, connector.speed, connector.holder_speed)
+        rows += _rows(connector.law, connector.name, connector.speed, connector.holder_speed)
         first.append(first[-1] + d)
         first_row.append(len(rows))
-    shape, slices = (
-        np.zeros((len(rows), _SHAPE)),
-        np.zeros((len(rows), max((len(row[4]) for row in rows), default=0), 2)),
-    )
+    shape = np.zeros((len(rows), _SHAPE))
+    slices = np.zeros((len(rows), max((len(row.slices) for row in rows), default=0), 2))
+    slipped = np.zeros((len(rows), max((len(row.slipped) for row in rows), default=1)))
+    spacing = np.zeros((len(rows), max((len(row.spacing) for row in rows), default=0)))
     for at, row in enumerate(rows):
-        shape[at, : len(row[2])] = row[2]
-        slices[at, : len(row[4])] = row[4]
+        shape[at, : len(row.shape)] = row.shape
+        slices[at, : len(row.slices)] = row.slices
+        slipped[at, : len(row.slipped)] = row.slipped
+        spacing[at, : len(row.spacing)] = row.spacing
     return Bearings(
         axis=np.array([axis for connector in connectors for axis in connector.axes], dtype=np.int64),
         first=np.array(first, dtype=np.int64),
@@ -297,42 +316,49 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         preload=preload,
         floating=floating,
         first_row=np.array(first_row, dtype=np.int64),
-        kind=np.array([row[0] for row in rows], dtype=np.int64),
-        elements=np.array([row[1] for row in rows], dtype=np.int64),
+        kind=np.array([row.kind for row in rows], dtype=np.int64),
+        elements=np.array([row.elements for row in rows], dtype=np.int64),
         shape=shape,
-        cage=np.array([row[3] for row in rows], dtype=np.float64).reshape(-1, 2),
+        cage=np.array([row.cage for row in rows], dtype=np.float64).reshape(-1, 3),
+        slip_step=np.array([row.slip_step for row in rows], dtype=np.float64),
+        slipped=slipped,
+        spacing=spacing,
         slices=slices,
-        first_spall=np.cumsum([0, *(len(row[5]) for row in rows)]),
-        spalls=np.array([spall for row in rows for spall in row[5]], dtype=np.float64).reshape(-1, 9),
+        first_spall=np.cumsum([0, *(len(row.spalls) for row in rows)]),
+        spalls=np.array([spall for row in rows for spall in row.spalls], dtype=np.float64).reshape(-1, 9),
     )
 
 
-def _rows(law: BearingLaw, speed: float, holder_speed: float) -> Iterator[Row]:
-    """Kind, count, numbers, cage, slices and spalls of every row of a law."""
-    none = np.zeros((0, 2))
+def _rows(law: BearingLaw, name: str, speed: float, holder_speed: float) -> Iterator[_Row]:
+    """Yield the rows of a law."""
     if isinstance(law, GapLaw):
-        yield GAP, 0, (law.force, law.depth, law.exponent, law.gap), (0.0, 0.0), none, []
+        yield _Row(GAP, 0, (law.force, law.depth, law.exponent, law.gap))
         return
-    bearing = law.state.bearing
+    bearing, rolling = law.state.bearing, 1.0 - law.slip.mean
     for number, row in enumerate(bearing.rows):
-        cage = law.cage_angle, row.cage_speed(speed) + holder_speed
-        of_row = [spall for spall in law.spalls if spall.row == number]
-        contacts = [one for spall in of_row for one in spall_contacts(spall, bearing, speed)]
-        # Raceways turn with what holds their ring; an element spins by the speed between the rings.
-        carried = [one if one.element >= 0 else replace(one, rate=one.rate + holder_speed) for one in contacts]
-        spalls = [tuple(map(float, astuple(one))) for one in carried]
+        rate = rolling * row.cage_speed(speed)
+        step = 2.0 * math.pi / (row.count * abs(rate)) if law.slip.scatter > 0.0 and rate != 0.0 else 0.0
+        spacing, spalls = np.zeros(row.count), list[tuple[float, ...]]()
+        for fault in law.spalls:
+            if fault.row != number:
+                continue
+            if isinstance(fault, CageFault):
+                spacing[fault.element] += fault.shift(bearing)
+                continue
+            for one in spall_contacts(fault, bearing, speed):
+                # Raceways turn with what holds their ring; an element spins by the speed between the rings.
+                turned = one.rate + holder_speed if one.element < 0 else rolling * one.rate
+                spalls.append(tuple(map(float, astuple(replace(one, rate=turned)))))
         if isinstance(row, BallRow):
-            yield BALLS, row.count, _ball_shape(row), cage, none, spalls
+            kind, shape, slices = BALLS, _ball_shape(row), _NO_SLICES
         else:
-            angle = row.contact_angle
-            shape = (
-                row.free_approach,
-                row.stiffness / row.slices,
-                float(row.slices),
-                math.cos(angle),
-                row.direction * math.sin(angle),
-            )
-            yield ROLLERS, row.count, shape, cage, np.column_stack([row.tilt_arms, 2.0 * row.slice_drops]), spalls
+            cosine, sine = math.cos(row.contact_angle), row.direction * math.sin(row.contact_angle)
+            kind, shape = ROLLERS, (row.free_approach, row.stiffness / row.slices, float(row.slices), cosine, sine)
+            slices = np.column_stack([row.tilt_arms, 2.0 * row.slice_drops])
+        cage = pressed_azimuth(row, law.cage_angle), rate, holder_speed
+        yield _Row(
+            kind, row.count, shape, cage, slices, spalls, step, step * law.slip.deviations(name, number), spacing
+        )
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:

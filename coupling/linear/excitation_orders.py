@@ -9,7 +9,6 @@ m f_mesh ± k (f_s - f_c) ± n f_c (Feng & Zuo, J. Sound Vib. 331 (2012) 4919, f
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import Literal
 
 from gearwhine.coupling.assembly import CoupledMachine
@@ -22,6 +21,7 @@ from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.machine.mounted_parts import GearMesh
 
 _TWO_PI = 2.0 * math.pi
+_WIDEST = 0.25  # half-width of a line over the distance to the next multiple
 _STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line
 _Steps = Sequence[tuple[str, float, float]]
 """Causes of a sideband: name, order of its frequency, signed number of the sideband."""
@@ -42,12 +42,15 @@ class ExcitationLine:
         Frequency over the speed of the leading rotor, positive.
     steps : int
         Number of a sideband, of one by two causes the sum of both numbers; 0 of other lines.
+    half_width : float
+        Half-width of a line that slip makes wide, over the speed of the leading rotor.
     """
 
     name: str
     kind: Literal["shaft", "mesh", "sideband", "bearing", "load"]
     order: float
     steps: float = 0
+    half_width: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -143,12 +146,10 @@ def excitation_lines(
         passing = by_turning
         if by_carriers is None and frame != 0.0 and mesh.carrier is not None:
             passing = [[(mesh.carrier, abs(frame) / leading, number)] for number in _signed(sidebands)]
-        both = [] if excited is None else [[*of_gear, *by] for of_gear in of_gears for by in passing]
-        farthest = max([sidebands, *(_count(by) for by in by_turning)])
-        steps = [*passing, *of_gears, *(of for of in both if _count(of) <= farthest)]
+        steps = [*passing, *of_gears] if excited is None else _joined_steps(of_gears, passing, sidebands)
         teeth = abs(mesh.geometry.driver.teeth) * turns[mesh.driver.rotor]
-        lines += _mesh_lines(mesh.name, teeth, mesh_harmonics, steps)
-    lines += _bearing_lines(machine, leading, element_passes, sidebands)
+        lines += _with_sidebands(mesh.name, "mesh", teeth, mesh_harmonics, steps)
+    lines += _bearing_lines(machine, leading, element_passes, sidebands, by_turning)
     return tuple(lines)
 
 
@@ -176,43 +177,69 @@ def _carrier_lines(by_turning: Sequence[_Steps]) -> Iterator[ExcitationLine]:
             yield ExcitationLine(_in_words(steps).removeprefix("+ "), "shaft", order)
 
 
-def _mesh_lines(
-    name: str, teeth: float, harmonics: Sequence[int], sidebands: Sequence[_Steps]
+def _with_sidebands(
+    name: str,
+    kind: Literal["mesh", "bearing"],
+    order: float,
+    harmonics: Sequence[int],
+    sidebands: Sequence[_Steps],
+    half_width: float = 0.0,
 ) -> Iterator[ExcitationLine]:
-    """Yield the harmonics of a mesh, ``teeth`` of which pass in a turn of the leading rotor, with their sidebands."""
+    """Yield the harmonics of an excitation by its order, with their sidebands; the first is as wide as is given."""
     for harmonic in harmonics:
-        yield ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth)
+        # Multiples that run into each other are no lines.
+        width = harmonic**2 * half_width if harmonic**2 * half_width < _WIDEST * order else 0.0
+        yield ExcitationLine(f"{harmonic}× {name}", kind, harmonic * order, half_width=width)
         for steps in sidebands:
             # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
-            order = abs(harmonic * teeth + sum(number * ratio for _, ratio, number in steps))
-            if order > _STANDSTILL * teeth:
-                yield ExcitationLine(f"{harmonic}× {name} {_in_words(steps)}", "sideband", order, _count(steps))
+            beside = abs(harmonic * order + sum(number * ratio for _, ratio, number in steps))
+            if beside > _STANDSTILL * order:
+                yield ExcitationLine(f"{harmonic}× {name} {_in_words(steps)}", "sideband", beside, _count(steps), width)
 
 
 def _bearing_lines(
-    machine: CoupledMachine, leading: float, element_passes: Sequence[int], sidebands: int
+    machine: CoupledMachine,
+    leading: float,
+    element_passes: Sequence[int],
+    sidebands: int,
+    by_turning: Sequence[_Steps],
 ) -> Iterator[ExcitationLine]:
-    """Yield the passing of rolling elements, and the strikes of spalls with the sidebands of what turns them."""
+    """Yield the passing of rolling elements and the strikes of spalls, with sidebands by what turns spall or bearing.
+
+    A bearing of a planet circles with its carrier, as meshes of planets do. In its frame a spall is carried through the
+    load by its ring or the cage, so that a sensor has the turns of both (Feng, Ma and Zuo, J. Sound Vib.
+    370 (2016) 372).
+    """
     struck = spall_strikes(machine.system)
     for name, frequencies in passing_frequencies(machine.system).items():
         for frequency in frequencies:
             # Elements pass a spall of the ring at rest as often as any place of it.
             if any(one.bearing == name and math.isclose(one.frequency, frequency) for one in struck):
                 continue
-            for multiple in element_passes:
-                yield ExcitationLine(
-                    f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading
-                )
+            order = frequency * _TWO_PI / leading
+            yield from _with_sidebands(f"elements of {name}", "bearing", order, element_passes, by_turning)
     for strikes in struck:
-        steps_beside = [0, *_signed(sidebands)] if strikes.turning else [0]
-        for multiple, number in product(element_passes, steps_beside):
-            order = abs(multiple * strikes.frequency + number * strikes.turning_frequency) * _TWO_PI / leading
-            text = f"{multiple}× {strikes.name}"
-            if number == 0:
-                yield ExcitationLine(text, "bearing", order)
-            elif order > _STANDSTILL:
-                beside = _in_words([(strikes.turning, strikes.turning_frequency, number)])
-                yield ExcitationLine(f"{text} {beside}", "sideband", order, abs(number))
+        turn = strikes.turning_frequency * _TWO_PI / leading
+        carried: list[_Steps] = [
+            [(strikes.turning, turn, number)] for number in (_signed(sidebands) if strikes.turning else ())
+        ]
+        steps = _joined_steps(carried, by_turning, sidebands)
+        per_hz = _TWO_PI / leading
+        yield from _with_sidebands(
+            strikes.name,
+            "bearing",
+            strikes.frequency * per_hz,
+            element_passes,
+            steps,
+            strikes.half_width * per_hz,
+        )
+
+
+def _joined_steps(one: Sequence[_Steps], other: Sequence[_Steps], sidebands: int) -> list[_Steps]:
+    """Return the steps of two causes, and those by both that are no more than the farthest by one alone."""
+    farthest = max([sidebands, *map(_count, other)])
+    both = ([*first, *second] for first in one for second in other)
+    return [*other, *one, *(steps for steps in both if _count(steps) <= farthest)]
 
 
 def meshes_of_planets(machine: CoupledMachine, carrier: str) -> str:

@@ -12,7 +12,15 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors.rolling_bearings import FourPointRow, RollerRow, RollingSpall, RollingState, spall_contacts
+from gearwhine.rotors.rolling_bearings import (
+    NO_SLIP,
+    BearingDamage,
+    CageSlip,
+    FourPointRow,
+    RollerRow,
+    RollingState,
+    require_possible,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +37,11 @@ class RollingLaw:
         in which the shaft cannot move.
     cage_angle : float
         Azimuth of the first element of every row at t = 0 [rad].
-    spalls : tuple of RollingSpall
-        Damage of the raceways and elements, over which the elements drop; see
+    spalls : tuple of RollingSpall or CageFault
+        Damage of the raceways and elements, over which the elements drop, and of the cage; see
         :mod:`gearwhine.rotors.rolling_bearings.spalls`.
+    slip : CageSlip
+        Slip of the cage of every row; none by default.
 
     Raises
     ------
@@ -43,12 +53,13 @@ class RollingLaw:
 
     state: RollingState
     cage_angle: float = 0.0
-    spalls: tuple[RollingSpall, ...] = ()
+    spalls: tuple[BearingDamage, ...] = ()
+    slip: CageSlip = NO_SLIP
 
     def __post_init__(self) -> None:
         """Require rows whose elements have a law in the time domain, and spalls that they can have."""
         for spall in self.spalls:
-            spall_contacts(spall, self.state.bearing, 0.0)
+            require_possible(spall, self.state.bearing)
         for row in self.state.bearing.rows:
             flanged = isinstance(row, RollerRow) and row.flanges != "none"
             if flanged or isinstance(row, FourPointRow):

@@ -19,6 +19,7 @@ from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.rotors.rolling_bearings import CageFault
 
 _TWO_PI = 2.0 * np.pi
 _ALIKE_FREQUENCY_DIGITS = 12  # digits of the frequencies of rows that are alike
@@ -54,7 +55,8 @@ def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
     for connector in system.nonlinear:
         if isinstance(connector.law, RollingLaw) and (connector.speed != 0.0 or connector.holder_speed != 0.0):
             rows = connector.law.state.bearing.rows
-            cages = [row.cage_speed(connector.speed) + connector.holder_speed for row in rows]
+            rolling = 1.0 - connector.law.slip.mean
+            cages = [rolling * row.cage_speed(connector.speed) + connector.holder_speed for row in rows]
             frequencies = [row.count * abs(cage) / _TWO_PI for row, cage in zip(rows, cages, strict=True)]
             passes[connector.name] = tuple(
                 sorted({round(frequency, _ALIKE_FREQUENCY_DIGITS) for frequency in frequencies})
@@ -76,6 +78,9 @@ class SpallStrikes:
         What carries the spall through the loaded zone; empty where it stands still there.
     turning_frequency : float
         Turns of that in a second [Hz].
+    half_width : float
+        Half-width of the strikes' own frequency by the scatter of the cage's slip [Hz]; that of the k-th multiple is k²
+        times as much.
     """
 
     part: str
@@ -83,6 +88,7 @@ class SpallStrikes:
     frequency: float
     turning: str = ""
     turning_frequency: float = 0.0
+    half_width: float = 0.0
 
     @property
     def name(self) -> str:
@@ -91,7 +97,7 @@ class SpallStrikes:
 
 
 def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
-    """Return the strikes of all spalls of rolling bearings, alike ones once.
+    """Return the strikes of all spalls of rolling bearings and the turns of faulty cages, alike ones once.
 
     Elements pass a raceway's spall, which its ring carries through the loaded zone where it turns; an element strikes
     either raceway once in each turn of its own, and the cage carries it.
@@ -100,13 +106,23 @@ def spall_strikes(system: CoupledSystem) -> tuple[SpallStrikes, ...]:
     for connector in system.nonlinear:
         if not isinstance(connector.law, RollingLaw):
             continue
+        slip = connector.law.slip
         for spall in connector.law.spalls:
             row = connector.law.state.bearing.rows[spall.row]
-            frequency = spall.tone(row, connector.speed) / _TWO_PI
-            part = "rolling element" if spall.on == "element" else f"{spall.on} raceway"
-            strikes = SpallStrikes(part, connector.name, frequency)
+            cage = (1.0 - slip.mean) * row.cage_speed(connector.speed)
+            frequency = spall.tone(row, connector.speed, slip) / _TWO_PI
+            passes = row.count * abs(cage) / _TWO_PI
+            width = slip.half_width(passes)
+            if spall.part == "rolling element" and passes > 0.0:
+                # It turns with the cage, and its multiples are as much wider as they are higher than those of passing.
+                width *= (frequency / passes) ** 2
+            strikes = SpallStrikes(spall.part, connector.name, frequency, half_width=width)
+            if isinstance(spall, CageFault):
+                turn = abs(cage + connector.holder_speed) / _TWO_PI
+                found.append(replace(strikes, frequency=turn, half_width=slip.half_width(passes) / row.count**2))
+                continue
             if spall.on == "element":
-                turn, carrying = row.cage_speed(connector.speed), "cage"
+                turn, carrying = cage, "cage"
             else:
                 turns_with_shaft = (spall.on == "outer") == row.outer_turns
                 turn, carrying = connector.speed if turns_with_shaft else 0.0, f"{spall.on} ring"

@@ -17,7 +17,7 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 from gearwhine.rotors import Bearing
-from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing, RollingSpall
+from gearwhine.rotors.rolling_bearings import NO_SLIP, ROLLING_DAMPING_TIME, BearingDamage, CageSlip, RollingBearing
 
 
 @dataclass(frozen=True)
@@ -138,9 +138,14 @@ class MountedBearing:
         return np.array([x, y, 0.0, rx, ry])
 
     @property
-    def spalls(self) -> tuple[RollingSpall, ...]:
-        """Damage of its raceways and elements."""
+    def spalls(self) -> tuple[BearingDamage, ...]:
+        """Damage of its raceways, elements and cage."""
         return self.law.spalls if isinstance(self.law, RollingLaw) else ()
+
+    @property
+    def slip(self) -> CageSlip:
+        """Slip of its cage."""
+        return self.law.slip if isinstance(self.law, RollingLaw) else NO_SLIP
 
     @property
     def needs_load(self) -> bool:

@@ -118,6 +118,7 @@ def line_names(
         by_carriers=by_carriers,
     )
     at = shaft_frequency * np.array([line.order for line in lines])
+    widths = shaft_frequency * np.array([line.half_width for line in lines])
     named = []
     for frequency, within in zip(frequencies, tolerances.tolist(), strict=True):
         order = frequency / shaft_frequency
@@ -130,12 +131,13 @@ def line_names(
             # Excited or not, an order of a shaft that is further off than the mode is not the line's cause.
             of_shafts = min(within, abs(float(modes.eigenvalues[mode].imag) / (2.0 * np.pi) - frequency))
         reach = {"mesh": within, "shaft": of_shafts, "load": within, "bearing": within, "sideband": of_shafts}
-        near_it = [lines[place] for place in np.flatnonzero(np.abs(at - frequency) <= within).tolist()]
+        near_it = [lines[place] for place in np.flatnonzero(np.abs(at - frequency) <= within + widths).tolist()]
         causes = {
             kind: [
                 line
                 for line in near_it
-                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= distance
+                if line.kind == kind
+                and abs(line.order * shaft_frequency - frequency) <= distance + line.half_width * shaft_frequency
             ]
             for kind, distance in reach.items()
         }

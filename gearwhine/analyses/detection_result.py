@@ -14,9 +14,9 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.variation_result import in_solved_housing, sampled_points
 from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, require
-from gearwhine.case.bearings import Bearing
+from gearwhine.case.bearings import Bearing, BearingFault
 from gearwhine.case.detection import MOST_GEARBOXES, Detection
-from gearwhine.case.errors import UNSAID, key_of
+from gearwhine.case.errors import UNSAID, key_of, look_up
 from gearwhine.case.model import lacking
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.variation import Variation
@@ -31,7 +31,7 @@ from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.results.detection import DETECTION, detection_document
-from gearwhine.rotors.rolling_bearings import RollingSpall
+from gearwhine.rotors.rolling_bearings import BearingDamage
 from gearwhine.solve.machine import plan_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
@@ -66,7 +66,7 @@ class PlannedDetection:
         Change that makes a healthy gearbox.
     gear : str
     monitor : Monitor
-    spall : (str, RollingSpall) or None
+    spall : (str, BearingDamage) or None
         Name of the bearing, and its spall, where that is the fault.
     """
 
@@ -79,7 +79,7 @@ class PlannedDetection:
     without: str
     gear: str
     monitor: Monitor
-    spall: tuple[str, RollingSpall] | None = None
+    spall: tuple[str, BearingDamage] | None = None
 
 
 def plan_detection(source: CaseSource) -> PlannedDetection:
@@ -110,8 +110,10 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     table = case.housing or case.reduced_housing
     sensors = _sensors(() if table is None else tuple(sensor.name for sensor in table.sensor), settings)
     shafts = {one.name: one.rotor for one in case.gear}
-    without = _healthy_change(case_document(case), settings)
-    bearing, spall = _spall(case.bearing, settings)
+    # Planets that are written once are found as they are written, where changes of their keys go.
+    documents = case_document(case), source.document
+    without = _healthy_change(documents, settings)
+    bearing, spall = _spall(source.document, case.bearing, settings)
     beside = [one.name for one in case.gear if bearing is not None and one.rotor == bearing.rotor]
     gear = _gear(list(shafts), next(iter(beside), case.gear_pair[0].driver), settings)
     plain = source.without("detection", "variation")
@@ -163,7 +165,8 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
     varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
     varied, housing = in_solved_housing(varied, folder, "detect")
     written = {size: _text(value) for size, value in zip(settings.sizes, settings.severities, strict=True)}
-    study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear, planned.spall)
+    averaged = any(not INDICATORS[name].of_time for name in monitor.indicators)
+    study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear, planned.spall, averaged)
     # Gearboxes that are all alike have one record, and as many noises.
     is_varied = bool(planned.inputs)
     healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
@@ -275,33 +278,46 @@ def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
     return chosen
 
 
-def _spall(bearings: Sequence[Bearing], settings: Detection) -> tuple[Bearing | None, RollingSpall | None]:
-    """Return the bearing whose spall is the fault, with that; twice None where it is another fault."""
+def _spall(
+    document: Mapping[str, Any], bearings: Sequence[Bearing], settings: Detection
+) -> tuple[Bearing | None, BearingDamage | None]:
+    """Return the bearing whose spall is the fault, with that; twice None where it is another fault.
+
+    Of planets that are made of one it is the bearing of the first, which has the speed of all.
+    """
     steps = parse_key_path(settings.fault) or ()
     if steps[:1] != ("bearing",) or steps[2:3] != ("fault",):
         return None, None
-    named = {str(number): one for number, one in enumerate(bearings)} | {one.name: one for one in bearings}
-    number = int(steps[3]) if steps[3].isdecimal() else 0
-    return named[steps[1]], named[steps[1]].fault[number].build()
+    (place,) = matching_places(document, steps[:2])
+    written: Any = look_up(document, place)
+    faults = written["fault"]
+    fault = faults if isinstance(faults, Mapping) else faults[int(steps[3]) if steps[3].isdecimal() else 0]
+    spall = BearingFault.model_validate({key: value for key, value in fault.items() if key != "planet"}).build()
+    return next(one for one in bearings if one.name in (written["name"], f"{written['name']} 1")), spall
 
 
-def _healthy_change(document: Mapping[str, Any], settings: Detection) -> str:
+def _healthy_change(documents: Sequence[Mapping[str, Any]], settings: Detection) -> str:
     """Return the change that takes the fault from the case; empty where its key is of no damaged tooth."""
     steps = parse_key_path(settings.fault) or ()
     if "*" in steps:
         raise CaseError([Problem("detection.fault", settings.fault, "the key of one fault, without *")])
     if "fault" not in steps:
-        if not any(True for _ in matching_places(document, steps)):
+        if not _is_in(documents, steps):
             raise CaseError([Problem("detection.fault", settings.fault, f"a key of the case; {_KEYS}")])
         return ""
     place = steps.index("fault")
     # One fault may stand as a table, which the case holds as a list.
     inside = steps[place + 1 :]
     listed = inside if inside and inside[0].isdecimal() else ("0", *inside)
-    if not any(True for _ in matching_places(document, (*steps[: place + 1], *listed))):
+    if not _is_in(documents, (*steps[: place + 1], *listed), steps):
         raise CaseError([Problem("detection.fault", settings.fault, f"the key of a fault that the case has; {_KEYS}")])
     end = place + 2 if inside and inside[0].isdecimal() else place + 1
     return ".".join(f'"{step}"' if "." in step else step for step in steps[:end]) + "="
+
+
+def _is_in(documents: Sequence[Mapping[str, Any]], *paths: Sequence[str]) -> bool:
+    """Whether a key path leads to something in a document."""
+    return any(True for document in documents for steps in paths for _ in matching_places(document, steps))
 
 
 _KEYS = (

@@ -26,6 +26,7 @@ from gearwhine.case.fields import (
     Mass,
     Name,
     OverSpeed,
+    PlanetNumber,
     PositiveLength,
     PositiveStiffness,
     Quantity,
@@ -33,6 +34,7 @@ from gearwhine.case.fields import (
     Stiffness,
     Table,
     Whole,
+    one_of_planets,
     wrong,
 )
 from gearwhine.case.units import Dimension
@@ -45,7 +47,8 @@ if TYPE_CHECKING:
 
     from gearwhine.coupling import GapLaw
     from gearwhine.rotors import Pedestal as BuiltPedestal
-    from gearwhine.rotors.rolling_bearings import RollingBearing, RollingSpall, Row
+    from gearwhine.rotors.rolling_bearings import BearingDamage, RollingBearing, Row
+    from gearwhine.rotors.rolling_bearings import CageSlip as BuiltCageSlip
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
 # The types of `gearwhine.rotors.rolling_bearings.catalogue`, as a test verifies: a case is read without numpy, which
@@ -678,17 +681,22 @@ class RollingStiffness(Table):
 
 
 class BearingFault(Table):
-    """A spall of a rolling bearing with `law = "nonlinear"`: material that broke out of a raceway or an element."""
+    """A fault of a rolling bearing with `law = "nonlinear"`: a spall of a raceway or an element, or a worn cage.
 
-    on: Literal["outer", "inner", "element"]
-    """Damaged raceway, or a rolling element."""
+    A spall is material that broke out; a pocket of the cage that is worn or broken lets an element out of its place.
+    """
+
+    on: Literal["outer", "inner", "element", "cage"]
+    """Damaged raceway, a rolling element, or the cage."""
     length: PositiveLength
-    """Length along the rolling direction: the elements drop by what its edges let them, and strike the far one."""
-    depth: PositiveLength
-    """Depth of the floor, which no element drops beyond."""
+    """Length along the rolling direction: the elements drop by what its edges let them, and strike the far one. Of a
+    cage it is the way along the pitch circle by which an element is ahead of its place."""
+    depth: PositiveLength | None = None
+    """Depth of the floor, which no element drops beyond; needed but for a cage, which has none."""
     azimuth: Annotated[float, Quantity(units.ANGLE)] = 0.0
     """Azimuth of the middle at the start: on a ring from x towards y, on an element from its line to the inner
-    raceway."""
+    raceway. On a ring of a planet that a `[[planetary]]` mounts `count` times it is that at the first one, and turned
+    with the others."""
     row: Annotated[int, Whole(0, 7)] = 0
     """Number of the row of elements, from 0."""
     element: Annotated[int, Whole(0, 999)] = 0
@@ -696,18 +704,46 @@ class BearingFault(Table):
     width: PositiveLength | None = None
     """Width across the rolling direction, in the middle of rollers. Default: all of their length; of balls that of
     their contact."""
+    planet: PlanetNumber | None = None
+    """Number from 1 of the one planet with the fault, of a bearing that a `[[planetary]]` mounts `count` times.
+    Default: all planets have it."""
 
     @model_validator(mode="after")
     def _of_its_part(self) -> BearingFault:
-        if self.on != "element" and self.element:
+        if self.on in ("outer", "inner") and self.element:
             raise wrong("0 of a raceway, which all elements pass", "element")
+        if self.on == "cage":
+            for key in ("depth", "azimuth", "width"):
+                if getattr(self, key):
+                    raise wrong("none of a cage, whose pocket is told by 'element'", key)
+        elif self.depth is None:
+            raise wrong("the depth of a spall's floor", "depth")
         return self
 
-    def build(self) -> RollingSpall:
-        """Build the spall."""
-        from gearwhine.rotors.rolling_bearings import RollingSpall
+    def build(self) -> BearingDamage:
+        """Build the spall, or the fault of the cage."""
+        from gearwhine.rotors.rolling_bearings import CageFault, RollingSpall
 
-        return RollingSpall(**{key: getattr(self, key) for key in type(self).model_fields})
+        if self.on == "cage" or self.depth is None:
+            return CageFault(self.length, self.row, self.element)
+        return RollingSpall(self.on, self.length, self.depth, self.azimuth, self.row, self.element, self.width)
+
+
+class CageSlip(Table):
+    """Slip of the cage of a rolling bearing with `law = "nonlinear"`, in each of its rows."""
+
+    mean: Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.5)] = 0.0
+    """Mean part of the speed of pure rolling by which the cage lags; 0.01 to 0.02 are usual."""
+    scatter: Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.1)] = 0.0
+    """Standard deviation of the angle between two elements' passing over its mean: multiples of strikes get wide."""
+    seed: Annotated[int, Whole(0, 2**31 - 1)] = 1
+    """Seed of the random changes. The same seed gives the same ones."""
+
+    def build(self) -> BuiltCageSlip:
+        """Build the slip."""
+        from gearwhine.rotors.rolling_bearings import CageSlip as BuiltCageSlip
+
+        return BuiltCageSlip(self.mean, self.scatter, self.seed)
 
 
 class StopStiffness(Table):
@@ -792,7 +828,9 @@ class Bearing(Table):
     equilibrium, in a case with an operation where gear pairs, a force, gravity or an `axial_offset` on its rotor load
     it; of a stop none."""
     fault: Annotated[tuple[BearingFault, ...], Field(max_length=100)] = ()
-    """Spalls of a rolling bearing in the transient: one table, or a list."""
+    """Spalls and faults of the cage of a rolling bearing in the transient: one table, or a list."""
+    slip: CageSlip | None = None
+    """Slip of the cage of a rolling bearing in the transient. Default: none, pure rolling."""
 
     @field_validator("fault", mode="before")
     @classmethod
@@ -802,8 +840,12 @@ class Bearing(Table):
     @model_validator(mode="after")
     def _faulty(self) -> Bearing:
         by_elements = isinstance(self.stiffness, RollingStiffness) and self.stiffness.rolling.law == "nonlinear"
-        if self.fault and not by_elements:
-            raise wrong('none, or rolling = { …, law = "nonlinear" }, which follows every element', "fault")
+        for key in ("fault", "slip"):
+            if getattr(self, key) and not by_elements:
+                raise wrong('none, or rolling = { …, law = "nonlinear" }, which follows every element', key)
+        for number, fault in enumerate(self.fault):
+            if fault.planet is not None:
+                raise wrong(one_of_planets("bearing"), "fault", number, "planet")
         return self
 
     @property

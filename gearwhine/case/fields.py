@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 MOST_ENTRIES = 10_000
 """Most entries a list may hold; beyond it a case is a mistake, not a gearbox."""
 
+MOST_PLANETS = 24
+"""Most planets of a `[[planetary]]`."""
+
 
 def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
     """Make the error for a value that is not what was expected.
@@ -182,6 +185,15 @@ class Whole:
                 return value
             raise wrong(f"{self.expected}, or {-self.at_most} to {-self.at_least} of {self.negative}")
         raise wrong(self.expected)
+
+
+PlanetNumber = Annotated[int, Whole(1, MOST_PLANETS)]
+"""Number of a planet, from 1, of those that a `[[planetary]]` mounts of one."""
+
+
+def one_of_planets(kind: str) -> str:
+    """Return what is expected for the planet of a fault of a part that stands once, in words."""
+    return f"a planet of the `count` that a [[planetary]] mounts of this {kind}; none of a {kind} that stands once"
 
 
 _NAME = re.compile(r"[^\s\x00-\x1f\x7f/\\](?:[^\x00-\x1f\x7f/\\]{0,98}[^\s\x00-\x1f\x7f/\\])?")

@@ -26,11 +26,13 @@ from gearwhine.case.fields import (
     LengthFromZero,
     Mass,
     Name,
+    PlanetNumber,
     PositiveLength,
     PositiveStiffness,
     Quantity,
     Table,
     Whole,
+    one_of_planets,
     wrong,
 )
 
@@ -79,12 +81,6 @@ class Relief(Table):
         from gearwhine.coupling.gears import RootRelief
 
         return RootRelief(**self.model_dump())
-
-
-MOST_PLANETS = 24
-"""Most planets of a `[[planetary]]`."""
-
-PlanetNumber = Annotated[int, Whole(1, MOST_PLANETS)]
 
 
 class ProfileErrors(Table):
@@ -326,9 +322,6 @@ class RingSupport(Table):
         return BuiltRingSupport(**self.model_dump())
 
 
-_ONE_OF_PLANETS = "a planet of the `count` that a [[planetary]] mounts of this gear; none of a gear that stands once"
-
-
 class Gear(Table):
     """`[[gear]]`: an external or internal gear, spur or helical, by module, diametral pitch or base radius.
 
@@ -452,10 +445,10 @@ class Gear(Table):
             if deviations and len(deviations) != abs(self.teeth):
                 raise wrong(f"one deviation for each of {abs(self.teeth)} teeth, or none", "errors", key)
         if self.errors.planet is not None:
-            raise wrong(_ONE_OF_PLANETS, "errors", "planet")
+            raise wrong(one_of_planets("gear"), "errors", "planet")
         for number, fault in enumerate(self.fault):
             if fault.planet is not None:
-                raise wrong(_ONE_OF_PLANETS, "fault", number, "planet")
+                raise wrong(one_of_planets("gear"), "fault", number, "planet")
             if fault.tooth is not None and fault.tooth >= abs(self.teeth):
                 raise wrong(f"a tooth from 0 to {abs(self.teeth) - 1}", "fault", number, "tooth")
         is_given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]

@@ -277,11 +277,21 @@ class CaseSource:
         CaseError
             With everything that is wrong.
         """
+        files = self.files.copy()
+        document, sources = self._document(changes, files)
+        return parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """Tables of the case with the changes, its planets as they are written."""
+        return self._document((), self.files.copy())[0]
+
+    def _document(self, changes: Sequence[str], files: InputFiles) -> tuple[dict[str, Any], Mapping[Any, Any]]:
+        """Return the tables with further changes, and by which change each key has its value."""
         written = dict(self.written)
         overrides = (*self.changes, *changes)
         if any(override.startswith("gear_pair") for override in overrides):
             written = with_implied_pairs(written)
-        files = self.files.copy()
 
         def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
             try:
@@ -290,8 +300,7 @@ class CaseSource:
                 return document
 
         document, sources = apply_overrides(written, overrides, resolved)
-        document = without_changed(document, written, sources.keys())
-        return parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
+        return without_changed(document, written, sources.keys()), sources
 
 
 def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> LoadedCase:

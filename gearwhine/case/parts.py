@@ -286,7 +286,8 @@ class Parts:
             # A bearing whose load is left to the operating point is undeflected until then.
             undeflected = rolling.rolling_state(mounted.rolling, np.zeros(5))
             spalls = tuple(fault.build() for fault in entry.fault)
-            law = RollingLaw(undeflected if state is None else state, spalls=spalls)
+            slip = rolling.NO_SLIP if entry.slip is None else entry.slip.build()
+            law = RollingLaw(undeflected if state is None else state, spalls=spalls, slip=slip)
         if state is None:
             return mounted if law is None else replace(mounted, law=law)
         try:

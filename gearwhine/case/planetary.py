@@ -22,6 +22,7 @@ from gearwhine.case import units
 from gearwhine.case.errors import UNSAID, Finding, Location, look_up
 from gearwhine.case.fields import (
     MOST_ENTRIES,
+    MOST_PLANETS,
     Angle,
     Length,
     LengthFromZero,
@@ -32,7 +33,7 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
-from gearwhine.case.gears import MOST_PLANETS, Gear, TrainMembers
+from gearwhine.case.gears import Gear, TrainMembers
 from gearwhine.case.operation import Operation
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.rotors import Rotor
@@ -497,7 +498,7 @@ class _Expansion:
         self._replicate(
             "bearing",
             lambda entry: entry.get("rotor") in rotors and isinstance(entry.get("name"), str),
-            renamed("name", "rotor"),
+            lambda entry, number: _with_turned_spalls(_of_planet(on_copy(entry, number), number, count), turns[number]),
             count,
         )
         self._replicate(
@@ -545,7 +546,7 @@ class _Expansion:
 
 
 def _of_planet(entry: dict[str, Any], number: int, count: int) -> dict[str, Any]:
-    """Return a gear's table with those of its faults and errors that its planet has, by its number from 0.
+    """Return the table of a gear or bearing with those faults and errors that its planet has, by its number from 0.
 
     A `planet` that is not the number of one is left, to be refused.
     """
@@ -563,6 +564,23 @@ def _of_planet(entry: dict[str, Any], number: int, count: int) -> dict[str, Any]
     own = [taken(fault) for fault in listed if belongs(fault)]
     changed = {**entry, "fault": own, "errors": taken(errors) if belongs(errors) else {}}
     return {key: value for key, value in changed.items() if key in entry}
+
+
+def _with_turned_spalls(entry: dict[str, Any], turn: float) -> dict[str, Any]:
+    """Return a bearing's table whose spalls of the rings stand to its planet as they do to the first one.
+
+    An azimuth that cannot be read is left, to be refused.
+    """
+
+    def turned(fault: Any) -> Any:
+        if not isinstance(fault, Mapping) or fault.get("on") not in ("outer", "inner"):
+            return fault
+        try:
+            return {**fault, "azimuth": _ANGLE.validate(fault.get("azimuth", 0.0)) + turn}
+        except (PydanticCustomError, ValueError):
+            return fault
+
+    return {**entry, "fault": [turned(fault) for fault in entry["fault"]]} if "fault" in entry else entry
 
 
 def _numbered(name: str, number: int) -> str:

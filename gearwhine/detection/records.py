@@ -54,7 +54,9 @@ def watched_signal(
     limit, interval, turn = numbers["limit_hz"], numbers["interval_s"], numbers["turn_hz"]
     teeth = round(numbers["teeth"])
     others = tuple(round(value) for name, value in numbers.items() if name.startswith("teeth of another gear"))
-    signal, average = found.curves[f"{SIGNAL}{sensor}"], found.curves[f"{AVERAGE}{sensor}"]
+    signal = found.curves[f"{SIGNAL}{sensor}"]
+    # A sample has no average where no indicator takes one.
+    average = found.curves.get(f"{AVERAGE}{sensor}", np.zeros(2 * teeth + 4))
     if noise > 0.0 and rng is not None:
         signal = signal + band_noise(rng, len(signal), limit * interval, noise)
         order = limit / turn / len(average)

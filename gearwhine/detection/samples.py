@@ -20,7 +20,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors.rolling_bearings import RollingSpall
+from gearwhine.rotors.rolling_bearings import BearingDamage
 from gearwhine.solve.machine import plan_of
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Outcome, VariedCase, outcome_of
@@ -49,8 +49,11 @@ class DetectionCase:
         Sizes as the case writes them, by their value in SI.
     gear : str
         Gear by whose shaft signals are averaged.
-    spall : (str, RollingSpall) or None
+    spall : (str, BearingDamage) or None
         Name of the bearing, and its spall, where that is the fault.
+    is_averaged : bool
+        Whether an indicator takes the average over the turns of the gear's shaft, which those of planetary sets have
+        not.
     """
 
     varied: VariedCase
@@ -58,7 +61,8 @@ class DetectionCase:
     without: str
     written: dict[float, str]
     gear: str
-    spall: tuple[str, RollingSpall] | None = None
+    spall: tuple[str, BearingDamage] | None = None
+    is_averaged: bool = True
 
     def case(self, point: FloatArray) -> Case:
         """Return the case of a sample at a point (2 + d,).
@@ -86,7 +90,7 @@ class DetectionCase:
         Raises
         ------
         gearwhine.coupling.CouplingError
-            Where the gear has no average, or the machine cannot be solved.
+            Where the gear has no average that an indicator takes, or the machine cannot be solved.
         """
         case = self.case(point)
         machine, plan = self.varied.machine(case), plan_of(case)
@@ -94,7 +98,7 @@ class DetectionCase:
         loaded = load_machine(machine, None if load is None else load.point, plan.run)
         record = condition_record(solve_transient(loaded.coupled, plan))
         gear = next(one for one in record.gears if one.gear == self.gear)
-        if gear.undefined:
+        if gear.undefined and self.is_averaged:
             raise CouplingError(f"no average of gear {self.gear!r}: {gear.undefined}")
         numbers = {
             "limit_hz": record.limit_hz,
@@ -109,16 +113,19 @@ class DetectionCase:
             mounted = next(one for one in machine.bearings if one.bearing.name == name)
             if mounted.elements is not None:
                 row = mounted.elements.rows[spall.row]
-                numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted)) / (2.0 * np.pi)
+                numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted), mounted.slip) / (2.0 * np.pi)
         numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
         curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}
-        curves |= {f"{AVERAGE}{name}": _rounded(record.averages[gear.shaft, name]) for name in record.sensors}
+        if self.is_averaged:
+            curves |= {f"{AVERAGE}{name}": _rounded(record.averages[gear.shaft, name]) for name in record.sensors}
         return Evaluation(numbers, curves)
 
     @cached_property
     def key(self) -> str:
         """Key of all that the samples depend on but their points."""
-        return content_key({"varied": self.varied.key, "fault": [self.fault, self.without, self.gear]})
+        return content_key(
+            {"varied": self.varied.key, "fault": [self.fault, self.without, self.gear, self.is_averaged]}
+        )
 
 
 def _rounded(values: FloatArray) -> FloatArray:

@@ -1,5 +1,6 @@
 """Radiation of a housing's modes, each at its frequency and all over frequency, kept beside them in the mode cache."""
 
+import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace
@@ -7,6 +8,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.sound.acoustics import Acoustics
@@ -17,6 +19,7 @@ from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.acoustics.reduced_elements import SpanningSolutions
+from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, in_order, silent
@@ -65,7 +68,7 @@ def kept_radiation(
     HousingModes
         The housing, whose record holds it.
     """
-    key = _key(acoustics, housing.widest_bore, places=places.tolist(), between=list(between))
+    key = _key(acoustics, housing.displacement_field, places=places.tolist(), between=list(between))
     record = housing.record
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
@@ -104,15 +107,14 @@ def sound_of_housing(
     HousingModes
         The housing, whose record holds the sound of the modes.
     """
-    key = _key(acoustics, housing.widest_bore, limit_hz=acoustics.limit_hz(housing.displacement_field))
+    field = housing.displacement_field
+    key = _key(acoustics, field, limit_hz=acoustics.limit_hz(field))
     kept = housing.record.notes.get(_NOTE_OF_MODES, {})
     of_modes = _of_text(kept["sound"]) if kept.get("key") == key else None
     if of_modes is not None:
         progress("sound of the housing's modes read from the mode cache")
     spans = KeptSpan(acoustics, housing)
-    solved = solve_sound(
-        acoustics, housing.displacement_field, motion, machine, progress, of_modes=of_modes, span=spans.spanned
-    )
+    solved = solve_sound(acoustics, field, motion, machine, progress, of_modes=of_modes, span=spans.spanned)
     if of_modes is None:
         # As text, since the errors of known sources may be infinite.
         note = {"key": key, "sound": json.dumps(asdict(solved.of_modes))}
@@ -137,7 +139,8 @@ class KeptSpan:
     """
 
     def __init__(self, acoustics: Acoustics, housing: HousingModes) -> None:
-        self.acoustics, self.housing = acoustics, housing
+        self.housing = housing
+        self._key = _key(acoustics, housing.displacement_field)
 
     def spanned(
         self,
@@ -150,14 +153,13 @@ class KeptSpan:
 
         See :meth:`gearwhine.housing.acoustics.radiation.HousingRadiation.spanned`.
         """
-        key = _key(self.acoustics, self.housing.widest_bore)
         record, known = self.housing.record, None
-        if record.notes.get(_NOTE_OF_SPAN) == key:
+        if record.notes.get(_NOTE_OF_SPAN) == self._key:
             known = SpanningSolutions.of_arrays(record.extras)
         spanned = radiation.spanned(wanted, between, progress, known)
         if spanned is not radiation and spanned.reduced is not None and spanned.reduced.solutions is not known:
             extras = {**record.extras, **spanned.reduced.solutions.arrays()}
-            updated = replace(record, extras=extras, notes={**record.notes, _NOTE_OF_SPAN: key})
+            updated = replace(record, extras=extras, notes={**record.notes, _NOTE_OF_SPAN: self._key})
             self.housing = replace(self.housing, record=updated, source_holds=False)
         return spanned
 
@@ -173,12 +175,29 @@ def _of_text(text: str) -> SoundOfModes:
     return SoundOfModes(tuple(modes), tuple(document["warnings"]))
 
 
-def _key(acoustics: Acoustics, widest_bore: float | None, **of_solution: Any) -> str:
+def _key(acoustics: Acoustics, field: HousingField, **of_solution: Any) -> str:
     return content_key(
         {
             "acoustics": {name: value for name, value in asdict(acoustics).items() if name not in _WITHOUT_EFFECT},
-            "widest_bore": widest_bore,
+            "widest_bore": field.widest_bore,
+            "field": _digest(field),
             "source": source_digest(*_CODE),
             **of_solution,
         }
     )
+
+
+def _digest(field: HousingField) -> str:
+    """SHA-256 of a displacement field: its mesh with the named faces, and frequencies and shapes of its modes."""
+    total = hashlib.sha256()
+    arrays: list[tuple[str, npt.NDArray[Any]]] = [
+        ("points", field.mesh.points),
+        ("frequencies", field.modes.frequencies),
+        ("shapes", field.shapes),
+    ]
+    arrays += [("elements", block.nodes) for block in field.mesh.blocks]
+    arrays += [(name, block.nodes) for name, facets in sorted(field.mesh.surfaces.items()) for block in facets]
+    for name, values in arrays:
+        total.update(f"{name}\0{values.shape}\0{values.dtype.str}\0".encode())
+        total.update(np.ascontiguousarray(values).data)
+    return total.hexdigest()

@@ -27,19 +27,32 @@ from gearwhine.rotors.rolling_bearings.frequencies import (
     CharacteristicFrequencies,
     characteristic_frequencies,
     frequencies_in_seat,
+    pressed_azimuth,
 )
 from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity, point_contact
 from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
 from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
 from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
-from gearwhine.rotors.rolling_bearings.spalls import RollingSpall, SpallContact, spall_contacts
+from gearwhine.rotors.rolling_bearings.slip import NO_SLIP, CageSlip
+from gearwhine.rotors.rolling_bearings.spalls import (
+    BearingDamage,
+    CageFault,
+    RollingSpall,
+    SpallContact,
+    require_possible,
+    spall_contacts,
+)
 
 __all__ = [
     "COORDINATES",
+    "NO_SLIP",
     "ROLLING_DAMPING_TIME",
     "STEEL",
     "BallRow",
+    "BearingDamage",
+    "CageFault",
+    "CageSlip",
     "CharacteristicFrequencies",
     "ContactElasticity",
     "ElementLoads",
@@ -65,6 +78,8 @@ __all__ = [
     "paired",
     "point_contact",
     "preload_offset",
+    "pressed_azimuth",
+    "require_possible",
     "rolling_equilibrium",
     "rolling_state",
     "spall_contacts",

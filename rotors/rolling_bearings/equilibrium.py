@@ -36,6 +36,7 @@ from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
 from gearwhine.rotors.rolling_bearings.four_point_balls import FourPointBalls
+from gearwhine.rotors.rolling_bearings.frequencies import pressed_azimuth
 from gearwhine.rotors.rolling_bearings.ratings import Row
 from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
 from gearwhine.rotors.rolling_bearings.roller_slices import RollerSlices
@@ -380,7 +381,7 @@ def _released(local: Local) -> Local:
 
 
 def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
-    azimuths = cage_angle + 2.0 * math.pi * np.arange(row.count) / row.count
+    azimuths = pressed_azimuth(row, cage_angle) + 2.0 * math.pi * np.arange(row.count) / row.count
     thrown = row.centrifugal_force(speed)
     if isinstance(row, LineContactRow):
         return RollerSlices(row, azimuths, thrown)

@@ -84,6 +84,15 @@ def characteristic_frequencies(
     )
 
 
+def pressed_azimuth(row: Row, azimuth: float) -> float:
+    """Azimuth by which the displacement of the ring that turns presses the elements at an azimuth together [rad].
+
+    An inner ring that moves along x presses the elements at x. An outer one, as of a planet, presses those opposite, on
+    its pin.
+    """
+    return azimuth + math.pi if row.outer_turns else azimuth
+
+
 def frequencies_in_seat(row: Row, speed: float) -> CharacteristicFrequencies:
     """Characteristic frequencies of a row with one ring at rest in its seat.
 

@@ -14,7 +14,10 @@ element leaves one edge and strikes the other, the slope changes its sign.
 A raceway of contact radius R and contact angle α is a cone, of the radius R / cos α in the plane of rolling, so that a
 turns by cos α of what φ does. A spall of an element turns with it, ½ (D_pw / D) (1 − γ²) Ω against the cage, and
 meets both raceways in each turn. The contact is a line or a point: that Hertz's contact has a length of its own, which
-bridges the edges a little earlier, is left out, as are slip and the element's inertia.
+bridges the edges a little earlier, is left out, as is the element's inertia.
+
+A cage with a worn or broken pocket lets an element stand out of its place: the bearing yields unevenly as the cage
+carries the gap through the loaded zone, once in each of its turns.
 """
 
 import math
@@ -22,10 +25,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from gearwhine.rotors.errors import require, require_finite
-from gearwhine.rotors.rolling_bearings.frequencies import frequencies_in_seat
+from gearwhine.rotors.rolling_bearings.frequencies import frequencies_in_seat, pressed_azimuth
 from gearwhine.rotors.rolling_bearings.ratings import Row
 from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
 from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing
+from gearwhine.rotors.rolling_bearings.slip import NO_SLIP, CageSlip
 
 Place = Literal["outer", "inner", "element"]
 _LONGEST = 0.25  # spall over the circumference of the damaged body
@@ -81,10 +85,85 @@ class RollingSpall:
             is_number = isinstance(place, int) and place >= 0
             require(is_number, f"{name} of a spall", place, "a whole number from 0")
 
-    def tone(self, row: Row, speed: float) -> float:
+    @property
+    def part(self) -> str:
+        """Damaged part."""
+        return "rolling element" if self.on == "element" else f"{self.on} raceway"
+
+    def tone(self, row: Row, speed: float, slip: CageSlip = NO_SLIP) -> float:
         """Frequency at which the spall of a row is struck [rad/s], with one ring turning at ``speed`` in its seat."""
-        named = frequencies_in_seat(row, speed).named()
-        return named["rolling element" if self.on == "element" else f"{self.on} raceway"]
+        # A cage that lags behind is passed more often by the ring that turns, and less often by the one at rest.
+        if self.on != "element" and (self.on == "outer") == row.outer_turns:
+            return row.count * abs(speed - (1.0 - slip.mean) * row.cage_speed(speed))
+        return (1.0 - slip.mean) * frequencies_in_seat(row, speed).named()[self.part]
+
+
+@dataclass(frozen=True)
+class CageFault:
+    """A pocket of the cage that is worn or broken, so that its element stands out of its place.
+
+    Parameters
+    ----------
+    length : float
+        Way by which the element is ahead of its place along the pitch circle [m].
+    row : int
+        Number of the row, from 0.
+    element : int
+        Number of the element, from 0 at the cage's angle, counted towards y.
+
+    Raises
+    ------
+    RotorError
+        A length that is not positive, or numbers below 0.
+    """
+
+    length: float
+    row: int = 0
+    element: int = 0
+
+    def __post_init__(self) -> None:
+        """Check length and numbers."""
+        require_finite("length of a cage's fault", self.length, positive=True)
+        for name in ("row", "element"):
+            place = getattr(self, name)
+            is_number = isinstance(place, int) and place >= 0
+            require(is_number, f"{name} of a cage's fault", place, "a whole number from 0")
+
+    @property
+    def part(self) -> str:
+        """Damaged part."""
+        return "cage"
+
+    def tone(self, row: Row, speed: float, slip: CageSlip = NO_SLIP) -> float:
+        """Frequency of the cage of a row [rad/s], with one ring turning at ``speed`` in its seat."""
+        return (1.0 - slip.mean) * abs(row.cage_speed(speed))
+
+    def shift(self, bearing: RollingBearing) -> float:
+        """Angle by which the element is ahead of its place [rad].
+
+        Raises
+        ------
+        RotorError
+            A row or an element that the bearing does not have, or elements that would touch.
+        """
+        row = _faulty_row(self, bearing, "a cage's fault")
+        room = math.pi * row.pitch_diameter / row.count - row.element_diameter
+        expected = f"less than {room:.4g} m, the gap to the next element"
+        require(self.length < room, f"length of a cage's fault of {bearing.name}", self.length, expected)
+        return 2.0 * self.length / row.pitch_diameter
+
+
+BearingDamage = RollingSpall | CageFault
+
+
+def _faulty_row(fault: BearingDamage, bearing: RollingBearing, kind: str) -> Row:
+    """Return the damaged row; the bearing has to have it, and its element."""
+    rows = bearing.rows
+    require(fault.row < len(rows), f"row of {kind} of {bearing.name}", fault.row, f"one of {len(rows)}, from 0")
+    row = rows[fault.row]
+    expected = f"one of {row.count}, from 0"
+    require(fault.element < row.count, f"element of {kind} of {bearing.name}", fault.element, expected)
+    return row
 
 
 @dataclass(frozen=True)
@@ -96,8 +175,9 @@ class SpallContact:
     element : int
         Number of the damaged element; -1 of a raceway, which all elements pass.
     azimuth, rate : float
-        Angle of the spall at t = 0 [rad], and its rate [rad/s]: against the seat; of an element against its line to
-        the raceway.
+        Angle of the spall at t = 0 [rad], and its rate [rad/s]: against the seat, by
+        :func:`gearwhine.rotors.rolling_bearings.frequencies.pressed_azimuth`; of an element against its line to the
+        raceway.
     half : float
         Half the angle of the spall [rad].
     damaged, other : float
@@ -146,11 +226,7 @@ def spall_contacts(spall: RollingSpall, bearing: RollingBearing, speed: float) -
     RotorError
         A row or an element that the bearing does not have, or a spall as long as a quarter of its body's circumference.
     """
-    rows = bearing.rows
-    require(spall.row < len(rows), f"row of a spall of {bearing.name}", spall.row, f"one of {len(rows)}, from 0")
-    row = rows[spall.row]
-    expected = f"one of {row.count}, from 0"
-    require(spall.element < row.count, f"element of a spall of {bearing.name}", spall.element, expected)
+    row = _faulty_row(spall, bearing, "a spall")
     radius, cosine = 0.5 * row.element_diameter, math.cos(row.contact_angle)
     share = 1.0
     if spall.width is not None:
@@ -167,10 +243,23 @@ def spall_contacts(spall: RollingSpall, bearing: RollingBearing, speed: float) -
     half = 0.5 * spall.length / contact
     if spall.on != "element":
         rate = speed if (spall.on == "outer") == row.outer_turns else 0.0
-        damaged = curvature[spall.on]
-        return (SpallContact(-1, spall.azimuth, rate, half, damaged, radius, cosine, spall.depth, share),)
+        damaged, azimuth = curvature[spall.on], pressed_azimuth(row, spall.azimuth)
+        return (SpallContact(-1, azimuth, rate, half, damaged, radius, cosine, spall.depth, share),)
     spin, depth = frequencies_in_seat(row, speed).spin, spall.depth
     return tuple(
         SpallContact(spall.element, spall.azimuth + turned, spin, half, radius, curvature[ring], 1.0, depth, share)
         for ring, turned in (("inner", 0.0), ("outer", math.pi))
     )
+
+
+def require_possible(fault: BearingDamage, bearing: RollingBearing) -> None:
+    """Require that a bearing can have a fault.
+
+    Raises
+    ------
+    RotorError
+    """
+    if isinstance(fault, CageFault):
+        fault.shift(bearing)
+    else:
+        spall_contacts(fault, bearing, 0.0)

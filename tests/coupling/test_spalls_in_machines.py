@@ -31,7 +31,10 @@ from gearwhine.coupling.machine.driving_frequencies import element_passes, spall
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from gearwhine.rotors.rolling_bearings import (
+    NO_SLIP,
     BallRow,
+    CageFault,
+    CageSlip,
     RollerRow,
     RollingBearing,
     RollingSpall,
@@ -62,7 +65,11 @@ SENSOR = np.array([0.2, 0.4])
 
 
 def machine(
-    bearing: RollingBearing, *spalls: RollingSpall, housing: bool, held: dict[str, float] | None = None
+    bearing: RollingBearing,
+    *spalls: RollingSpall | CageFault,
+    housing: bool,
+    held: dict[str, float] | None = None,
+    slip: CageSlip = NO_SLIP,
 ) -> CoupledMachine:
     """A shaft with a disc, its weight on two rolling bearings, the first of which is damaged."""
     state = rolling_equilibrium(bearing, [0.0, -500.0, 0.0, 0.0, 0.0], held=HELD if held is None else held)
@@ -71,7 +78,7 @@ def machine(
         replace(linearised_bearing(state, name, at), damping=DAMPING * np.eye(2)) for name, at in PLACES.items()
     ]
     modal = modal_rotor(shaft, bearings, count=3)
-    laws = [RollingLaw(state, 0.2, spalls), RollingLaw(state, 0.2)]
+    laws = [RollingLaw(state, 0.2, spalls, slip), RollingLaw(state, 0.2)]
     box = None
     if housing:
         box = HousingComponent(
@@ -98,12 +105,23 @@ def machine(
     )
 
 
-def drops(spall: RollingSpall, row: BallRow | RollerRow, azimuth: FloatArray, time: float) -> FloatArray:
+def rolled(row: BallRow | RollerRow, slip: CageSlip, time: float) -> float:
+    """Time in which a cage without slip would turn as far."""
+    passing = (
+        4.0 * math.pi / (row.count * SPEED * (1.0 - row.element_diameter / row.pitch_diameter) * (1.0 - slip.mean))
+    )
+    walk = slip.deviations("left", 0) if slip.scatter else np.zeros(2)
+    return (1.0 - slip.mean) * (time + passing * float(np.interp(time / passing, np.arange(len(walk)), walk)))
+
+
+def drops(
+    spall: RollingSpall, row: BallRow | RollerRow, azimuth: FloatArray, time: float, cage_time: float
+) -> FloatArray:
     """Drop of each element of a bearing without contact angle into a spall of a raceway, or of its own."""
     middle, radius = 0.5 * row.pitch_diameter, 0.5 * row.element_diameter
     spin = 0.5 * SPEED * (row.pitch_diameter / row.element_diameter - row.element_diameter / row.pitch_diameter)
     if spall.on == "element":
-        turned = np.where(np.arange(row.count) == spall.element, spall.azimuth + spin * time, 0.5 * math.pi)
+        turned = np.where(np.arange(row.count) == spall.element, spall.azimuth + spin * cage_time, 0.5 * math.pi)
         pairs = [(radius, middle - radius, turned), (radius, -middle - radius, turned + math.pi)]
     elif spall.on == "inner":
         pairs = [(middle - radius, radius, azimuth - spall.azimuth - SPEED * time)]
@@ -117,13 +135,24 @@ def drops(spall: RollingSpall, row: BallRow | RollerRow, azimuth: FloatArray, ti
     return total
 
 
-def bearing_law(row: BallRow | RollerRow, spalls: Sequence[RollingSpall], q: FloatArray, time: float) -> FloatArray:
+def bearing_law(
+    row: BallRow | RollerRow,
+    spalls: Sequence[RollingSpall | CageFault],
+    q: FloatArray,
+    time: float,
+    slip: CageSlip = NO_SLIP,
+) -> FloatArray:
     """Force of the shaft on the elements by x, y, z and the tilts about x and y [N, N m], shape (5,)."""
-    cage = 0.2 + 0.5 * SPEED * (1.0 - row.element_diameter / row.pitch_diameter) * time
+    cage_time = rolled(row, slip, time)
+    cage = 0.2 + 0.5 * SPEED * (1.0 - row.element_diameter / row.pitch_diameter) * cage_time
     azimuth = cage + 2.0 * math.pi * np.arange(row.count) / row.count
+    for one in spalls:
+        if isinstance(one, CageFault):
+            azimuth[one.element] += one.length / (0.5 * row.pitch_diameter)
     c, s = np.cos(azimuth), np.sin(azimuth)
     away, tilt = q[0] * c + q[1] * s, q[4] * c - q[3] * s
-    less = sum((drops(one, row, azimuth, time) for one in spalls), np.zeros(row.count))
+    into = [drops(one, row, azimuth, time, cage_time) for one in spalls if isinstance(one, RollingSpall)]
+    less = sum(into, np.zeros(row.count))
     if isinstance(row, BallRow):
         between = (row.inner_groove + row.outer_groove - 1.0) * row.ball_diameter
         arm = 0.5 * row.pitch_diameter + (row.inner_groove - 0.5) * row.ball_diameter
@@ -143,17 +172,28 @@ def bearing_law(row: BallRow | RollerRow, spalls: Sequence[RollingSpall], q: Flo
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("row", "spalls"),
+    ("row", "spalls", "slip"),
     [
-        (BALLS, [RollingSpall("outer", 2e-3, 1e-4, azimuth=-1.5)]),
-        (BALLS, [RollingSpall("inner", 2e-3, 6e-6, azimuth=-2.5), RollingSpall("element", 1e-3, 1e-4, 0.3, element=7)]),
-        (ROLLERS, [RollingSpall("element", 1e-3, 1e-4, element=10), RollingSpall("outer", 1e-3, 1e-4, azimuth=-1.2)]),
+        (BALLS, [RollingSpall("outer", 2e-3, 1e-4, azimuth=-1.5)], NO_SLIP),
+        (
+            BALLS,
+            [RollingSpall("inner", 2e-3, 6e-6, azimuth=-2.5), RollingSpall("element", 1e-3, 1e-4, 0.3, element=7)],
+            CageSlip(0.03, 0.05, 2),
+        ),
+        (
+            ROLLERS,
+            [RollingSpall("element", 1e-3, 1e-4, element=10), RollingSpall("outer", 1e-3, 1e-4, azimuth=-1.2)],
+            NO_SLIP,
+        ),
+        (ROLLERS, [CageFault(8e-4, element=9), CageFault(2e-4, element=2)], CageSlip(0.02)),
     ],
-    ids=["balls", "several", "rollers"],
+    ids=["balls", "several", "rollers", "cage"],
 )
-def test_motion_on_a_housing_that_yields(row: BallRow | RollerRow, spalls: list[RollingSpall]) -> None:
+def test_motion_on_a_housing_that_yields(
+    row: BallRow | RollerRow, spalls: list[RollingSpall | CageFault], slip: CageSlip
+) -> None:
     """Acceleration of its sensor, and the shaft's motion in both bearings, over the strikes of some elements."""
-    parts = machine(RollingBearing([row]), *spalls, housing=True)
+    parts = machine(RollingBearing([row]), *spalls, housing=True, slip=slip)
     (shaft,) = parts.rotors
     size = shaft.size
     rows = {name: np.hstack([shaft.motions(at), -SEATS[name].T[:5]]) for name, at in PLACES.items()}
@@ -163,10 +203,13 @@ def test_motion_on_a_housing_that_yields(row: BallRow | RollerRow, spalls: list[
     for one in rows.values():
         damping += DAMPING * one[:2].T @ one[:2]
     weight = parts.system.load
-    damaged = {"left": spalls, "right": []}
+    damaged = {"left": (spalls, slip), "right": ([], NO_SLIP)}
 
     def forces(q: FloatArray, time: float) -> FloatArray:
-        held = [d.T @ bearing_law(row, damaged[name], d @ q, time) for name, d in rows.items()]
+        held = []
+        for name, d in rows.items():
+            faults, slipping = damaged[name]
+            held.append(d.T @ bearing_law(row, faults, d @ q, time, slipping))
         return weight - stiffness @ q - sum(held)
 
     def slope(time: float, state: FloatArray) -> FloatArray:
@@ -195,7 +238,7 @@ def test_motion_on_a_housing_that_yields(row: BallRow | RollerRow, spalls: list[
     known = solve_ivp(slope, (0.0, duration), start, "DOP853", found.times, rtol=1e-7, atol=1e-12, max_step=5e-5)
     places = outputs @ known.y[: size + 2]
     moved = np.ptp(places, axis=1).max()
-    assert moved > 5e-7
+    assert moved > (1e-7 if isinstance(spalls[0], CageFault) else 5e-7)
     np.testing.assert_allclose(found.displacement.T, places, atol=0.005 * moved)
     accelerations = [
         float(top[0] @ slope(time, state)[size + 2 :]) for time, state in zip(known.t.tolist(), known.y.T, strict=True)

@@ -296,7 +296,7 @@ def _of_discs(index: int, rotor: Rotor, materials: Mapping[str, Material]) -> It
 def _of_elements(index: int, entry: Bearing) -> Iterator[Finding]:
     """Yield a rolling bearing that cannot be built, and spalls that it cannot have."""
     from gearwhine.rotors.errors import RotorError
-    from gearwhine.rotors.rolling_bearings import spall_contacts
+    from gearwhine.rotors.rolling_bearings import require_possible
 
     if not isinstance(entry.stiffness, RollingStiffness):
         return
@@ -308,9 +308,9 @@ def _of_elements(index: int, entry: Bearing) -> Iterator[Finding]:
         return
     for number, fault in enumerate(entry.fault):
         try:
-            spall_contacts(fault.build(), rolling, 0.0)
+            require_possible(fault.build(), rolling)
         except RotorError as error:
-            yield Finding(("bearing", index, "fault", number), f"a spall that the bearing can have; {error}", UNSAID)
+            yield Finding(("bearing", index, "fault", number), f"a fault that the bearing can have; {error}", UNSAID)
 
 
 def _of_pairs(parts: Parts) -> Iterator[Finding]:

@@ -1,6 +1,7 @@
 """Friction of teeth, nonlinear rolling bearings and stops in a case: what is read, what is refused, what moves."""
 
 import copy
+import math
 import tomllib
 from importlib.resources import files
 from typing import Any
@@ -11,14 +12,18 @@ from coupled_cases import about_operating_point
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
+from gearwhine.coupling.analyses.condition_record import bearing_tones
 from gearwhine.coupling.analyses.transient import solve_transient
+from gearwhine.coupling.machine.driving_frequencies import spall_strikes
+from gearwhine.coupling.signals import line_names
 from gearwhine.results.run import transient_document
-from gearwhine.rotors.rolling_bearings import RollingSpall
+from gearwhine.rotors.rolling_bearings import CageFault, CageSlip, RollingSpall
 from gearwhine.solve.machine import plan_of
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
 DEEP_GROOVE = {"count": 9, "element_diameter": "9 mm", "pitch_diameter": "46 mm", "clearance": "6 um"}
 SPALL = {"on": "outer", "length": "1 mm", "depth": "40 um", "azimuth": "90 deg"}
+CAGE = {"on": "cage", "length": "0.5 mm", "element": 3}
 STOP = {"force": "1 kN", "depth": "10 um", "exponent": 1.5, "gap": "50 um"}
 
 
@@ -43,6 +48,33 @@ def test_what_is_read_is_written() -> None:
     assert again.bearing == case.bearing
     stopped = spur_pair(stiffness={"stop": STOP})
     assert parse_case(tomllib.loads(dump_case(stopped))).bearing == stopped.bearing
+
+
+def test_a_worn_cage_that_slips() -> None:
+    """In the law, at its rate, named, and warned of where the element would touch the next one."""
+    case = spur_pair(**rolling("nonlinear"), fault=CAGE, slip={"mean": 0.02, "scatter": 0.01, "seed": 7})
+    law = case.parts.bearings[0].law
+    assert isinstance(law, RollingLaw)
+    assert law.spalls == (CageFault(5e-4, element=3),)
+    assert law.slip == CageSlip(0.02, 0.01, 7)
+    assert parse_case(tomllib.loads(dump_case(case))).bearing == case.bearing
+    machine = case.parts.machine
+    assert machine is not None
+    speed = abs(machine.speeds["input"]) / (2.0 * math.pi)
+    cage = 0.98 * 0.5 * (1.0 - 9.0 / 46.0) * speed
+    tones = bearing_tones(machine)
+    assert tones["input-back: cage"] == pytest.approx(cage)
+    assert tones["input-back: outer raceway"] == pytest.approx(9 * cage)
+    assert tones["input-back: inner raceway"] == pytest.approx(9 * (speed - cage))
+    (strikes,) = spall_strikes(machine.assembled.system)
+    assert (strikes.name, strikes.frequency) == ("cage of input-back", pytest.approx(cage))
+    assert strikes.half_width == pytest.approx(math.pi * 0.01**2 / 9 * cage)
+    (line,) = line_names(machine.assembled, [3.0 * cage + 8.0 * strikes.half_width], 1e-6 * cage)
+    assert line.name == "3× cage of input-back"
+    (line,) = line_names(machine.assembled, [3.0 * cage + 10.0 * strikes.half_width], 1e-6 * cage)
+    assert "cage" not in line.name
+    with pytest.raises(CaseError, match="the gap to the next element"):
+        spur_pair(**rolling("nonlinear"), fault=CAGE | {"length": "8 mm"})
 
 
 def test_laws_of_bearings() -> None:
@@ -73,7 +105,13 @@ def test_laws_of_bearings() -> None:
         ({"stiffness": {"stop": STOP | {"gap": "-1 um"}}}, "bearing[0].stiffness.stop.gap"),
         (rolling("linear") | {"fault": SPALL}, "bearing[0].fault"),
         ({"fault": SPALL}, "bearing[0].fault"),
-        (rolling("nonlinear") | {"fault": SPALL | {"on": "cage"}}, "bearing[0].fault[0].on"),
+        (rolling("nonlinear") | {"fault": SPALL | {"on": "ring"}}, "bearing[0].fault[0].on"),
+        (rolling("nonlinear") | {"fault": SPALL | {"on": "cage"}}, "bearing[0].fault[0].depth"),
+        (rolling("nonlinear") | {"fault": {"on": "outer", "length": "1 mm"}}, "bearing[0].fault[0].depth"),
+        (rolling("nonlinear") | {"fault": CAGE | {"azimuth": "3 deg"}}, "bearing[0].fault[0].azimuth"),
+        (rolling("nonlinear") | {"slip": {"mean": 0.6}}, "bearing[0].slip.mean"),
+        (rolling("nonlinear") | {"slip": {"scatter": -0.01}}, "bearing[0].slip.scatter"),
+        (rolling("linear") | {"slip": {"mean": 0.01}}, "bearing[0].slip"),
         (rolling("nonlinear") | {"fault": SPALL | {"element": 2}}, "bearing[0].fault[0].element"),
         (rolling("nonlinear") | {"fault": SPALL | {"depth": "0 mm"}}, "bearing[0].fault[0].depth"),
     ],

@@ -259,6 +259,45 @@ def test_no_such_planet_has_a_fault(name: str, planet: int) -> None:
     assert "of the `count` that a [[planetary]] mounts" in str(refused.value)
 
 
+def with_spalls(*faults: dict[str, Any]) -> dict[str, Any]:
+    """The set with rolling elements in the left bearings of the planets, which are damaged."""
+    document = stage()
+    document["rotor"][1]["segments"] = [{"length": "60 mm", "diameter": "40 mm", "bore": "32 mm"}]
+    balls = {"count": 10, "element_diameter": "6 mm", "pitch_diameter": "20 mm", "clearance": "-1 um"}
+    document["bearing"][2] |= {"stiffness": {"rolling": {**balls, "law": "nonlinear"}}, "fault": list(faults)}
+    return document
+
+
+def test_one_planet_alone_has_a_spalled_bearing() -> None:
+    """A spall of a pin stands to its planet as that of the first one; an element's angle is against its raceway."""
+    size = {"length": "1 mm", "depth": "0.1 mm"}
+    pin = {"on": "inner", "azimuth": "-20 deg", **size}
+    case = read(with_spalls({**pin, "planet": 3}, {"on": "element", "azimuth": "10 deg", **size}, pin))
+    spalls = [one.fault for one in case.bearing if one.name.startswith("p left")]
+    assert [[fault.on for fault in of] for of in spalls] == [
+        *[["element", "inner"]] * 2,
+        ["inner", "element", "inner"],
+    ]
+    angles = [[math.degrees(fault.azimuth) for fault in of] for of in spalls]
+    expected = ([10.0, -20.0], [10.0, 100.0], [220.0, 10.0, 220.0])
+    assert all(found == pytest.approx(known) for found, known in zip(angles, expected, strict=True))
+    built = [mounted for mounted in case.parts.bearings if mounted.spalls]
+    assert [len(mounted.spalls) for mounted in built] == [2, 2, 3]
+
+
+@pytest.mark.parametrize(("place", "planet"), [(2, 4), (0, 1)])
+def test_no_such_planet_has_a_spalled_bearing(place: int, planet: int) -> None:
+    document = with_spalls()
+    document["bearing"][place] |= {
+        "stiffness": document["bearing"][2]["stiffness"],
+        "fault": {"on": "outer", "length": "1 mm", "depth": "0.1 mm", "planet": planet},
+    }
+    with pytest.raises(CaseError) as refused:
+        read(document)
+    assert [problem.key for problem in refused.value.problems] == [f"bearing[{place}].fault[0].planet"]
+    assert "mounts of this bearing" in str(refused.value)
+
+
 def test_check_tells_rates_of_faults() -> None:
     """By hand: the carrier turns at 50 · 24/108 Hz, the sun 38.889 Hz faster, a planet on its pin 24/30 of that."""
     document = stage()

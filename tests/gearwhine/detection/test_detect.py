@@ -11,6 +11,7 @@ import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
+from gearwhine.coupling.analyses.gear_condition import INDICATORS
 
 CRACK = 'gear.pinion.fault={ kind = "crack", tooth = 3, depth = "1 mm" }'
 SHORT = [
@@ -95,6 +96,34 @@ def test_a_key_that_is_no_tooth_fault_grows_from_its_value() -> None:
     assert planned.monitor.sensors == ("top", "right wall")
     with pytest.raises(CaseError, match=r"detection\.fault"):
         gw.load("small-gearbox", {"detection": {"fault": "a..b", "severities": [1, 2], "sensor_noise": 1.0}})
+
+
+def test_the_bearing_of_a_planet_that_is_written_once_has_the_fault() -> None:
+    """Its tone is that of all planets; no gear of the set has an average, which the indicators of time do not take."""
+    from gearwhine.analyses.detection_result import plan_detection
+
+    balls = {"count": 11, "element_diameter": "6 mm", "pitch_diameter": "28 mm", "clearance": "-2 um"}
+    spall = {"on": "outer", "length": "1 mm", "depth": "0.1 mm", "row": 0, "planet": 2}
+    study = gw.load(
+        "planetary-stage",
+        {
+            "bearing.pin back.stiffness": {"rolling": {**balls, "law": "nonlinear"}},
+            "bearing.pin back.damping": "",
+            "bearing.pin back.fault": spall,
+            "detection": {
+                "fault": "bearing.pin back.fault.length",
+                "severities": ["0.5 mm", "1 mm"],
+                "sensor_noise": "0.1 m/s^2",
+            },
+        },
+    )
+    planned = plan_detection(study._source)
+    assert planned.spall is not None
+    assert (planned.spall[0], planned.spall[1].on, planned.spall[1].length) == ("pin back 1", "outer", 1e-3)
+    assert planned.without == "bearing.pin back.fault="
+    assert all(INDICATORS[name].of_time for name in planned.monitor.indicators)
+    healthy = planned.source.changed_case([planned.without])
+    assert [len(one.fault) for one in healthy.bearing if one.rotor.startswith("planet")] == [0] * 6
 
 
 @pytest.mark.slow
