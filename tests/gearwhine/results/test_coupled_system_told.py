@@ -16,13 +16,13 @@ def _mode(hertz: float, ratio: float) -> dict[str, Any]:
     return mode | {"kind": "rotor", "where": "sun", "energy": energy, "strained_most": None}
 
 
-def _told(sum_rule: float, *, complete: bool) -> tuple[str, list[Any]]:
+def _told(sum_rule: float, *, complete: bool, whirl: float = 0.0) -> tuple[str, list[Any]]:
     peaks = [{"frequency_hz": hertz, "amplitude": 1e6 * height} for hertz, height in ((500.0, 90.0), (800.0, 3.0))]
     response = {"excitation": "transmission error of s -> p", "per": "m"}
     document = {
         "coordinates": 4,
         "speed_rpm": 3000.0,
-        "modes": [_mode(500.0, 1e-5), _mode(800.0, 0.02)],
+        "modes": [_mode(500.0, 1e-5), _mode(800.0, 0.02) | {"whirl": whirl}],
         "certificate": CERTIFICATE | {"sum_rule": sum_rule, "complete": complete},
         "transmissibility": [response | {"mesh_force_n": {"s -> p": peaks}, "sensor_acceleration_m_per_s2": {}}],
     }
@@ -42,3 +42,12 @@ def test_a_missed_sum_rule_is_no_proof() -> None:
     text = _told(0.2, complete=False)[0]
     assert "sum rule missed by 2e-01" in text
     assert "responses are solved directly" in text
+
+
+def test_arrows_of_whirl_have_a_legend() -> None:
+    """`whirl` is 1 of a counter-clockwise circle, seen from +z."""
+    text, content = _told(1e-14, complete=True, whirl=1.0)
+    table = next(one for one in content if isinstance(one, Table))
+    assert any("rotor: sun ↺" in cell for row in table.filled()[1] for cell in row)
+    assert "↺ counter-clockwise" in text
+    assert "↺" not in _told(1e-14, complete=True)[0]
