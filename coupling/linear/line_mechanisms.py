@@ -62,6 +62,8 @@ MECHANISMS = (
 _POINTS = 200  # number of phases of a mesh period, as in the mean mesh
 _SAME_FREQUENCY_DIFFERENCE = 1e-6  # relative difference of frequencies that are one
 _TRANSMISSION_ERROR_ROUNDING = 1e-12  # part of the largest transmission error that is rounding
+_UNRESOLVED_HARMONICS = 32  # largest number of harmonics of the hunting period that a line adds up
+_FAINT_HARMONIC = 1e-4  # part of the largest of these below which one adds nothing
 _BESIDE = 1e-9  # distance of a phase from a step [mesh periods]
 
 
@@ -346,17 +348,22 @@ class LineMechanisms:
         periods = contact.contact.hunting_period
         if periods == 1:
             return
-        order = round(frequency / rate * periods)
-        # Closer harmonics of the hunting period than the line resolves make no single line.
-        if order > 0 and abs(order / periods * rate - frequency) <= reach and reach < 0.5 * rate / periods:
-            every, same = self._hunting[number]
-            at = order / periods
-            error = polygon_phasors(every.phases, every.transmission_error, [at], periods)
-            if order % periods == 0:
-                error = error - polygon_phasors(same.phases, same.transmission_error, [at])
-            error = _at_time_zero(error, contact, at)
-            if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max():
-                yield at * rate, "pitch_errors", _along(contact.direction, stiffness * error[0], contact.turning)
+        # The harmonics of the hunting period that the line does not resolve make it together.
+        spacing = rate / periods
+        cycles = np.arange(max(1, np.ceil((frequency - reach) / spacing)), np.floor((frequency + reach) / spacing) + 1)
+        if not 0 < len(cycles) <= _UNRESOLVED_HARMONICS:
+            return
+        every, same = self._hunting[number]
+        orders = cycles / periods
+        errors = polygon_phasors(every.phases, every.transmission_error, orders, periods)
+        if np.any(of_mesh := cycles % periods == 0):
+            errors[of_mesh] -= polygon_phasors(same.phases, same.transmission_error, orders[of_mesh])
+        errors = _at_time_zero(errors, contact, orders)
+        rounding = _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max()
+        least = max(rounding, _FAINT_HARMONIC * np.abs(errors).max())
+        for at, error in zip(orders.tolist(), errors.tolist(), strict=True):
+            if abs(error) > least:
+                yield at * rate, "pitch_errors", _along(contact.direction, stiffness * error, contact.turning)
 
     def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, Force]]:
         """Yield frequency [rad/s] and force (k + iω c) e d of each harmonic of a contact's runout."""
@@ -424,7 +431,7 @@ def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:
     return np.asarray(sense * sliding.coefficient * mesh.force * shares)
 
 
-def _at_time_zero(phasors: ComplexArray, contact: ContactConnector, order: float) -> ComplexArray:
+def _at_time_zero(phasors: ComplexArray, contact: ContactConnector, order: float | FloatArray) -> ComplexArray:
     """Return phasors by the mesh phase as those at t = 0, by e^{iωt} with ω > 0."""
     if contact.mesh_frequency < 0.0:
         phasors = phasors.conj()
