@@ -3,6 +3,7 @@
 from typing import Any
 
 from gearwhine.output.sections import Table
+from gearwhine.results.mesh_lines import line_content
 from gearwhine.results.system import sections
 
 CERTIFICATE = {"found": 8, "expected": 8, "zeros": 2, "max_residual": 1e-12}
@@ -51,3 +52,26 @@ def test_arrows_of_whirl_have_a_legend() -> None:
     assert any("rotor: sun ↺" in cell for row in table.filled()[1] for cell in row)
     assert "↺ counter-clockwise" in text
     assert "↺" not in _told(1e-14, complete=True)[0]
+
+
+def _line(hertz: float, together: float, in_all: float) -> dict[str, Any]:
+    parts = {
+        "by_transmission_error": {"top": together},
+        "by_load_shuttling": {"top": 0.1},
+        "together": {"top": together},
+    }
+    line = {"frequency_hz": hertz, "cause": "1× a -> b", "order": 1.0, "sensor_acceleration_m_per_s2": parts}
+    return line | {"band_db": {"top": [-1.0, 1.0]}, "parts_together_m_per_s2": {"top": in_all}}
+
+
+def test_a_line_that_pitch_errors_of_another_stage_meet_is_ranked_by_all_of_them() -> None:
+    table, words = list(line_content({"mesh_lines": [_line(1112.0, 5.0, 5.0), _line(376.0, 4.7, 15.8)]}))[1:3]
+    assert isinstance(table, Table)
+    columns, rows = table.filled()
+    headings = [column.heading for column in columns]
+    assert [row[headings.index("in all")] for row in rows] == ["15.8", "5"]
+    assert "pitch deviations of the other gears" in str(words)
+    table, words = list(line_content({"mesh_lines": [_line(1112.0, 5.0, 5.01)]}))[1:3]
+    assert isinstance(table, Table)
+    assert "in all" not in [column.heading for column in table.filled()[0]]
+    assert "In all" not in str(words)
