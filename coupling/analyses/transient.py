@@ -21,7 +21,7 @@ from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile
 from gearwhine.coupling.signals.peaks import SpectralPeaks, spectral_peaks
-from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
+from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, amplitude_spectrum, signal_parts
 from gearwhine.coupling.time.exponential_collocation import integration_method
 from gearwhine.coupling.time.histories import (
     Histories,
@@ -147,8 +147,14 @@ class SolvedTransient:
         )
 
     def sensor_rms(self, sensor: str) -> float:
-        """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²]."""
-        return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
+        """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²].
+
+        Of a record in memory it is that of all its samples, which no window weighs.
+        """
+        if self.record.sampling.is_long:
+            return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
+        whole = amplitude_spectrum(self.histories.sensor_acceleration[sensor], self.record.sampling.interval)
+        return float(whole.rms(self.trusted_limit))
 
     def sensor_peaks(self, sensor: str) -> SpectralPeaks:
         """Return the reported spectral peaks of a sensor, highest first."""

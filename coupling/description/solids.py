@@ -18,11 +18,23 @@ from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.numerics.findings import Finding, Part, in_mm
 from gearwhine.rotors import Rotor, Segment
-from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, SphericalRollerRow
+from gearwhine.rotors.rolling_bearings import (
+    BallRow,
+    RollingBearing,
+    SphericalRollerRow,
+    TaperedRollerRow,
+    dynamic_rating,
+)
 
 _SLACK = 5e-5
 """Overlap of two parts up to which they just touch [m]."""
 _SAME_AXIS = 1e-6
+_RATINGS_APART = 4.0
+"""Factor between a given dynamic rating and that of the geometry from which one of them is doubted."""
+_STEEPEST_TAPER = 35.0
+"""Contact angle of tapered rollers from which it is doubted [°]."""
+_LARGEST_OFFSET = 5e-4
+"""Axial offset at assembly from which it is doubted [m]."""
 _UNKNOWN_BEARING_WIDTH = 0.9e-4
 """Width of a bearing of unknown size, and height of its ring [m]: half of it is within the slack, so that a bearing at
 the end of a face touches it."""
@@ -295,6 +307,31 @@ def _ring_fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]
             return
 
 
+def _rolling_findings(part: Part, rolling: RollingBearing) -> Iterator[Finding]:
+    """Yield a rating, a contact angle and an offset at assembly that rolling bearings hardly have."""
+    geometry, given = dynamic_rating(rolling.rows[0], len(rolling.rows)), rolling.catalogue_rating
+    if given is not None and not 1.0 / _RATINGS_APART < given / geometry < _RATINGS_APART:
+        expected = (
+            f"a dynamic rating C near that of its elements by ISO 281, {1e-3 * geometry:.3g} kN; it is "
+            f"{1e-3 * given:.3g} kN"
+        )
+        yield Finding(part, "rolling", None, expected, "warning")
+    for row in rolling.rows:
+        angle = math.degrees(row.contact_angle)
+        if isinstance(row, TaperedRollerRow) and angle > _STEEPEST_TAPER:
+            expected = (
+                f"a contact angle of 10° to 30°, as tapered rollers have; {angle:.3g}° is a factor Y = 0.4 / tan α of "
+                f"{0.4 / math.tan(row.contact_angle):.3g} (a catalogue's e is 1.5 tan α)"
+            )
+            yield Finding(part, "rolling", None, expected, "warning")
+            return
+        offset = abs(getattr(row, "axial_offset", 0.0))
+        if offset > _LARGEST_OFFSET:
+            expected = f"an axial offset of some µm, by which bearings are preloaded; it is {in_mm(offset)}"
+            yield Finding(part, "rolling", None, expected, "warning")
+            return
+
+
 def bearing_findings(
     name: str, rotor: Rotor, at: float, rolling: RollingBearing | None, seat_diameter: float | None
 ) -> Iterator[Finding]:
@@ -443,6 +480,8 @@ def machine_findings(
         if held.elements is None and held.law is None:
             yield from bearing.findings
         yield from seat_error_findings(held)
+        if held.elements is not None:
+            yield from _rolling_findings(("bearing", bearing.name), held.elements)
         if seat_diameters is None:
             continue
         seat = seat_diameters.get(held.seat) if held.seat is not None else None

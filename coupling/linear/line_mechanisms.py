@@ -57,6 +57,8 @@ MECHANISMS = (
 
 _SAME_FREQUENCY_DIFFERENCE = 1e-6  # relative difference of frequencies that are one
 _TRANSMISSION_ERROR_ROUNDING = 1e-12  # part of the largest transmission error that is rounding
+_UNRESOLVED_HARMONICS = 32  # largest number of harmonics of the hunting period that a line adds up
+_FAINT_HARMONIC = 1e-4  # part of the largest of these below which one adds nothing
 
 
 @dataclass(frozen=True)
@@ -299,25 +301,31 @@ class LineMechanisms:
                 yield order * rate, "transmission_error", Force.along(contact, stiffness * error[0])
             if (rubbed := self.model.friction((number, order))) is not None:
                 yield order * rate, "friction", rubbed
-        # Closer harmonics of the hunting period than the line resolves make no single line.
-        resolved = periods == 1 or reach < 0.5 * rate / periods
+        # The harmonics of the hunting period that the line does not resolve make it together.
+        spacing = rate / periods
+        cycles = np.arange(max(1, np.ceil((frequency - reach) / spacing)), np.floor((frequency + reach) / spacing) + 1)
+        few = len(cycles) <= _UNRESOLVED_HARMONICS
         if number in self._stiffness_forces:
             orders, forces = self._stiffness_forces[number].lines
-            least = _TRANSMISSION_ERROR_ROUNDING * stiffness * np.abs(alike.transmission_error).max()
-            first, end = np.searchsorted(orders, [(frequency - reach) / rate, (frequency + reach) / rate]).tolist()
-            for at, force in zip(orders[first:end].tolist(), forces[first:end].tolist(), strict=True):
-                if (resolved or at % 1.0 == 0.0) and abs(force) > least:
+            near = (np.abs(orders * rate - frequency) <= reach) & (few | (orders % 1.0 == 0.0))
+            rounding = _TRANSMISSION_ERROR_ROUNDING * stiffness * np.abs(alike.transmission_error).max()
+            least = max(rounding, _FAINT_HARMONIC * np.abs(forces[near]).max(initial=0.0))
+            for at, force in zip(orders[near].tolist(), forces[near].tolist(), strict=True):
+                if abs(force) > least:
                     yield at * rate, "varying_stiffness", Force.along(contact, force)
-        order = round(frequency / rate * periods)
-        if periods > 1 and order > 0 and abs(order / periods * rate - frequency) <= reach and resolved:
-            every, same = self._hunting[number]
-            at = order / periods
-            error = polygon_phasors(every.phases, every.transmission_error, [at], periods)
-            if order % periods == 0:
-                error = error - polygon_phasors(same.phases, same.transmission_error, [at])
-            error = at_time_zero(error, contact, at)
-            if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max():
-                yield at * rate, "pitch_errors", Force.along(contact, stiffness * error[0])
+        if periods == 1 or not few or not len(cycles):
+            return
+        every, same = self._hunting[number]
+        orders = cycles / periods
+        errors = polygon_phasors(every.phases, every.transmission_error, orders, periods)
+        if np.any(of_mesh := cycles % periods == 0):
+            errors[of_mesh] -= polygon_phasors(same.phases, same.transmission_error, orders[of_mesh])
+        errors = at_time_zero(errors, contact, orders)
+        rounding = _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max()
+        least = max(rounding, _FAINT_HARMONIC * np.abs(errors).max())
+        for at, error in zip(orders.tolist(), errors.tolist(), strict=True):
+            if abs(error) > least:
+                yield at * rate, "pitch_errors", Force.along(contact, stiffness * error)
 
     def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, Force]]:
         """Yield frequency [rad/s] and force (k + iω c) e d of each harmonic of a contact's runout."""

@@ -23,6 +23,9 @@ from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_mesh
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
+_ONE_FREQUENCY = 1e-9
+"""Relative difference of frequencies that are one."""
+
 
 @dataclass(frozen=True, eq=False)
 class LinesOverSpeed:
@@ -149,13 +152,18 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
             ratio=ratio,
             limit=limit,
         )
-        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(lines.between[: len(rows)]) ** 2, axis=1))
+        apart = np.ones(lines.frequency.size, dtype=bool)
         for number, (load, motion) in enumerate(zip(loads, motions, strict=False)):
             w = ratio * load.frequency
             if w <= limit * (1.0 + 1e-9):
                 moved = sum((lines.by_stiffness[cause] for cause in load.causes), -(w**2) * (outputs @ motion))
+                # Teeth of another mesh that differ have a line here where an order of their shaft meets the harmonic.
+                met = np.abs(lines.frequency - w) <= _ONE_FREQUENCY * w
+                moved = moved + lines.between[:, met].sum(axis=1)
+                apart &= ~met
                 amplitudes[:, place, number] = np.abs(moved[: len(rows)])
                 rates[place, number] = moved[len(rows) :] / (1j * w)
+        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(lines.between[: len(rows), apart]) ** 2, axis=1))
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
     given = np.array(speeds, dtype=np.float64)
     return LinesOverSpeed(given, orders, tuple(machine.sensor_rows), amplitudes, between, rates)

@@ -589,7 +589,9 @@ def sum_of(loads: Mapping[str, ComplexArray]) -> ComplexArray:
     return np.asarray(np.sum([*loads.values()], axis=0))
 
 
-def at_time_zero(phasors: ComplexArray, contact: ContactConnector, order: float | IntArray) -> ComplexArray:
+def at_time_zero(
+    phasors: ComplexArray, contact: ContactConnector, order: float | IntArray | FloatArray
+) -> ComplexArray:
     """Return phasors by the mesh phase as those at t = 0, by e^{iωt} with ω > 0."""
     if contact.mesh_frequency < 0.0:
         phasors = phasors.conj()

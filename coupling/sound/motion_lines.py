@@ -26,8 +26,8 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_SAME_LINE = 1e-6  # distance up to which two lines are one, over the spacing of lines
-_EXACT = 0.02  # distance of an exact line from the frequency of its cause, over the spacing of lines
+_EXACT = 0.02  # distance of a record's exact line from the frequency of its cause, over the spacing of lines
+_PERIODIC = 1e-6  # rounding of the frequency of a line of a periodic motion, over the spacing of lines
 _FOUND = 0.5  # distance of a tone between the lines from the frequency of its cause, over their spacing
 _FORCES = 3  # number of forces: a bearing's axes are x, y, z and the rotations about x and y
 _FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
@@ -124,7 +124,7 @@ def lines_of_steady(solved: SolvedSteady, limit: float) -> MotionLines:
             name: amplitude_spectrum(np.ascontiguousarray(force.T), motion.response.period / len(force))
             for name, force in motion.histories.forces_on_housing.items()
         }
-        lines.append(_lines_of(spectra, _EXACT / motion.response.period))
+        lines.append(_lines_of(spectra, _PERIODIC / motion.response.period))
     return superposed_lines(lines).between(np.finfo(float).tiny, limit)
 
 
@@ -142,7 +142,7 @@ def superposed_lines(motions: "list[MotionLines]") -> MotionLines:
     order = np.argsort(frequencies, kind="stable")
     ascending = frequencies[order]
     tolerance = min(motion.tolerance for motion in motions)
-    starts = np.flatnonzero(np.diff(ascending, prepend=-np.inf) > _SAME_LINE / _EXACT * tolerance)
+    starts = np.flatnonzero(np.diff(ascending, prepend=-np.inf) > tolerance)
     forces = {
         name: np.add.reduceat(np.concatenate([motion.forces[name] for motion in motions])[order], starts, axis=0)
         for name in motions[0].forces

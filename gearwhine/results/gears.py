@@ -562,17 +562,18 @@ def _error(error: Document) -> str:
 def _load(pair: Document) -> list[str]:
     """Return lines on load sharing and contact pressure."""
     lines = []
+    over = " in the first mesh period" if pair["transmission_error_m"]["over_hunting_period"] else ""
     if sharing := pair["load_sharing"]:
         parts = ", ".join(f"{count} for {percent(part)}" for count, part in sharing["pairs_in_contact"].items() if part)
         lines.append(
-            f"Pairs of teeth that carry: {parts} of the time, {sharing['loaded_contact_ratio']:.4f} in the mean; "
+            f"Pairs of teeth that carry{over}: {parts} of the time, {sharing['loaded_contact_ratio']:.4f} in the mean; "
             f"one carries {percent(sharing['largest_share'])} at most"
         )
         if sharing["corner_force_n"]:
             lines.append(f"Corners carry up to {sharing['corner_force_n']:.4g} N beyond the path of contact")
     if pressure := pair["contact_pressure_pa"]:
         where = _degrees(pressure["at_driver_roll_angle_rad"], ".2f")
-        lines.append(f"Contact pressure {_MEGA * pressure['max']:.0f} MPa at most, at {where} roll of the driver")
+        lines.append(f"Contact pressure {_MEGA * pressure['max']:.0f} MPa at most{over}, at {where} roll of the driver")
         if pressure["pitch_point"] is not None:
             lines[-1] += f"; {_MEGA * pressure['pitch_point']:.0f} MPa at the pitch point"
     return lines

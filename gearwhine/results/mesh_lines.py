@@ -14,7 +14,9 @@ _LINES = 3  # of each sensor, the highest
 _SIDEBANDS = 8  # of each sensor, the highest, where carriers turn
 _LISTED_LEFT = 6  # lines that equal planets would not have, the highest
 _FAINT_LINE = 1e-3  # part of a sensor's highest line below which what is left of a line is not listed
+_OTHER_PART = 0.01  # part of a line by others than its meshes from which it is listed
 _ROUNDING = 1e-9  # part of a sensor's highest line up to which a line is not listed
+_IN_ALL_KEY = "parts_together_m_per_s2"
 _PARTS = ("by_transmission_error", "by_varying_stiffness", "by_load_shuttling", "by_friction", "together")
 
 
@@ -110,7 +112,7 @@ def _limit_sentences(limits: Document) -> Iterator[str]:
 
 
 def line_content(document: Document) -> Iterator[str | Table]:
-    """Yield the highest lines of each sensor by each mechanism of the teeth and by all."""
+    """Yield the highest lines of each sensor by each mechanism of the teeth, by these and by all."""
     lines = document.get("mesh_lines", [])
     rows: list[dict[str, Any]] = []
     turning = any("kind" in line for line in lines)
@@ -121,21 +123,24 @@ def line_content(document: Document) -> Iterator[str | Table]:
             | {key: line[key] for key in keys if key in line}
             | {name: parts[name][sensor] for name in _PARTS if name in (parts := line["sensor_acceleration_m_per_s2"])}
             | ({"band_db": line["band_db"][sensor]} if "band_db" in line else {})
+            | {"in_all": (line["sensor_acceleration_m_per_s2"]["together"] | line.get(_IN_ALL_KEY, {}))[sensor]}
             for line in lines
         ]
-        highest = sorted(of_sensor, key=lambda row: -row["together"])
-        least = _ROUNDING * highest[0]["together"]
-        rows += [row for row in highest if row["together"] > least][: _SIDEBANDS if turning else _LINES]
+        highest = sorted(of_sensor, key=lambda row: -row["in_all"])
+        least = _ROUNDING * highest[0]["in_all"]
+        rows += [row for row in highest if row["in_all"] > least][: _SIDEBANDS if turning else _LINES]
     limits = document.get("mesh_line_limits")
     if rows:
         yield "Highest lines of the sensors at operation, linear response about the mean load [m/s²]:"
         short = turning and limits is not None and len(limits["meshes"]) == len(limits.get("carriers", ())) == 1
-        yield from table_of(_turning_columns(short=short) if turning else _LINE_COLUMNS, rows)
+        more = any(abs(row["in_all"] - row["together"]) > _OTHER_PART * row["in_all"] for row in rows)
+        columns = _turning_columns(short=short) if turning else _LINE_COLUMNS
+        yield from table_of((*columns[:-1], _IN_ALL, columns[-1]) if more else columns, rows)
         if short:
             yield "Lines n f_m + k f_c: n harmonic of the planets' meshes, k turns of the carrier, see below."
         yield (
             "By error: transmission error with the mean mesh stiffness; by stiffness: what its variation with the "
-            "phase adds; together: the sum with phase, above or below each part."
+            "phase adds; together: the sum with phase, above or below each part." + (_ALL_WORDS if more else "")
         )
     if turning:
         yield (
@@ -214,6 +219,13 @@ _LINE_COLUMNS = (
     Column("by friction", "by_friction", ".3g"),
     Column("together", "together", ".3g"),
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
+)
+
+
+_IN_ALL = Column("in all", "in_all", ".3g")
+_ALL_WORDS = (
+    " In all: with what else excites at the frequency, such as pitch deviations of the other gears of a shaft, whose "
+    "orders meet the harmonic."
 )
 
 

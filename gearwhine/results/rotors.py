@@ -690,8 +690,10 @@ def _critical_speeds(rotor: Document) -> Iterator[str | Table]:
         ]
         yield from table_of(_CRITICAL_COLUMNS, rows[:_MOST_TABLE_ROWS], f"Critical speeds from {_span(campbell)}")
         if not rows:
-            undamped = rotor["critical_speeds_rpm"]
-            lowest = f"; undamped, the lowest is {undamped[0]:.5g} rpm" if undamped else ""
+            lowest = ""
+            if rotor["critical_speeds_rpm"]:
+                way = _whirl_name(rotor["critical_directions"][0], {"axial_share": rotor["critical_axial_share"][0]})
+                lowest = f"; undamped, the lowest is {rotor['critical_speeds_rpm'][0]:.5g} rpm, {way}"
             yield f"No critical speed from {_span(campbell)}{lowest}"
         yield from _nearest(rows)
     if campbell is not None and campbell["orders"]:
@@ -767,7 +769,9 @@ _PROBES = (
     Column(
         "lag",
         "operation_phase_lag_deg",
-        shown=lambda row: "" if row["operation_phase_lag_deg"] is None else f"{row['operation_phase_lag_deg']:.0f}°",
+        shown=lambda row: (
+            "" if row["operation_phase_lag_deg"] is None else f"{round(row['operation_phase_lag_deg']) % 360}°"
+        ),
     ),
     Column(
         "largest [µm, peak]",

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.periodic.superposition import SuperposedResponse
 
 _TILTS = ("about x", "about y")
-_EXACT_LINE_DISTANCE = 0.02  # distance of a line from the frequency of its cause, over the spacing of lines
+_EXACT_LINE_DISTANCE = 1e-6  # rounding of the frequency of a line of a periodic motion, over the spacing of lines
 _LINES_SHOWN = 3  # highest lines of each sensor on the terminal, with what excites them
 
 PROOF = (

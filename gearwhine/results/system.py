@@ -1,6 +1,6 @@
 """Coupled system: quantities of its modes, stability, responses and Campbell diagram, and how they are shown."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -634,7 +634,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield _mesh_sentence(mesh)
     yield from (f"Gear body {line}." for line in gear_body_lines(document))
     yield from table_of(mode_columns(listed), listed)
-    yield "Shares of the kinetic energy; teeth: share of the strain energy."
+    yield "Shares of the kinetic energy; teeth: share of the strain energy." + _whirl_legend(listed)
     if sets := sorted({carrier for mode in listed if (carrier := _set_of(mode))}):
         yield (
             f"Rotational, translational, planet and mixed modes: those of the planetary set{'s' * (len(sets) > 1)} of "
@@ -746,6 +746,12 @@ def _named(mode: Document) -> str:
     whirl = mode.get("whirl", 0.0)
     sense = "" if abs(whirl) < _WHIRL else " ↺" if whirl > 0.0 else " ↻"
     return f"{kind}: {where}{sense}"
+
+
+def _whirl_legend(listed: Sequence[Document]) -> str:
+    """Return what the arrows of whirling modes mean; empty where no mode has one."""
+    arrows = any(arrow in _named(mode) for mode in listed for arrow in "↺↻")
+    return " Whirl seen from +z: ↺ counter-clockwise, ↻ clockwise." if arrows else ""
 
 
 def _set_of(mode: Document) -> str:

@@ -253,9 +253,10 @@ def _of_load(gearbox: _Gearbox) -> Named:
     for bearing in load.bearings:
         name = f"bearing.{bearing.load.name}"
         yield f"{name}.force_n", float(np.linalg.norm(bearing.load.force[:3]))
-        life = None if bearing.rated is None else bearing.rated.reference_life
-        if life is not None:
-            yield f"{name}.life_h", life
+        if bearing.rated is not None and bearing.rated.life is not None:
+            yield f"{name}.life_h", bearing.rated.life
+        if bearing.rated is not None and bearing.rated.reference_life is not None:
+            yield f"{name}.reference_life_h", bearing.rated.reference_life
     for one in load.planetary:
         yield f"planetary.{one.name}.mesh_load_factor", one.mesh_load_factor
 

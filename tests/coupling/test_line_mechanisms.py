@@ -121,6 +121,19 @@ def test_small_pitch_errors_leave_the_mesh_harmonics(sense: int) -> None:
     assert small < 1e-6 * np.linalg.norm(motions["transmission_error"])
 
 
+def test_a_line_that_does_not_resolve_the_hunting_period_has_all_its_pitch_errors() -> None:
+    """Each harmonic of the hunting period within reach, those of a mesh harmonic among them, moves as it does alone."""
+    waved = with_waves(1.0, 1)
+    spacing = 2.0 * np.pi * abs(waved.system.contacts[0].mesh_frequency) / HUNTING
+    groups = LineMechanisms(waved).motions(HUNTING * spacing, 1.2 * spacing)
+    errors = {round(at / spacing): motions["pitch_errors"] for at, motions in groups if "pitch_errors" in motions}
+    assert set(errors) == {HUNTING - 1, HUNTING, HUNTING + 1}
+    for cycles, motion in errors.items():
+        alone = predicted(waved, cycles / HUNTING)["pitch_errors"]
+        assert np.linalg.norm(alone) > 0.0
+        assert off(motion, alone) < 1e-9
+
+
 def test_a_line_adds_its_parts_with_their_phases_and_unresolved_ones_by_their_squares() -> None:
     parts = LineParts.of([{"transmission_error": 3.0, "load_shuttling": -1.0 + 2.0j}, {"unbalance": 2.0j}])
     assert parts.together == pytest.approx(np.sqrt(abs(2.0 + 2.0j) ** 2 + 4.0))

@@ -1,10 +1,12 @@
 """Lines of meshes against Fourier's integral, the mechanisms of single lines, and the motion."""
 
-from dataclasses import replace
-from functools import cache
+from dataclasses import fields, replace
+from functools import cache, cached_property
+from pathlib import Path
 
 import numpy as np
 import pytest
+from reducer_case import reducer
 from sounding_gearbox import small_gearbox
 
 import gearwhine as gw
@@ -136,6 +138,39 @@ def test_teeth_that_are_alike_have_no_lines_between() -> None:
     machine = small_gearbox().changed(CHANGES[:1]).machine
     coupled = load_machine(machine, machine.operating_point()).coupled
     assert not lines_over_speed(coupled, [machine.speed], LIMIT).between.any()
+
+
+class Watched(CoupledMachine):
+    """A machine without a housing, with a sensor of what the first mesh is compressed by."""
+
+    @cached_property
+    def sensor_rows(self) -> dict[str, np.ndarray]:
+        return {"first mesh": self.system.contact_directions[:, 0]}
+
+
+def test_pitch_errors_of_a_wheel_add_with_their_phase_to_the_next_mesh(tmp_path: Path) -> None:
+    """Order 19 of the middle shaft is the mesh of its pinion: |h + p|² + |h - p|² = 2 |h|² + 2 |p|²."""
+    (tmp_path / "reducer.toml").write_text(reducer((21, 30, 19, 56)))
+    errors = 2.0 * np.sin(2.0 * np.pi * 19.0 * np.arange(30) / 30.0)
+    found, parts = [], []
+    for sign in (0.0, 1.0, -1.0):
+        listed = ", ".join(f'"{sign * one:.6f} um"' for one in errors)
+        machine = gw.load(tmp_path / "reducer.toml", {"gear.b.errors.pitch": f"[{listed}]"}).machine
+        coupled = load_machine(machine, machine.operating_point()).coupled
+        watched = Watched(**{one.name: getattr(coupled, one.name) for one in fields(coupled) if one.init})
+        over = lines_over_speed(watched, [watched.speed], 1.2 * 19.0 * 0.7 * abs(watched.speed))
+        (place,) = np.flatnonzero(np.isclose(over.orders, 19.0 * 0.7))
+        found.append(over.amplitudes[0, 0, place])
+        line = LineMechanisms(watched).parts(19.0 * 0.7 * abs(watched.speed))["first mesh"]
+        parts.append(line.amplitudes.get("pitch_errors", 0.0))
+        # The errors have the order 30 - 19 of the shaft, too, between the harmonics of the meshes.
+        other = LineMechanisms(watched).parts(11.0 * 0.7 * abs(watched.speed)).get("first mesh")
+        apart = 0.0 if other is None else other.amplitudes["pitch_errors"] / np.sqrt(2.0)
+        assert over.between[0, 0] == pytest.approx(apart, rel=0.05)
+    alike, plus, minus = found
+    assert abs(plus - minus) > 0.05 * alike
+    by_errors = np.sqrt(0.5 * (plus**2 + minus**2) - alike**2)
+    assert by_errors == pytest.approx(parts[1], rel=0.05)
 
 
 @pytest.mark.slow

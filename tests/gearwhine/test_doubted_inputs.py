@@ -1,5 +1,7 @@
 """Inputs of Python that are allowed and unlikely, or that lead nowhere: warned of, or refused where they are made."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -32,6 +34,38 @@ def test_a_catalogue_bearing_in_millimetres_is_refused() -> None:
     with pytest.raises(gw.RotorError, match=r"outer diameter is 80; expected at most 5 m, .*; are 80 mm meant\?"):
         catalogue_bearing("deep-groove", 35, 80, 21)
     assert catalogue_bearing("spherical-roller", 2.0, 2.5, 0.4).rows  # a large one is no mistake
+
+
+TAPERED = {"static": 68e3, "dynamic": 61.6e3, "contact_angle": np.arctan(0.4 / 1.6), "carries": "+z"}
+"""A 30208, whose Y is 1.6 and e 0.37."""
+
+
+def on_tapered_rollers(offset: float = 5e-6, **changes: float) -> tuple[str, ...]:
+    shaft = gw.Shaft(gw.Rotor("shaft", [gw.Segment(0.24, 0.04, 0.0, gw.STEEL)]))
+    held = catalogue_bearing("tapered-roller", 0.04, 0.08, 0.01975, **(TAPERED | changes))
+    held = replace(held, rows=tuple(replace(row, axial_offset=offset) for row in held.rows))
+    facing = catalogue_bearing("tapered-roller", 0.04, 0.08, 0.01975, **(TAPERED | {"carries": "-z"}))
+    bearings = [("right", 0.22, held), ("left", 0.02, facing)]
+    mounted = [gw.MountedBearing.from_elements(name, at, "shaft", None, one) for name, at, one in bearings]
+    return tuple(gw.Machine([shaft], mounted, speed=100.0).warnings)
+
+
+def test_a_rating_in_kilonewtons_a_factor_e_for_y_and_an_offset_in_millimetres_are_doubted() -> None:
+    assert not on_tapered_rollers()
+    (rating,) = on_tapered_rollers(dynamic=61.6)
+    assert "bearing 'right'" in rating
+    assert "it is 0.0616 kN" in rating
+    (angle,) = on_tapered_rollers(contact_angle=np.arctan(0.4 / 0.37))
+    assert "47.2° is a factor Y = 0.4 / tan α of 0.37" in angle
+    (offset,) = on_tapered_rollers(offset=5e-3)
+    assert "it is 5 mm" in offset
+
+
+def test_a_limit_in_kilohertz_without_its_unit_is_doubted() -> None:
+    limited = gw.load("steel-box", {"housing.frequency_limit": 2.5})
+    (doubt,) = [text for text in limited.warnings if "frequency_limit" in text]
+    assert "expected at least 10 Hz" in doubt
+    assert not any("frequency_limit" in text for text in gw.load("steel-box").warnings)
 
 
 FIXTURES = {

@@ -118,6 +118,8 @@ def _of_speed(speed: float) -> Iterator[Finding]:
 
 
 _MOST_DAMPED = 0.1
+_LOWEST_LIMIT = 10.0
+"""Limit of a housing's modes from which a unit may be forgotten [Hz]."""
 
 
 def _of_housing(housing: Housing) -> Iterator[Finding]:
@@ -130,6 +132,10 @@ def _of_housing(housing: Housing) -> Iterator[Finding]:
         except HousingError as error:
             for finding in error.findings:
                 yield placed(("housing", "mass", index), finding)
+    limit = housing.frequency_limit
+    if limit is not None and limit < _LOWEST_LIMIT:
+        expected = f"at least {_LOWEST_LIMIT:g} Hz, below which housings have no modes; a plain number is in Hz"
+        yield Finding(("housing", "frequency_limit"), expected, warns=True)
     ratio = housing.damping_ratio
     if isinstance(ratio, float) and ratio > _MOST_DAMPED:
         expected = "at most 0.1: welded, cast and bolted housings have 0.001 to 0.05"

@@ -63,6 +63,8 @@ def draw_contact_path(
     )
     if contact.contact_range[0] < 0.0:
         note += "; beyond A and E " + ("the face's other parts" if contact.faces is not None else "corners touch")
+    if contact.hunting_period > 1:
+        note += "; of the pairs of the first mesh period, which differ by their pitch"
     figure = sheet(HEAD + _LETTERS + _SHARE + _BETWEEN + middle + _SLIDING + FOOT, title, note)
     share = panel(figure, below + middle, _SHARE)
     share.plot(rolls, 100.0 * mesh.load_shares[present][order], color=BLUE, lw=1.4, label="_share")

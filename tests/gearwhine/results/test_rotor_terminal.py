@@ -184,7 +184,7 @@ def test_a_campbell_diagram_has_damped_critical_speeds_named_against_the_sense_o
     ]
     assert "Of those that unbalance excites, 600 rpm is nearest: 40 % below operation" in out
     none = said(campbell=campbell(critical_speeds=[]))
-    assert "No critical speed from 0 to 1500 rpm; undamped, the lowest is 600 rpm" in none
+    assert "No critical speed from 0 to 1500 rpm; undamped, the lowest is 600 rpm, forward" in none
     unknown = said(campbell=campbell(critical_speeds=None, why_no_critical_speeds="too few speeds"))
     assert rows(unknown, "Undamped critical speeds")[0] == ["600", "forward", "40 % below"]
     assert "No damped critical speeds: too few speeds" in unknown
@@ -215,6 +215,9 @@ def test_a_stiffness_map_is_shown_from_end_to_end() -> None:
 def test_each_probe_has_its_reading_at_operation_and_its_largest() -> None:
     out = said(unbalance_response={"probes": [PROBE]})
     assert rows(out, "Response to") == [["disc, 250 mm, 45°", "20", "170°", "80 at 600 rpm"]]
+    # A lag of 359.7° is none.
+    in_phase = PROBE | {"operation_phase_lag_deg": 359.7}
+    assert rows(said(unbalance_response={"probes": [in_phase]}), "Response to")[0][2] == "0°"
     at_rest = PROBE | {"operation_amplitude_m": None, "operation_phase_lag_deg": None}
     assert rows(said(unbalance_response={"probes": [at_rest]}), "Response to") == [
         ["disc, 250 mm, 45°", "80 at 600 rpm"]

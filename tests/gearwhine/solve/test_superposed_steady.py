@@ -187,6 +187,18 @@ def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureF
     assert "these are superposed" in capsys.readouterr().out.replace("\n", " ")
 
 
+def test_a_line_beside_a_harmonic_of_the_other_mesh_has_the_name_of_its_cause_alone(tmp_path: Path) -> None:
+    """The first mesh is at 22 turns of the input, four times the second at 4 * 19 * 22 / 75 = 22.29."""
+    motion = solve_steady(machine_of(tmp_path, reducer((22, 75, 19, 56))))
+    document = steady_document("reducer", motion)
+    lines = [line for pair in document["motions"][0]["gear_pairs"] for line in pair["force_lines"]]
+    named = {line["name"]: line["frequency_hz"] / 50.0 for line in lines}
+    assert {"1× a -> b", "4× c -> d"} <= set(named)
+    for name, order in named.items():
+        harmonic, mesh = name.split("× ")
+        assert order == pytest.approx(int(harmonic) * {"a -> b": 22.0, "c -> d": 19 * 22 / 75}[mesh], rel=1e-9)
+
+
 def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> None:
     place = tmp_path / "reducer.toml"
     place.write_text(reducer(unbalanced="input"), encoding="utf-8")

@@ -3,6 +3,7 @@
 import json
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,10 @@ import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
+from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
+from gearwhine.rotors.rolling_bearings import catalogue_bearing
 from gearwhine.variation import run
 from gearwhine.variation.samples import FOLDER
 from gearwhine.variation.statistics import QuantityStatistics
@@ -35,6 +38,7 @@ samples = 256
 """
 )
 LEFT = "bearing.left.force_n"
+LIVES = ("life_h", "reference_life_h")
 TE = "gear_pair.pinion-wheel.transmission_error_peak_to_peak_m"
 
 
@@ -326,6 +330,32 @@ def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
         gw.vary(made, {}, 4)
     with pytest.raises(gw.CouplingError, match="a least and a largest value"):
         gw.vary(made, laws, 4, limits={name: (2.0, 1.0)})
+
+
+def test_lives_of_varied_bearings_are_those_of_iso_281_and_of_the_operating_point() -> None:
+    """`life_h` is (C / P)³ of the force of statics, as in `load`; `reference_life_h` that of the elements' loads."""
+    rating = 29.6e3
+
+    def made(values: dict[str, float]) -> gw.Machine:
+        ball = catalogue_bearing("deep-groove", 0.03, 0.072, 0.019, clearance=8e-6, dynamic=rating)
+        held = [
+            gw.MountedBearing.from_elements(name, at, "shaft", None, replace(ball, floating=True))
+            for name, at in (("left", 0.0), ("right", 0.5))
+        ]
+        rotor = gw.Rotor("shaft", [gw.Segment(0.5, 0.03, 0.0, gw.STEEL)])
+        pull = ShaftForce("shaft", 0.1, (values["pull"], 0.0, 0.0))
+        return gw.Machine([gw.Shaft(rotor)], held, speed=gw.rpm(1000.0), forces=[pull])
+
+    found = gw.vary(made, {"pull": Uniform(900.0, 2400.0)}, 2, analyses=["load"])
+    for sample in (0, 1):
+        (pull,) = found.dataset["input_value"].values[sample]
+        point = gw.Study(made({"pull": float(pull)})).operating_point().document
+        for share, bearing in zip((0.8, 0.2), point["bearings"], strict=True):
+            values = found.dataset["value"].sel(quantity=[f"bearing.{bearing['name']}.{key}" for key in LIVES])
+            life, reference = values.values[sample]
+            assert life == pytest.approx((rating / (share * pull)) ** 3 * 1e6 / 60.0 / 1000.0, rel=0.03)
+            assert [life, reference] == pytest.approx([bearing[key] for key in LIVES], rel=1e-9)
+            assert reference != pytest.approx(life, rel=0.01)
 
 
 def test_the_command_writes_the_study_and_its_worst_gearboxes_as_cases(
