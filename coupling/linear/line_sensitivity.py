@@ -116,6 +116,27 @@ class _LineMesh(NamedTuple):
     coupled: ComplexArray
 
 
+class _CoupledMeshes(NamedTuple):
+    """Meshes of one frequency, coupled with a line by their stiffness that varies.
+
+    Attributes
+    ----------
+    meshes : tuple of VaryingMesh
+    rate : float
+        Their frequency [rad/s].
+    reach : int
+        Number J of their harmonics.
+    adjoint, coupled : ndarray of complex, shape (meshes, 2 J + 1)
+        As of a `_LineMesh`.
+    """
+
+    meshes: tuple[VaryingMesh, ...]
+    rate: float
+    reach: int
+    adjoint: ComplexArray
+    coupled: ComplexArray
+
+
 @dataclass(frozen=True, eq=False)
 class Line(Response):
     """Line of an output at a mesh harmonic, with the response.
@@ -231,18 +252,26 @@ class LineModel(MeshHarmonicModel):
                 "stand still"
             )
         w, motion = response.frequency, response.motion
-        adjoint = self.damped.motion(w, output.adjoint_load(w, motion), transposed=True)
-        coupled = [self._coupled(response, group, adjoint) for group in self._groups(response.causes)]
-        own = adjoint + sum((change for change, _ in coupled), np.zeros_like(adjoint))
-        at_line, meshes, further = LineField(w, motion, own), dict[int, _LineMesh](), list[LineField]()
-        for _, group in coupled:
-            for number, mesh in group.items():
-                meshes[number] = mesh._replace(
-                    fields=tuple(at_line if one.frequency == w else one for one in mesh.fields)
+        mean = self.damped.motion(w, output.adjoint_load(w, motion), transposed=True)
+        groups = [self._coupled(group, w, mean) for group in self._groups(response.causes)]
+        # The harmonic of the line in each group; 0 above those that are coupled.
+        harmonics = [n if (n := round(w / group.rate)) <= group.reach else 0 for group in groups]
+        changes = [self._adjoint_at(group, n) for group, n in zip(groups, harmonics, strict=True) if n]
+        own = LineField(w, motion, mean + sum(changes, np.zeros_like(mean)))
+        meshes, further = dict[int, _LineMesh](), list[LineField]()
+        for group, harmonic in zip(groups, harmonics, strict=True):
+            orders = [n for n in range(-group.reach, group.reach + 1) if n != 0]
+            fields = tuple(own if n == harmonic else self._field_at(group, n) for n in orders)
+            further += [one for one in fields if one is not own]
+            places = np.array(orders) + group.reach
+            for row, mesh in enumerate(group.meshes):
+                force = self._stiffness_forces[mesh.number]
+                compression, pressed = 2.0 * force.compression, -2.0 * force.amplitudes[0]
+                meshes[mesh.number] = _LineMesh(
+                    fields, places, compression, pressed, group.adjoint[row], group.coupled[row]
                 )
-            further += [one for one in next(iter(group.values())).fields if one.frequency != w]
         value = output.value(w, motion)
-        return Line(w, response.causes, motion, output, value, own, further=tuple(further), meshes=meshes)
+        return Line(w, response.causes, motion, output, value, own.adjoint, further=tuple(further), meshes=meshes)
 
     def _groups(self, causes: Sequence[Cause]) -> list[list[VaryingMesh]]:
         """Meshes whose stiffness varies, those of one mesh frequency together, for each that drives a line."""
@@ -250,63 +279,41 @@ class LineModel(MeshHarmonicModel):
         rates = {round(varying[number].rate, 6) for number, _ in causes if number in varying}
         return [[mesh for mesh in varying.values() if round(mesh.rate, 6) == rate] for rate in sorted(rates)]
 
-    def _coupled(
-        self, response: Response, group: Sequence[VaryingMesh], adjoint: ComplexArray
-    ) -> tuple[ComplexArray, dict[int, _LineMesh]]:
-        """Return the change of a line's adjoint state by meshes of one frequency, and what they have of the line.
-
-        Parameters
-        ----------
-        response : Response
-        group : sequence of VaryingMesh
-        adjoint : ndarray of complex, shape (n,)
-            Adjoint state with the mean mesh stiffness.
-        """
-        reach, rate = group[0].reach, group[0].rate
+    def _coupled(self, meshes: Sequence[VaryingMesh], w: float, adjoint: ComplexArray) -> _CoupledMeshes:
+        """Couple the adjoint state of a line at ω [rad/s] with the mean mesh stiffness, (n,), with other harmonics."""
+        reach, rate = meshes[0].reach, meshes[0].rate
         orders = np.arange(-reach, reach + 1)
-        along = self.machine.system.contact_directions[:, [mesh.number for mesh in group]]
-        size, at = len(orders), reach + round(response.frequency / rate)
-        matrix = np.eye(len(group) * size, dtype=np.complex128)
-        given = np.zeros((len(group), size), dtype=np.complex128)
-        if at < size:
-            given[:, at] = adjoint @ along
-        for column, mesh in enumerate(group):
+        along = self.machine.system.contact_directions[:, [mesh.number for mesh in meshes]]
+        size, harmonic = len(orders), round(w / rate)
+        matrix = np.eye(len(meshes) * size, dtype=np.complex128)
+        given = np.zeros((len(meshes), size), dtype=np.complex128)
+        if harmonic <= reach:
+            given[:, reach + harmonic] = adjoint @ along
+        for column, mesh in enumerate(meshes):
             # dᵀ Z⁻ᵀ d of the mesh and every other is dᵀ Z⁻¹ d the other way round.
             answer = self.damped.answers(along.T, along[:, column], rate * np.abs(orders))
             answer = np.where(orders < 0, answer.conj(), answer)
             # As in the motion, a free train turns until its mesh carries the mean force again.
             answer[:, reach] = 0.0
             answer[column, reach] = 1.0 / float(self.contact.stiffness[mesh.number])
-            for row, other in enumerate(group):
+            for row, other in enumerate(meshes):
                 block = slice(column * size, (column + 1) * size), slice(row * size, (row + 1) * size)
                 matrix[block] += answer[row][:, None] * other.coupling[0].T
-        pressed = np.linalg.solve(matrix, given.ravel()).reshape(given.shape)
-        coupled = np.array([other.coupling[0].T @ one for other, one in zip(group, pressed, strict=True)])
-        change, fields, places = np.zeros_like(adjoint), list[LineField](), list[int]()
-        for place, order in enumerate(orders.tolist()):
-            if order == 0:
-                continue
-            w, load = abs(order) * rate, -(along @ coupled[:, place])
-            moved = self.damped.motion(w, load if order > 0 else load.conj(), transposed=True)
-            motion = response.motion if place == at else self._motion_at(group, abs(order))
-            if place == at:
-                change = moved
-                w = response.frequency
-            conjugate = order < 0
-            fields.append(LineField(-w, motion.conj(), moved.conj()) if conjugate else LineField(w, motion, moved))
-            places.append(place)
-        forces = self._stiffness_forces
-        return change, {
-            mesh.number: _LineMesh(
-                tuple(fields),
-                np.array(places),
-                2.0 * forces[mesh.number].compression,
-                -2.0 * forces[mesh.number].amplitudes[0],
-                pressed[row],
-                coupled[row],
-            )
-            for row, mesh in enumerate(group)
-        }
+        pressed: ComplexArray = np.asarray(np.linalg.solve(matrix, given.ravel())).reshape(given.shape)
+        coupled = np.array([mesh.coupling[0].T @ one for mesh, one in zip(meshes, pressed, strict=True)])
+        return _CoupledMeshes(tuple(meshes), rate, reach, pressed, coupled)
+
+    def _adjoint_at(self, group: _CoupledMeshes, order: int) -> ComplexArray:
+        """Adjoint state -Z⁻ᵀ Σ d h at a harmonic, shape (n,)."""
+        along = self.machine.system.contact_directions[:, [mesh.number for mesh in group.meshes]]
+        load = -(along @ group.coupled[:, group.reach + order])
+        moved = self.damped.motion(abs(order) * group.rate, load if order > 0 else load.conj(), transposed=True)
+        return moved if order > 0 else moved.conj()
+
+    def _field_at(self, group: _CoupledMeshes, order: int) -> LineField:
+        """Motion and adjoint state at another harmonic than the line's."""
+        motion = self._motion_at(group.meshes, abs(order))
+        return LineField(order * group.rate, motion if order > 0 else motion.conj(), self._adjoint_at(group, order))
 
     def _motion_at(self, group: Sequence[VaryingMesh], harmonic: int) -> ComplexArray:
         """Motion at a harmonic of meshes of one frequency."""
