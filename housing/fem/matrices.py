@@ -269,7 +269,11 @@ class Matrices:
         """
         stiffness, mass = additions.stiffness.upper, additions.mass.upper
         old_keys = self._keys
-        keys = np.union1d(old_keys, np.concatenate([self._keys_of(stiffness), self._keys_of(mass)]))
+        coupled = np.unique(np.concatenate([self._keys_of(stiffness), self._keys_of(mass)]))
+        # Both ascend, and few pairs are new: a union would sort all of them.
+        places = np.searchsorted(old_keys, coupled)
+        new = old_keys[np.minimum(places, len(old_keys) - 1)] != coupled
+        keys = np.insert(old_keys, places[new], coupled[new])
         pointer, neighbors, blocks, node_mass = self.pointer, self.neighbors, self.blocks, self.node_mass
         if len(keys) > len(old_keys):
             row, column = np.divmod(keys, self.n_nodes)

@@ -131,7 +131,7 @@ def effective_mass(matrices: Matrices, points: FloatArray, modes: ModeSet) -> Ef
     """
     center = rigid_body(points, matrices).center
     fields = rigid_motions(points, center).reshape(-1, 6)
-    moved = matrices.mass @ fields
+    moved = matrices.mass_operator @ fields
     total = np.einsum("ij,ij->j", fields, moved)
     return EffectiveMass(
         participation=np.asarray(modes.shapes.reshape(len(modes.shapes), -1) @ moved),

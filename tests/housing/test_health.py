@@ -8,8 +8,10 @@ import pytest
 from gearwhine.housing import (
     Certificate,
     HealthReport,
+    LumpedMass,
     Material,
     ModeSet,
+    Patch,
     Seat,
     Support,
     assemble,
@@ -58,6 +60,24 @@ def test_a_sound_housing_passes(box: Mesh, box_matrices: Matrices, sprung: Matri
     lines = {line.name: line for line in health.lines}
     assert 0.0 < lines["static error, modes alone"].value < 1.0
     assert lines["static error, with attachments"].value < 1e-10
+
+
+def test_a_large_housing_is_checked_without_matrices_of_its_own(
+    box: Mesh, box_matrices: Matrices, modes: ModeSet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Products of the blocks, on feet and with a mass, against those of the matrices; the checks take no others."""
+    motor = LumpedMass("motor", 3.0, Patch(surface="foot-1"), offset=(0.0, 0.2, 0.0))
+    whole = attach_fixtures(box_matrices, box, [*FEET, motor])
+    x = np.random.default_rng(3).standard_normal((3 * len(box.points), 7))
+    expected = whole.stiffness @ x, abs(whole.stiffness) @ x, whole.mass @ x
+    monkeypatch.setattr("gearwhine.housing.fem.matrices._NODES_BY_BLOCKS", 0)
+    free, large = replace(box_matrices), replace(whole)
+    products = large.stiffness_operator @ x, large.absolute_stiffness_operator @ x, large.mass_operator @ x
+    for product, by_matrix in zip(products, expected, strict=True):
+        assert np.abs(product - by_matrix).max() < 1e-13 * np.abs(by_matrix).max()
+    sprung = attach_fixtures(free, box, FEET)
+    assert failing(report(box, free, sprung, modes)) == []
+    assert not {"stiffness", "mass"} & set(vars(free) | vars(sprung))
 
 
 def test_volume_and_centroid_of_a_cylinder_bored_box(box: Mesh) -> None:

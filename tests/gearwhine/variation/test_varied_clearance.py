@@ -13,6 +13,7 @@ from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
 from gearwhine.coupling import Machine
 from gearwhine.coupling.gears.loaded import gear_pair
+from gearwhine.coupling.gears.loaded.face_load import FaceContact, MeanContactState
 from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, loaded_transmission_error
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.sampling import sobol_points
@@ -127,3 +128,20 @@ def test_the_first_mesh_period_is_that_of_the_hunting_period(machines: list[Mach
     assert spread > pair.static.peak_to_peak_transmission_error
     found = evaluate_pairs([pair], Wanted((), names=("*_over_hunting_period_m",)))
     assert found.numbers == {TE.replace("peak_to_peak", "over_hunting_period"): spread}
+
+
+def test_the_search_evaluates_a_mesh_few_times(machines: list[Machine], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bearings far from their first guess settle without it, and no step only shows that there is nothing to gain."""
+    evaluated: list[int] = []
+    at = FaceContact.at
+
+    def counted(contact: FaceContact, approach: FloatArray) -> MeanContactState:
+        evaluated.append(contact._phases)
+        return at(contact, approach)
+
+    monkeypatch.setattr(FaceContact, "at", counted)
+    for machine in machines:
+        evaluated.clear()
+        assert machine.operating_point().residual < 1e-11
+        assert evaluated.count(12) <= 5
+        assert evaluated.count(48) <= 5
