@@ -14,7 +14,7 @@ from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
 from gearwhine.coupling.analyses.condition_record import bearing_tones
 from gearwhine.coupling.analyses.transient import solve_transient
-from gearwhine.coupling.machine.driving_frequencies import spall_strikes
+from gearwhine.coupling.machine.driving_frequencies import element_passes, spall_strikes
 from gearwhine.coupling.signals import line_names
 from gearwhine.results.run import transient_document
 from gearwhine.rotors.rolling_bearings import CageFault, CageSlip, RollingSpall
@@ -66,6 +66,7 @@ def test_a_worn_cage_that_slips() -> None:
     assert tones["input-back: cage"] == pytest.approx(cage)
     assert tones["input-back: outer raceway"] == pytest.approx(9 * cage)
     assert tones["input-back: inner raceway"] == pytest.approx(9 * (speed - cage))
+    assert element_passes(machine.assembled.system)["input-back"] == pytest.approx((9 * cage,))
     (strikes,) = spall_strikes(machine.assembled.system)
     assert (strikes.name, strikes.frequency) == ("cage of input-back", pytest.approx(cage))
     assert strikes.half_width == pytest.approx(math.pi * 0.01**2 / 9 * cage)
