@@ -70,9 +70,9 @@ def test_a_worn_cage_that_slips() -> None:
     (strikes,) = spall_strikes(machine.assembled.system)
     assert (strikes.name, strikes.frequency) == ("cage of input-back", pytest.approx(cage))
     assert strikes.half_width == pytest.approx(math.pi * 0.01**2 / 9 * cage)
-    (line,) = line_names(machine.assembled, [3.0 * cage + 8.0 * strikes.half_width], 1e-6 * cage)
+    (line,) = line_names(machine.assembled, [3.0 * cage + 26.0 * strikes.half_width], 1e-6 * cage)
     assert line.name == "3× cage of input-back"
-    (line,) = line_names(machine.assembled, [3.0 * cage + 10.0 * strikes.half_width], 1e-6 * cage)
+    (line,) = line_names(machine.assembled, [3.0 * cage + 28.0 * strikes.half_width], 1e-6 * cage)
     assert "cage" not in line.name
     with pytest.raises(CaseError, match="the gap to the next element"):
         spur_pair(**rolling("nonlinear"), fault=CAGE | {"length": "8 mm"})
