@@ -21,7 +21,7 @@ from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.machine.mounted_parts import GearMesh
 
 _TWO_PI = 2.0 * math.pi
-_WIDEST = 0.25  # half-width of a line over the distance to the next multiple
+_WIDEST = 0.15  # half-width of a line over the distance to the next multiple
 _STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line
 _Steps = Sequence[tuple[str, float, float]]
 """Causes of a sideband: name, order of its frequency, signed number of the sideband."""

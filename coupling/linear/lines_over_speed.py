@@ -44,6 +44,8 @@ class LinesOverSpeed:
         Root mean square of all lines between these, of what differs between teeth [m/s²].
     rates : ndarray of complex, shape (s, l, h)
         Rates of the housing's coordinates by each line; zero above the limit, and none without a housing.
+    rates_between : tuple of (ndarray, ndarray of complex), shapes (k,) and (k, h)
+        At each speed the frequencies of the lines between these [rad/s], and the rates by them.
     """
 
     speeds: FloatArray
@@ -52,6 +54,13 @@ class LinesOverSpeed:
     amplitudes: FloatArray
     between: FloatArray
     rates: ComplexArray
+    rates_between: tuple[tuple[FloatArray, ComplexArray], ...]
+
+    def housing_lines(self, place: int) -> tuple[FloatArray, ComplexArray]:
+        """Frequencies of all lines at a speed [rad/s], (l,), and the rates of the housing's coordinates, (l, h)."""
+        frequencies, rates = self.rates_between[place]
+        mesh = self.orders * abs(self.speeds[place])
+        return np.concatenate([mesh, frequencies]), np.concatenate([self.rates[place], rates])
 
     @property
     def rms(self) -> FloatArray:
@@ -78,14 +87,13 @@ def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
 
 
 def housing_rates(machine: CoupledMachine, limit: float) -> tuple[FloatArray, ComplexArray]:
-    """Frequencies of the mesh harmonics up to a limit [rad/s], and the rates of the housing's coordinates by each.
+    """Frequencies of the lines of the teeth up to a limit [rad/s], and the rates of the housing's coordinates by each.
 
     Of a machine with turning carriers these are the mesh harmonics with their sidebands. The arrays have the shapes
     (l,) and (l, h).
     """
     if not machine.system.turns:
-        over = lines_over_speed(machine, [machine.speed], limit)
-        return over.orders * abs(machine.speed), over.rates[0]
+        return lines_over_speed(machine, [machine.speed], limit).housing_lines(0)
     lines = MeshHarmonicModel(machine).responses(limit)
     rows = _housing_rows(machine)
     rates = [1j * line.frequency * (rows @ line.motion) for line in lines]
@@ -135,6 +143,7 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
     amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
     between, moves = np.zeros(amplitudes.shape[:2]), _housing_rows(machine)
     rates, outputs = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128), np.vstack([rows, moves])
+    rates_between = []
     for place, ratio in enumerate(ratios):
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
@@ -163,7 +172,10 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
                 apart &= ~met
                 amplitudes[:, place, number] = np.abs(moved[: len(rows)])
                 rates[place, number] = moved[len(rows) :] / (1j * w)
-        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(lines.between[: len(rows), apart]) ** 2, axis=1))
+        frequency, accelerations = lines.frequency[apart], lines.between[:, apart]
+        between[:, place] = np.sqrt(0.5 * np.sum(np.abs(accelerations[: len(rows)]) ** 2, axis=1))
+        rates_between.append((frequency, (accelerations[len(rows) :] / (1j * frequency)).T))
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
     given = np.array(speeds, dtype=np.float64)
-    return LinesOverSpeed(given, orders, tuple(machine.sensor_rows), amplitudes, between, rates)
+    names = tuple(machine.sensor_rows)
+    return LinesOverSpeed(given, orders, names, amplitudes, between, rates, tuple(rates_between))

@@ -37,6 +37,7 @@ _SHAFT_ORDERS = 4  # highest shaft order that takes precedence over a sideband o
 _SIDEBANDS = 4  # by gears and loads; those by turning carriers are as many as the machine has
 _ELEMENT_PASSES = 4
 _LOAD_MULTIPLES = 4
+_HALF_WIDTHS = 3.0  # reach of a line that slip makes wide: four fifths of its power
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
 
 
@@ -118,7 +119,7 @@ def line_names(
         by_carriers=by_carriers,
     )
     at = shaft_frequency * np.array([line.order for line in lines])
-    widths = shaft_frequency * np.array([line.half_width for line in lines])
+    widths = _HALF_WIDTHS * shaft_frequency * np.array([line.half_width for line in lines])
     named = []
     for frequency, within in zip(frequencies, tolerances.tolist(), strict=True):
         order = frequency / shaft_frequency
@@ -137,7 +138,8 @@ def line_names(
                 line
                 for line in near_it
                 if line.kind == kind
-                and abs(line.order * shaft_frequency - frequency) <= distance + line.half_width * shaft_frequency
+                and abs(line.order * shaft_frequency - frequency)
+                <= distance + _HALF_WIDTHS * line.half_width * shaft_frequency
             ]
             for kind, distance in reach.items()
         }

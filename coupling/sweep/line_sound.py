@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
 from gearwhine.coupling.sound.proofs import (
@@ -33,6 +34,7 @@ from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, s
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 
+_FAINT = 1e-6  # part of the power of all lines that is left out
 _LARGEST_INTERPOLATION_ERROR = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 
 
@@ -197,10 +199,18 @@ class RadiatedPower:
         rates : ndarray of complex, shape (l, n)
             Rates of the housing's coordinates.
         """
+        heard = (hertz >= self.lowest_hz) & (hertz <= self.highest_hz)
+        hertz, rates = hertz[heard], rates[heard]
+        # Lines between mesh harmonics may be thousands, of which few are of any matter.
+        estimate = self.radiation.equivalent_power(rates.T)
+        if self.radiation.method != "erp":
+            sound_speed = self.radiation.medium.speed_of_sound
+            estimate = estimate * pulsating_efficiency(hertz, self.radiation.area, sound_speed)
+        loud = _loud(estimate) | _loud(estimate * 10.0 ** (0.1 * a_weighting(hertz)))
         single = [
             (level, level + float(a_weighting(frequency)))
-            for frequency, rate in zip(hertz.tolist(), rates, strict=True)
-            if self.lowest_hz <= frequency <= self.highest_hz and np.isfinite(level := self._level(frequency, rate))
+            for frequency, rate in zip(hertz[loud].tolist(), rates[loud], strict=True)
+            if np.isfinite(level := self._level(frequency, rate))
         ]
         return sum_of_levels(one for one, _ in single), sum_of_levels(one for _, one in single)
 
@@ -208,3 +218,12 @@ class RadiatedPower:
         if self.radiation.method == "erp":
             return float(power_level(self.radiation.equivalent_power(rates[:, None])[0]))
         return radiated_level(self.radiation, self.table, hertz, rates)
+
+
+def _loud(power: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether lines are among those that have all but a millionth of the power together."""
+    order = np.argsort(-power)
+    left = power.sum() - np.cumsum(power[order])
+    loud = np.zeros(len(power), dtype=np.bool_)
+    loud[order[: 1 + np.count_nonzero(left > _FAINT * power.sum())]] = True
+    return loud

@@ -306,7 +306,7 @@ def _of_sound(gearbox: _Gearbox) -> Named:
     if over is None:
         lines = [housing_rates(one, gearbox.limit) for one in gearbox.at_speeds]
     else:
-        lines = [(over.orders * abs(speed), rates) for speed, rates in zip(gearbox.speeds, over.rates, strict=True)]
+        lines = [over.housing_lines(place) for place in range(len(over.speeds))]
     levels = np.array([radiated.levels(frequencies / (2.0 * np.pi), rates) for frequencies, rates in lines]).T
     for name, of_name in zip(("sound_power_db", "sound_power_db_a"), np.maximum(levels, _NO_SOUND), strict=True):
         yield from _highest(gearbox, f"housing.{name}", f"housing.{name}_speed_rpm", of_name)

@@ -15,6 +15,9 @@ from scipy.integrate import solve_ivp
 
 import gearwhine as gw
 from gearwhine.coupling import Machine, RollingLaw, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.connector_forces.bearing_kernels import bearing_force
+from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
+from gearwhine.coupling.machine.connectors import NonlinearConnector
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.driving_frequencies import element_passes, spall_strikes
 from gearwhine.coupling.signals import line_names
@@ -89,6 +92,26 @@ def push_on_planet(spall: RollingSpall, moved: FloatArray, turn: float, time: fl
     # A bore that moves away from a ball leaves it room.
     deep = -outward.T @ moved - 0.5 * ROW.clearance - drops(spall, azimuth, turn, time)
     return np.asarray(outward @ (ROW.stiffness * np.maximum(deep, 0.0) ** 1.5))
+
+
+@pytest.mark.parametrize("on", ["inner", "outer", "element"])
+def test_the_force_on_a_planet_is_that_of_the_balls_opposite_to_its_motion(on: str) -> None:
+    """Over a turn of the cage, the planet pushed along y; without the spall it is another one at times."""
+    turn, push = -186.0, np.array([0.0, 9e-6, 0.0, 0.0, 0.0])
+    place = {"inner": -0.5 * math.pi, "outer": 1.0, "element": 0.2}[on]
+    spall = RollingSpall(on, 3e-3, 1e-4, azimuth=place, element=4 if on == "element" else 0)  # type: ignore[arg-type]
+    law = RollingLaw(STATE, CAGE_ANGLE, (spall,))
+    sound = replace(law, spalls=())
+    made = [NonlinearConnector("pin", np.eye(5), np.arange(5), one, STATE.stiffness, turn) for one in (law, sound)]
+    arrays, tangent, felt = bearing_arrays(made), np.zeros((5, 5)), []
+    for time in np.linspace(0.0, 2.0 * math.pi / (0.6 * abs(turn)), 300).tolist():
+        forces = np.zeros((2, 5))
+        for number in range(2):
+            bearing_force(arrays, number, time, push.copy(), forces[number], tangent)
+        expected = -push_on_planet(spall, push[:2], turn, time)
+        np.testing.assert_allclose(forces[0, :2], expected, atol=1e-6 * np.abs(forces[1]).max())
+        felt.append(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max())
+    assert np.max(felt) > 0.1
 
 
 @pytest.mark.slow

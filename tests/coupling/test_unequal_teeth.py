@@ -3,6 +3,7 @@
 from dataclasses import fields, replace
 from functools import cache, cached_property
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,15 +11,16 @@ from reducer_case import reducer
 from sounding_gearbox import small_gearbox
 
 import gearwhine as gw
-from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling import CoupledMachine, TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.gears.loaded.transmission_error import phasors_between, polygon_phasors
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
-from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_rms
+from gearwhine.coupling.linear.lines_over_speed import housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
+from gearwhine.coupling.sweep.line_sound import RadiatedPower
 
 PITCH = np.random.default_rng(3).normal(scale=3.0, size=28)
 
@@ -190,3 +192,54 @@ def test_lines_are_those_of_the_motion(size: float) -> None:
         between = np.sqrt(0.5 * np.sum(np.delete(lines[: 1 + round(LIMIT / motion.speed)], [0, 28]) ** 2))
         assert found.amplitudes[number, 0, 0] == pytest.approx(lines[28], rel=0.015)
         assert found.between[number, 0] == pytest.approx(between, rel=0.025)
+
+
+@pytest.mark.slow
+def test_sound_power_is_that_of_the_motion_over_time() -> None:
+    """Of a housing with one radiation resistance for all its coordinates, by Parseval: R times their mean square rates.
+
+    The mesh harmonic alone has 0.6 of it.
+    """
+    resistance, shaft = 3e-3, abs(uneven().speed)
+    machine = uneven_machine()
+    frequencies, rates = housing_rates(machine, LIMIT)
+    radiation = SimpleNamespace(
+        method="erp", equivalent_power=lambda moved: 0.5 * resistance * np.sum(np.abs(moved) ** 2, axis=0)
+    )
+    radiated = RadiatedPower(radiation, None, 20.0, 2900.0)  # type: ignore[arg-type]
+    level, _ = radiated.levels(frequencies / (2.0 * np.pi), rates)
+    assert machine.housing is not None
+    moves = machine.rows(machine.housing.name, np.eye(machine.housing.size))
+    turn, samples = 2.0 * np.pi / shaft, 1024
+    # The wheel's runout returns with the wheel alone, which has as many teeth as the pinion.
+    settings = TransientSettings(14.0 * turn, 8.0 * turn, turn / samples, 1e-5, tolerance=1e-3)
+    motion = simulate(machine.system, settings, TransientOutputs(moves[:0], moves, moves[:0]))
+    lines = np.fft.rfft(motion.velocity[: 6 * samples], axis=0)
+    orders = np.arange(len(lines)) / 6.0
+    lines[(orders * shaft > LIMIT) | (orders == 0.0)] = 0.0
+    over_time = np.fft.irfft(lines, 6 * samples, axis=0)
+    power = resistance * np.sum(np.mean(over_time**2, axis=0))
+    assert level == pytest.approx(10.0 * np.log10(power / 1e-12), abs=0.25)
+    (mesh,) = np.flatnonzero(np.isclose(frequencies, 28.0 * shaft))
+    alone, _ = radiated.levels(frequencies[[mesh]] / (2.0 * np.pi), rates[[mesh]])
+    assert alone < level - 2.0
+
+
+def test_faint_lines_are_left_out_of_the_sound() -> None:
+    """All but a millionth of the power, with or without weighting by frequency, which low lines have little of."""
+    solved = list[int]()
+
+    def power(moved: np.ndarray) -> np.ndarray:
+        solved.append(moved.shape[1])
+        return np.asarray(np.sum(np.abs(moved) ** 2, axis=0))
+
+    radiation = SimpleNamespace(method="erp", equivalent_power=power)
+    radiated = RadiatedPower(radiation, None, 20.0, 2900.0)  # type: ignore[arg-type]
+    hertz = np.array([10.0, 10.0**1.5, 1000.0, 2000.0, 3000.0])
+    rates = 1e-3 * np.array([[1.0], [1.0], [1e-2], [1e-5], [1.0]], dtype=np.complex128)
+    level, weighted = radiated.levels(hertz, rates)
+    assert level == pytest.approx(60.0 + 10.0 * np.log10(1.0 + 1e-4), abs=1e-5)
+    # Those that are heard are estimated at once, then two of them found alone. A-weighting of 31.6 Hz is -39.4 dB.
+    assert solved == [3, 1, 1]
+    assert weighted == pytest.approx(10.0 * np.log10(10.0 ** (6.0 - 3.94) + 10.0**2), abs=0.05)
+    assert radiated.levels(hertz[:1], rates[:1]) == (-np.inf, -np.inf)

@@ -14,7 +14,7 @@ from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
 from gearwhine.coupling.analyses.condition_record import bearing_tones
 from gearwhine.coupling.analyses.transient import solve_transient
-from gearwhine.coupling.machine.driving_frequencies import spall_strikes
+from gearwhine.coupling.machine.driving_frequencies import element_passes, spall_strikes
 from gearwhine.coupling.signals import line_names
 from gearwhine.results.run import transient_document
 from gearwhine.rotors.rolling_bearings import CageFault, CageSlip, RollingSpall
@@ -66,12 +66,13 @@ def test_a_worn_cage_that_slips() -> None:
     assert tones["input-back: cage"] == pytest.approx(cage)
     assert tones["input-back: outer raceway"] == pytest.approx(9 * cage)
     assert tones["input-back: inner raceway"] == pytest.approx(9 * (speed - cage))
+    assert element_passes(machine.assembled.system)["input-back"] == pytest.approx((9 * cage,))
     (strikes,) = spall_strikes(machine.assembled.system)
     assert (strikes.name, strikes.frequency) == ("cage of input-back", pytest.approx(cage))
     assert strikes.half_width == pytest.approx(math.pi * 0.01**2 / 9 * cage)
-    (line,) = line_names(machine.assembled, [3.0 * cage + 8.0 * strikes.half_width], 1e-6 * cage)
+    (line,) = line_names(machine.assembled, [3.0 * cage + 26.0 * strikes.half_width], 1e-6 * cage)
     assert line.name == "3× cage of input-back"
-    (line,) = line_names(machine.assembled, [3.0 * cage + 10.0 * strikes.half_width], 1e-6 * cage)
+    (line,) = line_names(machine.assembled, [3.0 * cage + 28.0 * strikes.half_width], 1e-6 * cage)
     assert "cage" not in line.name
     with pytest.raises(CaseError, match="the gap to the next element"):
         spur_pair(**rolling("nonlinear"), fault=CAGE | {"length": "8 mm"})

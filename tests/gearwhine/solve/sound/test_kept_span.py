@@ -1,5 +1,7 @@
 """Solutions that span the sound of a housing's modes: kept beside the modes, and read in place of solving."""
 
+import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,7 +9,9 @@ import numpy as np
 import pytest
 from sounding_gearbox import sounding_housing
 
+from gearwhine.cli import run_command
 from gearwhine.coupling.sound.acoustics import Acoustics
+from gearwhine.housing import HousingModes
 from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
 from gearwhine.housing.acoustics.medium import AIR
 from gearwhine.housing.acoustics.radiation import HousingRadiation
@@ -65,3 +69,75 @@ def test_frequencies_beyond_the_kept_ones_are_solved_anew(radiation, spans, monk
     monkeypatch.setattr(BoundaryElements, "solve", None)
     with pytest.raises(TypeError, match="NoneType"):
         KeptSpan(Acoustics(), spans.housing).spanned(radiation, np.append(WANTED, 1250.0), BETWEEN)
+
+
+def with_modes(housing: HousingModes, **changes: object) -> HousingModes:
+    """The housing with other modes, of the same number on the same nodes, and with all that its record keeps."""
+    modes = replace(housing.record.modes, **changes)  # type: ignore[arg-type]
+    return replace(housing, record=replace(housing.record, modes=modes))
+
+
+def with_mesh(housing: HousingModes) -> HousingModes:
+    mesh = replace(housing.housing.mesh, points=housing.housing.mesh.points * 1.01)
+    return replace(housing, housing=replace(housing.housing, mesh=mesh))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda housing: with_modes(housing, shapes=housing.modes.shapes[::-1].copy()),
+        lambda housing: with_modes(housing, frequencies=1.001 * housing.modes.frequencies),
+        lambda housing: with_modes(
+            housing,
+            residual_modes=replace(housing.modes.residual_modes, shapes=1.001 * housing.modes.residual_modes.shapes),
+        ),
+        with_mesh,
+    ],
+    ids=["shapes", "frequencies", "residual modes", "mesh"],
+)
+def test_another_housing_of_the_same_number_of_modes_takes_no_old_span(
+    radiation: HousingRadiation,
+    spans: KeptSpan,
+    monkeypatch: pytest.MonkeyPatch,
+    change: Callable[[HousingModes], HousingModes],
+) -> None:
+    monkeypatch.setattr(BoundaryElements, "solve", None)
+    changed = change(spans.housing)
+    assert changed.record.extras.keys() == spans.housing.record.extras.keys()
+    with pytest.raises(TypeError, match="NoneType"):
+        KeptSpan(Acoustics(), changed).spanned(radiation, WANTED, BETWEEN)
+
+
+@pytest.mark.slow
+def test_a_second_command_in_the_folder_takes_the_kept_solutions(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its numbers are those of the first; those of another housing are its own."""
+    changes = {
+        "housing.box.mesh_size": "45 mm",
+        "acoustics.mesh_size": "14 mm",
+        "acoustics.highest_frequency": "2.8 kHz",
+        "acoustics.lines": "12",
+        "operation.speed": "1100 rpm",
+    }
+    words = [word for key, value in changes.items() for word in ("--set", f"{key}={value}")]
+
+    def sound(folder: str, *further: str) -> tuple[dict[str, object], str]:
+        assert run_command(["sound", "small-gearbox", "-o", str(tmp_path / folder), *words, *further]) == 0
+        document = json.loads((tmp_path / folder / "summary.json").read_text(encoding="utf-8"))
+        return {key: document[key] for key in NUMBERS}, capsys.readouterr().err
+
+    first, told = sound("out")
+    assert SOLVING in told
+    second, told = sound("out")
+    assert SOLVING not in told
+    assert "modes read from" in told
+    assert second == first
+    # The walls are thicker by a tenth of a per mille: as many modes, and none of them are the same.
+    other, told = sound("out", "--set", "housing.box.wall=10.001 mm")
+    assert SOLVING in told
+    assert other != first
+
+
+SOLVING = "sound of all modes at"
+NUMBERS = ("lines", "total_db", "total_db_a", "modes", "third_octaves", "faces_w")
