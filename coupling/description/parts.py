@@ -665,10 +665,10 @@ def rim_findings(shaft: Shaft, gears: Sequence[ShaftGear], rings: Sequence[str])
     part, seat = ("shaft", shaft.name), shaft.rim_seat
     if seat is not None and seat not in rings:
         names = ", ".join(map(repr, rings)) or "none"
-        expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
+        expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or none for a rigid rim"
         yield Finding(part, "rim_seat", seat, expected)
     if seat is not None and not any(mounted.gear.is_internal for mounted in gears):
-        yield Finding(part, "rim_seat", seat, "None: no ring gear on this shaft, whose rim would follow the bore")
+        yield Finding(part, "rim_seat", seat, "none: no ring gear on this shaft, whose rim would follow the bore")
     for mounted in gears:
         support = mounted.gear.ring_support
         if support is None:

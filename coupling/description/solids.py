@@ -342,7 +342,7 @@ def bearing_findings(
         widest = max(
             (2.0 * inner for a, b, inner, _ in _shaft_lengths(rotor) if a < at + right and b > at + left), default=0.0
         )
-        if widest <= 2.0 * outer + _SLACK:
+        if widest < 2.0 * outer - _SLACK:
             expected = (
                 f"rolling elements within the bore of the shaft, {in_mm(widest)} wide there, as its outer ring turns; "
                 f"they reach to {in_mm(2.0 * outer)}"
@@ -354,7 +354,7 @@ def bearing_findings(
         thinnest = min(
             (2.0 * outer for a, b, _, outer in _shaft_lengths(rotor) if a < at + right and b > at + left), default=0.0
         )
-        if thinnest >= 2.0 * inner - _SLACK:
+        if thinnest > 2.0 * inner + _SLACK:
             expected = (
                 f"rolling elements around the shaft, {in_mm(thinnest)} thick there; they leave {in_mm(2.0 * inner)}"
             )

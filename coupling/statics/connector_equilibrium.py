@@ -43,6 +43,7 @@ _REFINEMENTS = 2
 _ROUNDED_DEFLECTION_ERROR = 1e-11
 _ROUNDING = 1e-13  # error over the deflections that is that of the structure's solution
 _FALLS = 0.5  # largest part of the error that a step leaves, unless the error is rounding
+_PLAY = 1e-6  # part of the largest singular value of Newton's equations below which a motion is play
 _NO_COMPLIANCE = 1e-13  # part of the largest eigenvalue of the compliance below which one is rounding
 
 
@@ -241,13 +242,17 @@ class ConnectedStructure:
         return _Imbalance(x, difference, slope, float(np.linalg.norm(difference)))
 
     def _polished(self, z: FloatArray) -> tuple[FloatArray, int]:
-        """Newton's method with halved steps, to rounding: coordinates and the number of steps."""
-        imbalance, steps = self._imbalance(z), 0
+        """Newton's method with halved steps, to rounding: coordinates and the number of steps.
+
+        A part loose in its clearance moves along directions of hardly any stiffness, in which the slope of Newton's
+        equations is rounding. Where a whole step and its halves end farther off, steps leave these directions out.
+        """
+        imbalance, steps, cut_off = self._imbalance(z), 0, None
         for _ in range(_NEWTON_STEPS):
             before, size = imbalance.norm, float(np.linalg.norm(z / self._held.size))
             if before <= _ROUNDING * size:
                 break
-            step = self._held.size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
+            step = self._held.size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=cut_off)[0]
             rounded = before <= _ROUNDED_DEFLECTION_ERROR * size
             for halving in range(1 if rounded else _HALVINGS):
                 nearer = z - 0.5**halving * step
@@ -255,6 +260,8 @@ class ConnectedStructure:
                 if trial.norm < before:
                     z, imbalance, steps = nearer, trial, steps + 1
                     break
-            if imbalance.norm == before or (rounded and imbalance.norm > _FALLS * before):
+            if imbalance.norm == before and cut_off is None and not rounded:
+                cut_off = _PLAY
+            elif imbalance.norm == before or (rounded and imbalance.norm > _FALLS * before):
                 break
         return imbalance.x, steps

@@ -98,7 +98,7 @@ def _place(figure: Figure, bottom: float, column: int, columns: int) -> Axes:
 def _histogram(axes: Axes, one: QuantityStatistics) -> None:
     name, factor = shown_quantity(one.name)
     values = factor * one.found
-    bins = min(max(int(np.sqrt(values.size)), 8), 40)
+    bins = min(max(int(np.sqrt(values.size)), 8), 40) if one.scatters else 1
     axes.hist(values, bins=bins, color=PALE, edgecolor=GREY, linewidth=0.5)
     for value in one.quantiles.values():
         axes.axvline(factor * value, color=GREY, lw=0.8)

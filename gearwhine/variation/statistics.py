@@ -28,6 +28,7 @@ CHANCE = 0.001
 _LEADING = ("level_db", "sound_power_db", "transmission_error_peak_to_peak_m")
 _LEAST_SPEEDS = 3  # below which every speed is an end
 _LEAST_FOR_RANKS = 8  # samples below which no correlation is told
+_ROUNDING = 1e-9  # range of values over the largest that solutions to their tolerance may have without any input
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,11 @@ class QuantityStatistics:
         return np.asarray(self.values[np.isfinite(self.values)])
 
     @property
+    def scatters(self) -> bool:
+        """Whether the values differ by more than the rounding of a solution that an input does not change."""
+        return self.found.size > 1 and float(np.ptp(self.found)) > _ROUNDING * float(np.abs(self.found).max())
+
+    @property
     def mean(self) -> float:
         """Mean over the samples."""
         return float(self.found.mean()) if self.found.size else math.nan
@@ -189,7 +195,7 @@ class QuantityStatistics:
     def rank_correlations(self) -> dict[str, float]:
         """Rank correlation (Spearman) with each input; none where a few samples or no scatter say nothing."""
         found = np.isfinite(self.values)
-        if found.sum() < _LEAST_FOR_RANKS or np.ptp(self.values[found]) == 0.0:
+        if found.sum() < _LEAST_FOR_RANKS or not self.scatters:
             return {}
         ranks = stats.rankdata(self.values[found])
         correlations = {}
@@ -244,7 +250,7 @@ class QuantityStatistics:
         count = int(found.sum())
         # Few classes: pairs of coordinates of a short Sobol' sequence have patterns, which many classes would follow.
         classes = min(max(count // 32, 4), 10)
-        if count < 8 * 4 or np.ptp(self.values[found]) == 0.0:
+        if count < 8 * 4 or not self.scatters:
             return {}
         values, explained = self.values[found], {}
         total = float(np.sum((values - values.mean()) ** 2))
@@ -451,7 +457,7 @@ class VariedResult:
     @property
     def headlines(self) -> tuple[QuantityStatistics, ...]:
         """Quantities that are drawn: those with a limit, else levels and transmission errors, else all."""
-        varying = [one for one in self.quantities if one.found.size and np.ptp(one.found) > 0.0]
+        varying = [one for one in self.quantities if one.scatters]
         limited = [one for one in varying if one.limit is not None]
         return tuple(limited or [one for one in varying if one.name.endswith(_LEADING)] or varying)
 

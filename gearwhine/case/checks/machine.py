@@ -434,7 +434,7 @@ def check_running(draft: Draft) -> Iterator[Finding]:
         yield Finding(("operation", "speed"), "a speed other than zero for the [transient]")
     yield from _check_run(draft, operation)
     yield from _check_method(draft, operation)
-    if draft.broken & {"rotor", "gear", "gear_pair", "torque_support"} or not turning:
+    if draft.broken & {"rotor", "gear", "gear_pair", "planetary", "torque_support"} or not turning:
         return  # an incomplete train does not define the shafts that it turns
     yield from _check_stations(draft, operation)
     yield from _check_train(draft, operation)

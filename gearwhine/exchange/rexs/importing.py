@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -254,24 +255,37 @@ def _note_the_rest(unit: GearUnit, taken: tuple[str, ...]) -> None:
         if component.kind not in _TAKEN and component.kind not in taken:
             kinds.setdefault(component.kind, []).append(str(component.number))
     for kind, numbers in kinds.items():
-        shown = ", ".join(numbers[:6]) + (f" and {len(numbers) - 6} more" if len(numbers) > 6 else "")
-        unit.notes.left_out(f"{readable(kind)} {shown}", _WHY_LEFT_OUT.get(kind, "not taken"))
+        unit.notes.left_out(_numbered(kind, numbers), _WHY_LEFT_OUT.get(kind, "not taken"))
+
+
+def _numbered(kind: str, numbers: Sequence[str]) -> str:
+    """Return a type with the numbers of its components, the first six."""
+    return f"{readable(kind)} {', '.join(numbers[:6])}" + (f" and {len(numbers) - 6} more" if len(numbers) > 6 else "")
 
 
 def _note_attributes(unit: GearUnit) -> None:
-    """Note the attributes that nothing asked for of the components that are taken, once for each type."""
+    """Note the attributes that nothing asked for of the components that are taken, once for each type.
+
+    Where others of the type have been asked for all of theirs, the note has the numbers of the components.
+    """
     unasked: dict[str, dict[str, None]] = {}
+    lacking: dict[str, dict[str, None]] = {}
+    taken: dict[str, int] = {}
     for component in unit.model.components.values():
         if component.kind not in _TAKEN:
             continue
+        taken[component.kind] = taken.get(component.kind, 0) + 1
         for name, attribute in component.attributes.items():
             is_empty = attribute.value is None or attribute.value == ""
             if not is_empty and name not in component.looked_up and name not in _SAID_ELSEWHERE:
                 unasked.setdefault(component.kind, {})[name] = None
+                lacking.setdefault(component.kind, {})[str(component.number)] = None
     for kind, names in unasked.items():
         shown = [readable(name) for name in names][:_MOST_ATTRIBUTES]
         more = f" and {len(names) - len(shown)} more" if len(names) > len(shown) else ""
-        unit.notes.left_out(readable(kind), f"the attribute{'s' * (len(names) > 1)} {', '.join(shown)}{more}")
+        of_all = len(lacking[kind]) == taken[kind]
+        whose = readable(kind) if of_all else _numbered(kind, list(lacking[kind]))
+        unit.notes.left_out(whose, f"the attribute{'s' * (len(names) > 1)} {', '.join(shown)}{more}")
 
 
 def _text_of(origin: str, load_cases: list[str], notes: tuple[Note, ...]) -> str:

@@ -389,3 +389,26 @@ def test_a_sun_has_no_pin() -> None:
     document["rotor"][0]["pin"] = {"walls": ["0 mm"], "diameter": "9 mm"}
     with pytest.raises(CaseError, match=r"rotor\[0\].pin.* without a carrier"):
         read(document)
+
+
+def test_a_broken_set_is_one_problem_and_no_missing_drive() -> None:
+    """Two degrees of freedom of a train without its set do not follow from the mistake."""
+    for wrong in ({"pin_errors": ["20 um", "0 um"]}, {"count": "3"}):
+        with pytest.raises(CaseError) as refused:
+            read(stage(**wrong))
+        assert [problem.key.split("[")[0] for problem in refused.value.problems] == ["planetary"]
+        assert "drives that fix every speed" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("diameter", "warned"), [("4 mm", False), ("3.9 mm", False), ("4.2 mm", True)])
+def test_needles_of_a_planet_may_roll_on_its_bore(diameter: str, warned: bool) -> None:
+    """Pitch diameter 14 mm and rollers of 4 mm touch a bore of 18 mm, which is their raceway."""
+    document = stage()
+    planet = next(one for one in document["rotor"] if one["name"] == "p")
+    planet["segments"][0]["bore"] = "18 mm"
+    needles = {"element": "roller", "count": 10, "element_diameter": diameter, "element_length": "5 mm"}
+    for one in document["bearing"]:
+        if one["rotor"] == "p":
+            one["stiffness"] = {"rolling": {**needles, "pitch_diameter": "14 mm"}}
+    warnings = gw.build(**document).warnings
+    assert any("expected rolling elements within" in str(one) for one in warnings) is warned

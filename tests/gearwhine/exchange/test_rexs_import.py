@@ -751,6 +751,11 @@ def test_attributes_that_nothing_asks_for_are_noted_once_for_each_type() -> None
     names = ", ".join(f"custom_{number}" for number in range(7))
     expected = f"the attributes chamfer_at_tooth_end, {names} and 2 more"
     assert unasked(file)["cylindrical_gear"] == expected
+    # Those of one component alone are not said of its type.
+    file.of(file.number("pinion")).pop("chamfer_at_tooth_end")
+    noted = unasked(file)
+    assert "cylindrical_gear" not in noted
+    assert noted[f"cylindrical_gear {file.number('wheel')}"] == expected
 
 
 def test_slopes_of_flanks_are_noted_with_their_amounts() -> None:

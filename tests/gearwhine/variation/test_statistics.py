@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from gearwhine.case.variation import Limit
+from gearwhine.figures.variation import _distributions
 from gearwhine.numerics.sampling import sobol_points
 from gearwhine.variation.statistics import QuantityStatistics, Share
 
@@ -55,3 +56,15 @@ def test_a_share_has_the_exact_interval_of_a_binomial() -> None:
     assert limited.share == pytest.approx(2.0 / 3.0)
     assert _statistics(values, np.zeros((4, 1)), Limit(at_least=2.0)).worst == [0, 1, 2]
     assert _statistics(values, np.zeros((4, 1)), Limit(at_most=2.0)).worst == [2, 1, 0]
+
+
+def test_scatter_by_rounding_has_no_cause_and_one_bar() -> None:
+    """A quantity that no input changes, but for the last digits of each solution."""
+    x = sobol_points(64, 2, 1)
+    found = _statistics(1e-6 * (1.0 + 1e-15 * np.round(3.0 * x[:, 0])), x)
+    assert np.ptp(found.values) > 0.0
+    assert not found.scatters
+    assert found.rank_correlations == found.explained == {}
+    figure = _distributions("a case", [found])
+    assert [len(axes.patches) for axes in figure.axes] == [1]
+    assert _statistics(1e-6 * (1.0 + 1e-7 * x[:, 0]), x).explained["input 0"] > 0.9
