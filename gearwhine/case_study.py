@@ -166,8 +166,6 @@ class CaseStudy(Study):
     ----------
     case : Case
         Checked case, in SI.
-    warnings : tuple of str
-        Allowed but implausible choices in the case.
     folder : path or None
         Results folder that modes are read from.
     """
@@ -176,7 +174,7 @@ class CaseStudy(Study):
         self, loaded: "LoadedCase", progress: Progress = silent, *, folder: Path | None = None, fresh: bool = False
     ) -> None:
         self.case: Case = loaded.case
-        self.warnings = loaded.warnings
+        self._warnings = loaded.warnings
         self._source = loaded.source
         self._kept = _KeptHousing()
         self._described: Machine | None = None
@@ -219,6 +217,11 @@ class CaseStudy(Study):
             if housing_key(given) == housing_key(changed) and given.up == changed.up:
                 study._kept = self._kept
         return study
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on choices of the case that are allowed and unlikely."""
+        return self._warnings
 
     @property
     def housing(self) -> "HousingModes | None":

@@ -61,6 +61,7 @@ def write_report(
         progress("modelling the shapes that move")
         name, shapes = "report-interactive.html", moving_shapes(folder)
     require_own(folder, [name])
+    progress("packing the pictures into the page")
     with _as_this_build_writes(folder):
         page = report_page(folder, Contents(chapters_of, first_page), case or _stored_case(folder), shapes=shapes)
     with staging(folder) as place:

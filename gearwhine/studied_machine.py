@@ -131,6 +131,11 @@ class StudiedMachine:
         return self._settings
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on inputs that are allowed and unlikely."""
+        return self.machine.warnings
+
+    @property
     def origin(self) -> "Origin":
         """What the results are of."""
         from gearwhine.analyses.origin import Origin

@@ -38,6 +38,7 @@ _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of inter
 _LEAST_SAMPLES = 512
 _HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
 _LINES = 20  # reported lines of each signal
+_LONG_HUNTING = 300  # mesh periods after which the same teeth meet from which a steady motion takes long
 _NAMED_LINE_DISTANCE = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
 _DOUBTFUL_FORCE_SHARE = 0.1  # part of a mesh's varying force that may be neglected without a warning
 
@@ -299,6 +300,9 @@ def solve_steady(
     if len(groups) > 1 and over_speed is not None:
         cycles = common_cycles(machine.system)
         raise CouplingError(f"expected {_NO_BRANCH.format(_period_in_words(cycles))}")
+    hunting = max((contact.contact.hunting_period for contact in machine.system.contacts if contact.loaded), default=1)
+    if hunting > _LONG_HUNTING:
+        progress(f"a motion over {hunting} mesh periods, after which the same teeth meet: `run` takes less time")
     if len(groups) > 1:
         return _superposed(machine, speed, groups, progress)
     if over_speed is None:

@@ -38,6 +38,7 @@ _SIDEBANDS = 4  # by gears and loads; those by turning carriers are as many as t
 _ELEMENT_PASSES = 4
 _LOAD_MULTIPLES = 4
 _HALF_WIDTHS = 3.0  # reach of a line that slip makes wide: four fifths of its power
+_MUCH_NEARER = 0.25  # part of the distance from a sideband within which a whole order of a shaft is the cause
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
 
 
@@ -144,11 +145,16 @@ def line_names(
             for kind, distance in reach.items()
         }
         kind = next((kind for kind in causes if causes[kind]), None)
+        whole, away = _whole_order(machine, excited, frequency, of_shafts)
+        if kind == "sideband":
+            # A line that is no sideband but for the tolerance may be a whole order of another shaft.
+            beside = min(abs(line.order * shaft_frequency - frequency) for line in causes[kind])
+            kind = None if whole and away < _MUCH_NEARER * beside else kind
         if kind is not None:
             fewest = min(line.steps for line in causes[kind])
             text = joined_causes(machine, [line.name for line in causes[kind] if line.steps == fewest])
             named.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
-        elif whole := _whole_order(machine, excited, frequency, of_shafts):
+        elif whole:
             named.append(LineName("shaft", whole, order, mode))
         elif modes is not None and mode is not None:
             named.append(LineName("mode", _label(modes, mode), order, mode))
@@ -179,8 +185,11 @@ def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int
 
 def _whole_order(
     machine: CoupledMachine, excited: Mapping[str, ExcitedOrders], frequency: float, tolerance: float
-) -> str | None:
-    """Return an excited multiple of a shaft's speed, or of that relative to a carrier, the slowest multiple first."""
+) -> tuple[str, float]:
+    """Return an excited multiple of a shaft's speed, or of that relative to a carrier, and how far it is off [Hz].
+
+    The least multiple is the first; the name is empty where there is none.
+    """
     orders = []
     for name, speed in rotations(machine).items():
         rotation_frequency = abs(speed) / (2.0 * np.pi)
@@ -189,8 +198,8 @@ def _whole_order(
             continue
         multiple = round(frequency / rotation_frequency)
         if multiple in excited[name] and abs(frequency - multiple * rotation_frequency) <= tolerance:
-            orders.append((multiple, f"{multiple}× {name}"))
-    return min(orders)[1] if orders else None
+            orders.append((multiple, f"{multiple}× {name}", abs(frequency - multiple * rotation_frequency)))
+    return min(orders)[1:] if orders else ("", np.inf)
 
 
 def _far_sideband(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:

@@ -34,10 +34,19 @@ def parse_key_path(text: str) -> tuple[str, ...] | None:
     return tuple(steps) or None
 
 
+def _name_of(entry: object) -> str | None:
+    """Return the own name of a list's entry; of a gear pair driver and driven gear, as quantities are named by them."""
+    if not isinstance(entry, dict):
+        return None
+    if "driver" in entry and "driven" in entry:
+        return f"{entry['driver']}-{entry['driven']}"
+    return entry.get("name")
+
+
 def place_in_list(entries: list[Any], step: str) -> int | None:
     """Find a list's entry by its own name or by its number."""
     for index, entry in enumerate(entries):
-        if isinstance(entry, dict) and entry.get("name") == step:
+        if _name_of(entry) == step:
             return index
     return int(step) if step.isdecimal() and len(step) < 10 and int(step) < len(entries) else None
 
@@ -199,7 +208,7 @@ def _set(document: dict[str, Any], steps: tuple[str, ...], value: Any) -> list[L
         if isinstance(node, list):
             index = place_in_list(node, step)
             if index is None:
-                names = [entry["name"] for entry in node if isinstance(entry, dict) and "name" in entry]
+                names = [name for name in map(_name_of, node) if name is not None]
                 alternatives = f" or one of {', '.join(map(repr, names))}" if names else ""
                 expected = f"a place from 0 to {len(node) - 1}{alternatives}{did_you_mean(step, map(str, names))}"
                 raise _LeadsNowhereError(location, step, expected)

@@ -24,6 +24,7 @@ def test_a_shaft_in_grams_per_cubic_centimetre_is_doubted_by_machine_and_results
     light = studied(gw.ShaftMaterial(206e9, 79e9, 7.85))
     (doubt,) = light.machine.warnings
     assert doubt.startswith("shaft 'shaft': material.density is 7.85; expected a density of 300 to 23000 kg/m^3")
+    assert light.warnings == (doubt,)
     assert light.rotors(mode_count=2).warnings == [doubt]
     assert studied(gw.ShaftMaterial(206e9, 79e9, 7850.0)).rotors(mode_count=2).warnings == []
     assert studied(gw.ShaftMaterial(206e9, 79e9, 299.0)).machine.warnings

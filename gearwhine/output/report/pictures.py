@@ -6,6 +6,7 @@ Figures of few colours become PNG with a palette; shaded surfaces, on which a pa
 import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from html import escape
 from io import BytesIO
 from pathlib import Path
@@ -18,6 +19,7 @@ _LARGEST_PICTURE_FILE = 8 << 20  # size of a file up to which it is taken as a p
 _LARGEST_UNPACKED_FILE = 512  # size of a file up to which it is not packed [bytes]
 _TALL = 1.2  # height over width of a picture that fills a printed page
 _COLOURS, _QUALITY = 256, 85  # colours of a palette, and quality of WebP
+_KEPT_PICTURES = 128  # number of packed pictures that are kept for the next one like them
 _SMALL, _WIDE = 720, 1400  # largest width of a small picture, and of any [pixels]
 
 
@@ -83,7 +85,7 @@ def _repeated(declared: Picture, files: Sequence[Path]) -> bool:
 def figure(picture: Shown, identifier: str) -> str:
     """Return a picture with its caption as HTML."""
     caption = escape(arrowed(picture.caption) or f"File {picture.path.name}.")
-    packed = _packed(picture.path, _SMALL if picture.small else _WIDE)
+    packed = _packed(picture.path.read_bytes(), _SMALL if picture.small else _WIDE)
     if packed is None:
         return f'<figure id="{identifier}"><figcaption>{caption} The file cannot be read.</figcaption></figure>\n'
     name = escape(picture.path.stem)
@@ -94,9 +96,12 @@ def figure(picture: Shown, identifier: str) -> str:
     return f'<figure id="{identifier}" data-picture="{name}"{tall}>{image}<figcaption>{caption}</figcaption></figure>\n'
 
 
-def _packed(path: Path, widest: int) -> tuple[str, bytes, tuple[int, int]] | None:
-    """Return media type, content and size of a picture in the form that takes fewest bytes; None if it is none."""
-    content = path.read_bytes()
+@lru_cache(maxsize=_KEPT_PICTURES)
+def _packed(content: bytes, widest: int) -> tuple[str, bytes, tuple[int, int]] | None:
+    """Return media type, content and size of a picture in the form that takes fewest bytes; None if it is none.
+
+    Commands of one folder draw some pictures alike, which are packed once.
+    """
     try:
         with Image.open(BytesIO(content), formats=["PNG"]) as image:
             size = image.size

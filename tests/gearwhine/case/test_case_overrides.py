@@ -173,3 +173,10 @@ def test_provenance_that_led_nowhere_before_is_still_an_error(tmp_path: Path) ->
     path.write_text(dump_case(load_case("small-gearbox").case).replace('measured = "', 'measurd = "'), "utf-8")
     with pytest.raises(CaseError, match=r"provenance\.measurd: expected as a key the path"):
         load_case(path, ["title=other"])
+
+
+def test_a_gear_pair_goes_by_its_gears() -> None:
+    """Quantities of `vary` and limits name it so, too."""
+    assert changed("gear_pair.pinion-wheel.damping_ratio=0.08").gear_pair[0].damping_ratio == 0.08
+    with pytest.raises(CaseError, match="one of 'pinion-wheel'; did you mean 'pinion-wheel'"):
+        changed("gear_pair.pinion-weel.damping_ratio=0.08")

@@ -199,6 +199,25 @@ def test_a_line_beside_a_harmonic_of_the_other_mesh_has_the_name_of_its_cause_al
         assert order == pytest.approx(int(harmonic) * {"a -> b": 22.0, "c -> d": 19 * 22 / 75}[mesh], rel=1e-9)
 
 
+def test_a_long_hunting_period_is_said_before_it_is_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """21 and 72 teeth meet again after 504 mesh periods, where one of either gear is off its place."""
+
+    def stopped(*_: object, **__: object) -> None:
+        raise PeriodicError("stopped")
+
+    for name in ("superposed_response", "periodic_response"):
+        monkeypatch.setattr(f"gearwhine.coupling.analyses.steady_state.{name}", stopped)
+    text = reducer()
+    for name, teeth in (("a", 21), ("b", 72)):
+        deviations = ", ".join(['"0 um"'] * (teeth - 1) + ['"1 um"'])
+        text = text.replace(f'name = "{name}"\n', f'name = "{name}"\nerrors = {{ pitch = [{deviations}] }}\n')
+    for pitch, expected in ((text, True), (reducer(), False)):
+        told: list[str] = []
+        with pytest.raises(PeriodicError, match="stopped"):
+            solve_steady(machine_of(tmp_path, pitch), progress=told.append)
+        assert any("a motion over 504 mesh periods" in one for one in told) == expected
+
+
 def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> None:
     place = tmp_path / "reducer.toml"
     place.write_text(reducer(unbalanced="input"), encoding="utf-8")

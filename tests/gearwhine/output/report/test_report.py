@@ -7,6 +7,7 @@ import tomllib
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from gearwhine.case import Case, CaseError, dump_case, load_case
 from gearwhine.case.input_files import file_contents
 from gearwhine.output.report import Contents, report_page
 from gearwhine.output.report.freshness import mismatches
+from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
 from gearwhine.results import steady_state as steady
@@ -226,6 +228,27 @@ def test_pictures_are_packed_and_look_the_same(tmp_path: Path) -> None:
         seen = np.asarray(Image.open(BytesIO(content)).convert("RGB")).astype(int)
         assert np.abs(seen - {"flat": flat, "shaded": shaded}[name]).mean() < 2.0
     assert kinds == {"File flat.png.": "data:image/png", "File shaded.png.": "data:image/webp"}
+
+
+def test_a_picture_that_stands_twice_is_packed_once_and_shown_twice(tmp_path: Path, monkeypatch: Any) -> None:
+    noise = np.random.default_rng(4).integers(0, 255, (40, 50, 3), dtype=np.uint8)
+    packed: list[Image.Image] = []
+    quantize = Image.Image.quantize
+
+    def counted(image: Image.Image, *more: Any, **ways: Any) -> Image.Image:
+        packed.append(image)
+        return quantize(image, *more, **ways)
+
+    monkeypatch.setattr(Image.Image, "quantize", counted)
+    shown = []
+    for name in ("load-face.png", "system-face.png"):
+        Image.fromarray(noise).save(tmp_path / name)
+        shown.append(figure(Shown(tmp_path / name, "Load over the face."), name))
+    sources = [re.search('src="([^"]+)"', one) for one in shown]
+    assert len(packed) == 1
+    assert sources[0] is not None
+    assert sources[1] is not None
+    assert sources[0].group(1) == sources[1].group(1)
 
 
 def test_a_file_that_is_no_picture_is_told(tmp_path: Path) -> None:

@@ -1,0 +1,38 @@
+"""Names of lines whose frequency several causes are near."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from coupled_cases import coupled
+from reducer_case import reducer
+
+from gearwhine.case import load_case
+from gearwhine.coupling.signals.line_names import line_names
+
+WAVES = np.random.default_rng(2).normal(size=56)
+OUTPUT, STAGE = 19 * 21 / 72 / 56, 19 * 21 / 72
+"""Turns of the output and cycles of the second mesh in a turn of the input."""
+
+
+@pytest.mark.parametrize(
+    ("order", "name"),
+    [
+        (6.0, "6× input"),
+        (STAGE + 4.0 * OUTPUT, "1× c -> d + 4× output"),
+        (STAGE + OUTPUT, "1× c -> d + 1× output"),
+        (7.0, "7× input"),
+    ],
+)
+def test_a_whole_order_of_another_shaft_beside_a_sideband_has_its_own_name(
+    tmp_path: Path, order: float, name: str
+) -> None:
+    """The sideband at 5.94 turns of the input is within the tolerance of its sixth order, which pitch errors excite."""
+    place = tmp_path / "reducer.toml"
+    place.write_text(reducer(), encoding="utf-8")
+    listed = {
+        key: "[" + ", ".join(f'"{one:.3f} um"' for one in WAVES[:teeth]) + "]" for key, teeth in (("a", 21), ("d", 56))
+    }
+    machine = coupled(load_case(str(place), [f"gear.{key}.errors.pitch={one}" for key, one in listed.items()]).case)
+    (found,) = line_names(machine, [50.0 * order], 4.0)
+    assert found.name == name
