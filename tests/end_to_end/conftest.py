@@ -34,6 +34,11 @@ def _modes_solved_once(modes_solved_once: None) -> None:
     """Modes of a housing that another test of this process has solved are not solved again."""
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _periodic_motions_found_once(periodic_motions_found_once: None) -> None:
+    """Periodic motions of a machine that another test of this process has found are not sought again."""
+
+
 @pytest.fixture
 def linear_drawings(monkeypatch: pytest.MonkeyPatch) -> None:
     """Mesh drawings by linear tetrahedra: their bolts, not the size of elements, say how many there are."""

@@ -37,7 +37,7 @@ from gearwhine.numerics.arrays import ComplexArray
 
 pytestmark = pytest.mark.slow
 
-TURNS, DISCARDED = 38, 8
+TURNS, DISCARDED = 28, 8
 TURN = 0.02
 """One turn of the input shaft at 3000 rpm [s]."""
 CONTACTS = [" -> ".join(pair) for pair in PAIRS]

@@ -17,6 +17,11 @@ EXAMPLES = ROOT / "scripts" / "examples"
 Example = Callable[..., dict[str, Any]]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _solved_once(modes_solved_once: None, periodic_motions_found_once: None) -> None:
+    """Modes and periodic motions that another test of this process has found are not sought again."""
+
+
 @pytest.fixture
 def larger_elements(monkeypatch: pytest.MonkeyPatch) -> None:
     """Mesh boxes by elements of at least 60 mm, for examples whose statements do not depend on them."""
