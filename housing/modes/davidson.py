@@ -81,14 +81,15 @@ def davidson_modes(
     for _ in range(_STEPS + 8 * count // width):
         if space.size + block.shape[1] > most:
             space.shrink(kept)
-        if not space.extend(solve_approximately(block)):
+        block = solve_approximately(block)
+        if not space.extend(block):
             break
         if space.size < begin:
             block = mass @ space.last
             continue
         values, mixture = space.ritz(count)
         scales = np.abs(values) + abs(values[-1]) + floor
-        block = block[:, :0]
+        block = np.empty((n, 0))
         while not block.shape[1] and (residuals > tolerance).any():
             # The largest first: those of the modes that wait for a step are the larger ones of the next.
             worst = np.argsort(-residuals, kind="stable")[: min(width, np.count_nonzero(residuals > tolerance))]
