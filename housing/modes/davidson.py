@@ -11,7 +11,7 @@ By the first form S extended by F⁻¹ r is the Krylov space of F⁻¹ M, and th
 by the second one each step also removes what E has left in x (Davidson 1975; Morgan and Scott 1986). Only the accuracy
 of r limits that of the modes. As long as the space has hardly more vectors than modes are wanted, E does not matter,
 and it is extended by F⁻¹ M of its last block, which takes fewer products. Where S is full, it keeps the lowest Ritz
-vectors, which costs hardly a step.
+vectors and the last changes of the wanted ones (Knyazev 2001), which costs hardly a step.
 
 A block has sixteen columns, since the direct solver takes as long for eight.
 """
@@ -73,18 +73,18 @@ def davidson_modes(
     """
     n = mass.shape[0]
     width = min(_BLOCK * 2**seed, n)
-    most, kept, begin = 4 * count + 4 * width, 3 * count + width, count + 4 * width
-    space = _RitzSpace(stiffness, mass, most, BlockAlgebra(n, threads))
+    kept = 2 * count + width
+    space = _RitzSpace(stiffness, mass, kept + 3 * width, BlockAlgebra(n, threads))
     residuals = np.full(count, np.inf)
     block = np.random.default_rng(seed).standard_normal((n, width))
     block = mass @ block
     for _ in range(_STEPS + 8 * count // width):
-        if space.size + block.shape[1] > most:
-            space.shrink(kept)
+        if space.size + block.shape[1] > kept + 3 * width:
+            space.shrink(kept, count)
         block = solve_approximately(block)
         if not space.extend(block):
             break
-        if space.size < begin:
+        if space.size < kept + 2 * width:
             block = mass @ space.last
             continue
         values, mixture = space.ritz(count)
@@ -186,8 +186,13 @@ class _RitzSpace:
         self.stiffness = np.block([[self.stiffness, coupling], [coupling.T, 0.5 * (own + own.T)]])
         return True
 
-    def shrink(self, kept: int) -> None:
-        """Keep the lowest Ritz vectors."""
-        values, mixture = self.ritz(kept)
+    def shrink(self, kept: int, count: int) -> None:
+        """Keep the lowest Ritz vectors, and the changes of the first ``count`` ones by the last block."""
+        mixture = self.ritz(kept)[1]
+        changes = mixture[:, :count].copy()
+        changes[: self._before] = 0.0
+        changes -= mixture @ (mixture.T @ changes)
+        changes = np.linalg.svd(changes, full_matrices=False)[0][:, : min(count, self.size - self._before)]
+        mixture = np.linalg.qr(np.concatenate([mixture, changes], axis=1))[0]
         self._algebra.replace(self._basis, mixture)
-        self.stiffness, self.size = np.diag(values), kept
+        self.stiffness, self.size = mixture.T @ self.stiffness @ mixture, mixture.shape[1]

@@ -257,4 +257,4 @@ def test_modes_of_a_chain_from_an_inverse_of_another_chain(spoilt: float) -> Non
     places = np.arange(1, n + 1)[:, None] * np.arange(1, count + 1) * np.pi / (n + 1)
     shapes = np.sqrt(2.0 / (n + 1)) * np.sin(places)
     np.testing.assert_allclose(np.abs(shapes.T @ vectors), np.eye(count), atol=1e-6)
-    assert (sum(widths) > 4 * count + 64) == (spoilt > 0.0)
+    assert sum(widths) > (2 * count + 64 if spoilt else 0)
