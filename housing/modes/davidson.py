@@ -13,7 +13,8 @@ of r limits that of the modes. As long as the space has hardly more vectors than
 and it is extended by F⁻¹ M of its last block, which takes fewer products. Where S is full, it keeps the lowest Ritz
 vectors and the last changes of the wanted ones (Knyazev 2001), which costs hardly a step.
 
-A block has sixteen columns, since the direct solver takes as long for eight.
+A block has sixteen columns, since the direct solver takes as long for eight. Where the memory beside the factor is
+short, it has eight, and the space is smaller too.
 """
 
 from collections.abc import Callable
@@ -22,6 +23,7 @@ import numpy as np
 from scipy import linalg
 
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
+from gearwhine.housing.fem.memory import available_memory
 from gearwhine.numerics.arrays import FloatArray
 
 _BLOCK = 16
@@ -72,19 +74,21 @@ def davidson_modes(
         φ, with φᵀ M φ = 1; fewer where the starting block has no part in the others.
     """
     n = mass.shape[0]
-    width = min(_BLOCK * 2**seed, n)
-    kept = 2 * count + width
-    space = _RitzSpace(stiffness, mass, kept + 3 * width, BlockAlgebra(n, threads))
+    width, share = min(_BLOCK * 2**seed, n), 3
+    if 8.0 * n * (4 * count + 9 * width) > available_memory():
+        width, share = (width + 1) // 2, 2
+    kept, most, begin = share * count + width, (share + 1) * count + 4 * width, count + 4 * width
+    space = _RitzSpace(stiffness, mass, most, BlockAlgebra(n, threads))
     residuals = np.full(count, np.inf)
     block = np.random.default_rng(seed).standard_normal((n, width))
     block = mass @ block
     for _ in range(_STEPS + 8 * count // width):
-        if space.size + block.shape[1] > kept + 3 * width:
+        if space.size + block.shape[1] > most:
             space.shrink(kept, count)
         block = solve_approximately(block)
         if not space.extend(block):
             break
-        if space.size < kept + 2 * width:
+        if space.size < begin:
             block = mass @ space.last
             continue
         values, mixture = space.ritz(count)
