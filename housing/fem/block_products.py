@@ -15,7 +15,7 @@ from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
 
-_COLUMNS = 8  # columns of one pass over the blocks: of a fixed number, they stand in registers
+_COLUMNS = 4  # columns of one pass over the blocks: of a fixed number, they stand in registers
 
 
 @_compiled
@@ -87,7 +87,7 @@ class BlockProduct:
     free : ndarray of int, shape (n,)
         Free degrees of freedom, ascending.
     threads : int
-        Number of threads; each multiplies every other eight columns.
+        Number of threads; each multiplies four columns at a time.
     """
 
     def __init__(

@@ -520,6 +520,7 @@ class FreeMass:
             columns = np.zeros((self._order, columns.shape[1]))
             columns[self._places] = vectors.reshape(len(vectors), -1)
         product = self._multiply(columns.reshape(self._order // 3, -1)).reshape(self._order, -1)
+        del columns
         if self._places is not None:
             product = product[self._places]
         if self._attached is not None:

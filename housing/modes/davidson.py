@@ -11,9 +11,10 @@ By the first form S extended by F⁻¹ r is the Krylov space of F⁻¹ M, and th
 by the second one each step also removes what E has left in x (Davidson 1975; Morgan and Scott 1986). Only the accuracy
 of r limits that of the modes. As long as the space has hardly more vectors than modes are wanted, E does not matter,
 and it is extended by F⁻¹ M of its last block, which takes fewer products. Where S is full, it keeps the lowest Ritz
-vectors, which costs hardly a step.
+vectors and the last changes of the wanted ones (Knyazev 2001), which costs hardly a step.
 
-A block has sixteen columns, since the direct solver takes as long for eight.
+A block has sixteen columns, since the direct solver takes as long for eight. Where the memory beside the factor is
+short, it has eight, and the space is smaller too.
 """
 
 from collections.abc import Callable
@@ -22,6 +23,7 @@ import numpy as np
 from scipy import linalg
 
 from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
+from gearwhine.housing.fem.memory import available_memory
 from gearwhine.numerics.arrays import FloatArray
 
 _BLOCK = 16
@@ -72,23 +74,26 @@ def davidson_modes(
         φ, with φᵀ M φ = 1; fewer where the starting block has no part in the others.
     """
     n = mass.shape[0]
-    width = min(_BLOCK * 2**seed, n)
-    most, kept, begin = 4 * count + 4 * width, 3 * count + width, count + 4 * width
+    width, share = min(_BLOCK * 2**seed, n), 3
+    if 8.0 * n * (4 * count + 9 * width) > available_memory():
+        width, share = (width + 1) // 2, 2
+    kept, most, begin = share * count + width, (share + 1) * count + 4 * width, count + 4 * width
     space = _RitzSpace(stiffness, mass, most, BlockAlgebra(n, threads))
     residuals = np.full(count, np.inf)
     block = np.random.default_rng(seed).standard_normal((n, width))
     block = mass @ block
     for _ in range(_STEPS + 8 * count // width):
         if space.size + block.shape[1] > most:
-            space.shrink(kept)
-        if not space.extend(solve_approximately(block)):
+            space.shrink(kept, count)
+        block = solve_approximately(block)
+        if not space.extend(block):
             break
         if space.size < begin:
             block = mass @ space.last
             continue
         values, mixture = space.ritz(count)
         scales = np.abs(values) + abs(values[-1]) + floor
-        block = block[:, :0]
+        block = np.empty((n, 0))
         while not block.shape[1] and (residuals > tolerance).any():
             # The largest first: those of the modes that wait for a step are the larger ones of the next.
             worst = np.argsort(-residuals, kind="stable")[: min(width, np.count_nonzero(residuals > tolerance))]
@@ -185,8 +190,13 @@ class _RitzSpace:
         self.stiffness = np.block([[self.stiffness, coupling], [coupling.T, 0.5 * (own + own.T)]])
         return True
 
-    def shrink(self, kept: int) -> None:
-        """Keep the lowest Ritz vectors."""
-        values, mixture = self.ritz(kept)
+    def shrink(self, kept: int, count: int) -> None:
+        """Keep the lowest Ritz vectors, and the changes of the first ``count`` ones by the last block."""
+        mixture = self.ritz(kept)[1]
+        changes = mixture[:, :count].copy()
+        changes[: self._before] = 0.0
+        changes -= mixture @ (mixture.T @ changes)
+        changes = np.linalg.svd(changes, full_matrices=False)[0][:, : min(count, self.size - self._before)]
+        mixture = np.linalg.qr(np.concatenate([mixture, changes], axis=1))[0]
         self._algebra.replace(self._basis, mixture)
-        self.stiffness, self.size = np.diag(values), kept
+        self.stiffness, self.size = mixture.T @ self.stiffness @ mixture, mixture.shape[1]

@@ -13,6 +13,7 @@ from gearwhine.housing.fem import factorization, memory
 from gearwhine.housing.fem.factorization import Factorizer, RslabSolver, UnprovedInertiaError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.modes import davidson
 from gearwhine.housing.modes.davidson import davidson_modes
 from gearwhine.meshes import Mesh
 
@@ -230,12 +231,16 @@ def test_precisions_that_are_not_there_are_named() -> None:
         Factorizer(backend="superlu", precision="single")
 
 
-@pytest.mark.parametrize("spoilt", [0.0, 300.0])
-def test_modes_of_a_chain_from_an_inverse_of_another_chain(spoilt: float) -> None:
+@pytest.mark.parametrize(("spoilt", "available", "block"), [(0.0, 1e9, 16), (300.0, 1e9, 16), (300.0, 1e6, 8)])
+def test_modes_of_a_chain_from_an_inverse_of_another_chain(
+    spoilt: float, available: float, block: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Λ = 2 - 2 cos kπ/(n+1) of a chain of unit springs and masses, with the inverse of one on springs to the ground.
 
-    These are random, of 300 times the lowest eigenvalue; the steps then fill the space more than once.
+    These are random, of 300 times the lowest eigenvalue; the steps then fill the space more than once. With little
+    memory the blocks are narrower.
     """
+    monkeypatch.setattr(davidson, "available_memory", lambda: available)
     n, count = 1500, 12
     exact = 2.0 - 2.0 * np.cos(np.arange(1, n + 1) * np.pi / (n + 1))
     chain = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), format="csr")
@@ -257,4 +262,5 @@ def test_modes_of_a_chain_from_an_inverse_of_another_chain(spoilt: float) -> Non
     places = np.arange(1, n + 1)[:, None] * np.arange(1, count + 1) * np.pi / (n + 1)
     shapes = np.sqrt(2.0 / (n + 1)) * np.sin(places)
     np.testing.assert_allclose(np.abs(shapes.T @ vectors), np.eye(count), atol=1e-6)
-    assert (sum(widths) > 4 * count + 64) == (spoilt > 0.0)
+    assert widths[0] == block
+    assert sum(widths) > ((4 if block == 16 else 3) * count + 4 * block if spoilt else 0)
