@@ -137,7 +137,7 @@ def wrong_units(source: Source) -> Slips:
             wrong = name in WORDS and dimension not in (WORDS[name], "%")
         else:
             wrong = said != dimension or not (isclose(factor * size, 1.0) or name.startswith("half_"))
-        if wrong:
+        if wrong or (shown == "dB(A)" and not name.endswith(("_db_a", "level"))):
             yield line, f"{factor:g} {name} in {shown}"
 
 
