@@ -1,9 +1,10 @@
 """Numbers with units in the texts of a result are in its document, and the heights of its curves in its file.
 
-Sentences and tables are composed from the document by hand, for the terminal, the report and its first page. Whatever
-result a test makes, its texts are composed here and read back: a factor, a unit or a sign that is wrong in one of them
-leaves a number which the document does not have. A figure that a test draws is looked at in the same way: the highest
-point of a curve, or its swing, is that of an array of the results file in the unit of the axis.
+Sentences and tables are composed from the document by hand, for the terminal and the report. Whatever result a fast
+test makes, its texts are composed here and read back: a factor, a unit or a sign that is wrong in one of them leaves a
+number which the document does not have. The other way round, a warning says the figures that belong to it. A figure
+that a test draws is looked at in the same way: the highest point of a curve, or its swing, is that of an array of the
+results file in the unit of the axis, and no curve leaves its axes.
 """
 
 import re
@@ -22,12 +23,12 @@ from shown_units import SHOWN, dimension_of
 
 from gearwhine.output.sections import Section, Table
 
-_UNITS = SHOWN | {"dB(A)": ("dB(A)", 1.0)}
+_UNITS = SHOWN | {"dB(A)": ("dB(A)", 1.0), "": ("1", 1.0)}
 _NUMBER = r"(?<![\w.,/-])[-+]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
+_NAMES = "|".join(sorted(map(re.escape, filter(None, _UNITS)), key=len, reverse=True))
 # A unit may stand behind the second of two numbers.
 _WITH_UNIT = re.compile(rf"({_NUMBER})(?=(?:(?: to | and | ± ){_NUMBER})? ?({_NAMES})(?![\w/·*²(°-]))")
-_BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±) $|±$")
+_BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±|>) $|±$")
 """Words before a number of the settings, or of the sentence itself, which need not be in the document."""
 _OF_SENTENCES = re.compile(
     r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |dB (with|re) |20 µPa|1 pW|damping|falls to"
@@ -90,7 +91,7 @@ def shown_in_table(table: Table) -> Iterator[Shown]:
             text = f"{heading}: {row[place]}"
             if own := list(shown_in_text(row[place])):
                 yield from own
-            elif "[" in heading and unit in _UNITS:
+            elif "[" in heading and unit and unit in _UNITS and not row[place].startswith(">"):
                 yield from (Shown(text, number, unit) for number in re.findall(_NUMBER, row[place]))
 
 
@@ -109,6 +110,22 @@ def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) ->
     """Numbers of texts that the document does not have."""
     known = known_numbers(document)
     return [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+
+
+def unsaid_figures(entry: Mapping[str, Any]) -> list[str]:
+    """Figures of a warning that its message does not say, in their unit or bare; a part also by its rest."""
+    message = str(entry["message"])
+    said = [Shown(message, number, unit) for number, unit in _WITH_UNIT.findall(message)]
+    bare = [Shown(message, number, "") for number in re.findall(_NUMBER, message)]
+    unsaid = []
+    for key, value in entry.items():
+        if isinstance(value, float):
+            known = known_numbers({key: value})
+            known["%"] += [100.0 * (1.0 - value)]
+            known["1"] += [value]
+            if not any(_is_known(one, known) for one in [*said, *bare]):
+                unsaid.append(f"{key} = {value:.6g} in {message!r}")
+    return unsaid
 
 
 @cache
@@ -159,6 +176,8 @@ _OWN_CURVES = re.compile(
     r"diameter|phase|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
 )
 """Figures, with the label of the axis, of curves whose highest points are not in the file."""
+_CUT = re.compile("campbell|steady-motion")
+"""Figures whose highest branches, or further periods, lie beyond the axes."""
 _FILE_UNITS = {"m s-2": "m/s2", "m s-2 m-1": "m/s2", "N m-1": "N/m", "1": "%", "": "%", "percent": "%"}
 _FEWEST_POINTS, _ROUNDING, _EDGE = 8, 1e-12, 1e-6
 _NEAR = 4e-3  # part by which a curve that is drawn smoothly may rise above its samples
@@ -242,6 +261,8 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
         if self.solved is None or not is_on():  # one without is made up by a test
             return
         document = {"command": self.command} | self.document
+        unsaid = [one for entry in document["warnings"] for one in unsaid_figures(entry)]
+        assert not unsaid, f"{self.command}: not in the message of the warning: {unsaid}"
         for compose in _composers().get(self.command, ()):
             foreign = foreign_numbers(document, compose(document))
             assert not foreign, f"{self.command}: not in the document: {foreign}"
@@ -253,7 +274,7 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
             if heights:
                 foreign = [*foreign_curves(name, figure, heights), *foreign_in_texts(name, figure, self.document)]
                 assert not foreign, f"{self.command}, {name}: neither in the file nor in the document: {foreign}"
-                cut = [] if "campbell" in name else cut_curves(name, figure)  # its highest branches may leave it
+                cut = [] if _CUT.search(name) else cut_curves(name, figure)
                 assert not cut, f"{self.command}, {name}: cut by the axes: {cut}"
             yield name, figure
 
