@@ -176,8 +176,8 @@ _OWN_CURVES = re.compile(
     r"diameter|phase|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
 )
 """Figures, with the label of the axis, of curves whose highest points are not in the file."""
-_CUT = re.compile("campbell|steady-motion")
-"""Figures whose highest branches, or further periods, lie beyond the axes."""
+_CUT = re.compile("campbell|steady-motion|-teeth")
+"""Figures whose highest branches, further periods, or lines of action lie beyond the axes."""
 _FILE_UNITS = {"m s-2": "m/s2", "m s-2 m-1": "m/s2", "N m-1": "N/m", "1": "%", "": "%", "percent": "%"}
 _FEWEST_POINTS, _ROUNDING, _EDGE = 8, 1e-12, 1e-6
 _NEAR = 4e-3  # part by which a curve that is drawn smoothly may rise above its samples
