@@ -31,7 +31,7 @@ _WITH_UNIT = re.compile(rf"({_NUMBER})(?=(?:(?: to | and | ± ){_NUMBER})? ?({_N
 _BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±|>) $|±$")
 """Words before a number of the settings, or of the sentence itself, which need not be in the document."""
 _OF_SENTENCES = re.compile(
-    r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |dB (with|re) |20 µPa|1 pW|damping|falls to"
+    r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |planets at |dB (with|re) |20 µPa|1 pW|damping|falls to"
     r"|^\+1(0 %| mm)$"
 )
 _OF_MANY = ("optimise", "vary", "detect", "sweep")
@@ -108,8 +108,19 @@ def known_numbers(document: Mapping[str, Any]) -> defaultdict[str, list[float]]:
 
 def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
     """Numbers of texts that the document does not have."""
-    known = known_numbers(document)
-    return [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+    known, words = known_numbers(document), list(texts_in(document))
+    foreign = [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+    # What the document has in words is quoted.
+    return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
+
+
+def texts_in(value: Any) -> Iterator[str]:
+    """Texts of a document."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping | list | tuple):
+        for inner in value.values() if isinstance(value, Mapping) else value:
+            yield from texts_in(inner)
 
 
 def unsaid_figures(entry: Mapping[str, Any]) -> list[str]:
