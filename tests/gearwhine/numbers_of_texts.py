@@ -31,8 +31,8 @@ _WITH_UNIT = re.compile(rf"({_NUMBER})(?=(?:(?: to | and | ± ){_NUMBER})? ?({_N
 _BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±|>) $|±$")
 """Words before a number of the settings, or of the sentence itself, which need not be in the document."""
 _OF_SENTENCES = re.compile(
-    r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |planets at |dB (with|re) |20 µPa|1 pW|damping|falls to"
-    r"|^\+1(0 %| mm)$"
+    r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |planets at |dB (with|re) |20 µPa|1 pW|damping"
+    r"|falls to|^\+1(0 %| mm)$"
 )
 _OF_MANY = ("optimise", "vary", "detect", "sweep")
 """Commands whose numbers have the units of the case's keys, which their names do not say."""
