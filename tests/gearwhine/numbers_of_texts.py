@@ -108,9 +108,9 @@ def known_numbers(document: Mapping[str, Any]) -> defaultdict[str, list[float]]:
 
 def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
     """Numbers of texts that the document does not have."""
-    known, words = known_numbers(document), list(texts_in(document))
+    known = known_numbers(document)
     foreign = [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
-    # What the document has in words is quoted.
+    words = list(texts_in(document)) if foreign else []  # which are quoted
     return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
 
 
