@@ -9,6 +9,7 @@ with the reason in ``tests/faults/equivalent.toml``. None is drawn in a kernel's
     python benchmarks/drawn_faults.py --map tests/coupling/test_x.py   # of these tests anew
     python benchmarks/drawn_faults.py --number 60 --seed 1 --under gearwhine/results --under coupling
     python benchmarks/drawn_faults.py --survivors                      # again what survived before, of any seed
+    python benchmarks/drawn_faults.py --types --seed 1                 # ... and whether the strict types refuse those
 """
 
 import argparse
@@ -333,6 +334,16 @@ def tests_of(fault: DrawnFault, lines: dict[str, dict[str, list[int]]], seconds:
     return chosen
 
 
+def refused_by_types(fault: DrawnFault) -> bool:
+    """Whether the strict types, which `make test` checks, refuse the copy with the fault in it."""
+    before = fault.put_into(TREE)
+    try:
+        command = [sys.executable, "-m", "mypy", "--no-error-summary"]
+        return subprocess.run(command, cwd=TREE, capture_output=True, check=False).returncode == 1
+    finally:
+        (TREE / fault.file).write_text(before, encoding="utf-8")
+
+
 def trace(tests: list[str]) -> None:
     """Make the map of the fast tests, or of some of them anew."""
     kept = [json.loads(line) for line in LINES.read_text(encoding="utf-8").splitlines()] if LINES.exists() else []
@@ -354,6 +365,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--under", action="append", help="only files of paths that begin so; may be repeated")
     parser.add_argument("--survivors", action="store_true", help="try again all that survived before")
+    parser.add_argument("--types", action="store_true", help="hold what the tests let through against the types")
     parser.add_argument("--list", action="store_true", help="only print the drawn faults and their tests")
     given = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
@@ -389,6 +401,8 @@ def main() -> None:
             found, text = caught(TREE, fault, [tests], "-m", "not slow", timeout=_TIMEOUT)
             by = re.search(r"^(?:FAILED|ERROR) (\S+)", text, re.MULTILINE)
             verdict = f"caught by {by[1] if by else text[-60:].strip()}" if found else "SURVIVED"
+            if given.types and not found and refused_by_types(fault):
+                verdict = "refused by types"
             verdicts[fault.key] = verdict
             VERDICTS.write_text(json.dumps(verdicts, indent=1), encoding="utf-8")
         sys.stdout.write(f"{number:4d} {fault.area:10} {fault.key}: {verdict}{f' ({reason})' if reason else ''}\n")

@@ -137,7 +137,7 @@ def wrong_units(source: Source) -> Slips:
             wrong = name in WORDS and dimension not in (WORDS[name], "%")
         else:
             wrong = said != dimension or not (isclose(factor * size, 1.0) or name.startswith("half_"))
-        if wrong:
+        if wrong or (shown == "dB(A)" and not name.endswith(("_db_a", "level"))):
             yield line, f"{factor:g} {name} in {shown}"
 
 
@@ -399,6 +399,8 @@ def unscaled(source: Source) -> Slips:
         before = [given for at, given in named.get(name, ()) if at < line]
         if factor == 1.0 and before and (found := factor_and_name(before[-1], numbers)):
             factor, name = found
+            if (said := dimension_of(name)) in _INSIDE and (said != dimension or not isclose(factor * size, 1.0)):
+                yield line, f"{factor:g} {name} in {shown}"
         size *= 1e-2 if dimension == "%" else 1.0
         if dimension not in _INSIDE or dimension_of(name) is not None or name in _SHOWN_AS.split():
             continue

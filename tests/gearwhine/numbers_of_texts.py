@@ -1,9 +1,10 @@
 """Numbers with units in the texts of a result are in its document, and the heights of its curves in its file.
 
-Sentences and tables are composed from the document by hand, for the terminal, the report and its first page. Whatever
-result a test makes, its texts are composed here and read back: a factor, a unit or a sign that is wrong in one of them
-leaves a number which the document does not have. A figure that a test draws is looked at in the same way: the highest
-point of a curve, or its swing, is that of an array of the results file in the unit of the axis.
+Sentences and tables are composed from the document by hand, for the terminal and the report. Whatever result a fast
+test makes, its texts are composed here and read back: a factor, a unit or a sign that is wrong in one of them leaves a
+number which the document does not have. The other way round, a warning says the figures that belong to it. A figure
+that a test draws is looked at in the same way: the highest point of a curve, or its swing, is that of an array of the
+results file in the unit of the axis, and no curve leaves its axes.
 """
 
 import re
@@ -22,16 +23,16 @@ from shown_units import SHOWN, dimension_of
 
 from gearwhine.output.sections import Section, Table
 
-_UNITS = SHOWN | {"dB(A)": ("dB", 1.0)}
+_UNITS = SHOWN | {"dB(A)": ("dB(A)", 1.0), "": ("1", 1.0)}
 _NUMBER = r"(?<![\w.,/-])[-+]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
+_NAMES = "|".join(sorted(map(re.escape, filter(None, _UNITS)), key=len, reverse=True))
 # A unit may stand behind the second of two numbers.
 _WITH_UNIT = re.compile(rf"({_NUMBER})(?=(?:(?: to | and | ± ){_NUMBER})? ?({_NAMES})(?![\w/·*²(°-]))")
-_BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±) $|±$")
+_BOUNDS = re.compile(r"(above|below|within|beyond|less than|up to|by|±|>) $|±$")
 """Words before a number of the settings, or of the sentence itself, which need not be in the document."""
 _OF_SENTENCES = re.compile(
-    r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |dB (with|re) |20 µPa|1 pW|damping|falls to"
-    r"|^\+1(0 %| mm)$"
+    r"95 % (interval|of)|1 µm (at|of|alone)|100 %|% of critical|failed: |planets at |dB (with|re) |20 µPa|1 pW|damping"
+    r"|falls to|^\+1(0 %| mm)$"
 )
 _OF_MANY = ("optimise", "vary", "detect", "sweep")
 """Commands whose numbers have the units of the case's keys, which their names do not say."""
@@ -90,7 +91,7 @@ def shown_in_table(table: Table) -> Iterator[Shown]:
             text = f"{heading}: {row[place]}"
             if own := list(shown_in_text(row[place])):
                 yield from own
-            elif "[" in heading and unit in _UNITS:
+            elif "[" in heading and unit and unit in _UNITS and not row[place].startswith(">"):
                 yield from (Shown(text, number, unit) for number in re.findall(_NUMBER, row[place]))
 
 
@@ -100,13 +101,42 @@ def known_numbers(document: Mapping[str, Any]) -> defaultdict[str, list[float]]:
     for path, value in leaves(document):
         dimension, factor = _unit_of(path)
         known[dimension].append(factor * value)
+        if path.endswith("_db_a"):  # a heading may say in words that it is weighted
+            known["dB(A)"].append(value)
     return known
 
 
 def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
     """Numbers of texts that the document does not have."""
     known = known_numbers(document)
-    return [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+    foreign = [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+    words = list(texts_in(document)) if foreign else []  # which are quoted
+    return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
+
+
+def texts_in(value: Any) -> Iterator[str]:
+    """Texts of a document."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping | list | tuple):
+        for inner in value.values() if isinstance(value, Mapping) else value:
+            yield from texts_in(inner)
+
+
+def unsaid_figures(entry: Mapping[str, Any]) -> list[str]:
+    """Figures of a warning that its message does not say, in their unit or bare; a part also by its rest."""
+    message = str(entry["message"])
+    said = [Shown(message, number, unit) for number, unit in _WITH_UNIT.findall(message)]
+    bare = [Shown(message, number, "") for number in re.findall(_NUMBER, message)]
+    unsaid = []
+    for key, value in entry.items():
+        if isinstance(value, float):
+            known = known_numbers({key: value})
+            known["%"] += [100.0 * (1.0 - value)]
+            known["1"] += [value]
+            if not any(_is_known(one, known) for one in [*said, *bare]):
+                unsaid.append(f"{key} = {value:.6g} in {message!r}")
+    return unsaid
 
 
 @cache
@@ -157,8 +187,10 @@ _OWN_CURVES = re.compile(
     r"diameter|phase|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
 )
 """Figures, with the label of the axis, of curves whose highest points are not in the file."""
+_CUT = re.compile("campbell|steady-motion|-teeth")
+"""Figures whose highest branches, further periods, or lines of action lie beyond the axes."""
 _FILE_UNITS = {"m s-2": "m/s2", "m s-2 m-1": "m/s2", "N m-1": "N/m", "1": "%", "": "%", "percent": "%"}
-_FEWEST_POINTS, _ROUNDING = 8, 1e-12
+_FEWEST_POINTS, _ROUNDING, _EDGE = 8, 1e-12, 1e-6
 _NEAR = 4e-3  # part by which a curve that is drawn smoothly may rise above its samples
 
 Heights = Mapping[str, npt.NDArray[np.float64]]
@@ -201,6 +233,23 @@ def foreign_curves(name: str, figure: Any, heights: Heights) -> list[str]:
     return foreign
 
 
+def cut_curves(name: str, figure: Any) -> list[str]:
+    """Curves that leave the axes to the left, to the right or above; what is small may lie below an axis of decades."""
+    cut = []
+    for axes in figure.axes:
+        (left, right), top = sorted(axes.get_xlim()), max(axes.get_ylim())
+        bottom = min(axes.get_ylim()) if axes.get_yscale() == "linear" else -np.inf
+        for line in axes.get_lines():
+            if line.get_transform() != axes.transData:
+                continue
+            x, y = (np.asarray(values, dtype=float)[np.isfinite(values)] for values in line.get_data(orig=False))
+            near_x, near_y = _EDGE * (right - left), _EDGE * (top - max(bottom, 0.0))
+            beyond = (x < left - near_x).any() or (x > right + near_x).any()
+            if beyond or (y > top + near_y).any() or (y < bottom - near_y).any():
+                cut.append(f"{line.get_label()} over {axes.get_ylabel()}")
+    return cut
+
+
 def foreign_in_texts(name: str, figure: Any, document: Mapping[str, Any]) -> list[Shown]:
     """Numbers in the texts of a figure that the document does not have."""
     from matplotlib.text import Text
@@ -223,6 +272,8 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
         if self.solved is None or not is_on():  # one without is made up by a test
             return
         document = {"command": self.command} | self.document
+        unsaid = [one for entry in document["warnings"] for one in unsaid_figures(entry)]
+        assert not unsaid, f"{self.command}: not in the message of the warning: {unsaid}"
         for compose in _composers().get(self.command, ()):
             foreign = foreign_numbers(document, compose(document))
             assert not foreign, f"{self.command}: not in the document: {foreign}"
@@ -234,6 +285,8 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
             if heights:
                 foreign = [*foreign_curves(name, figure, heights), *foreign_in_texts(name, figure, self.document)]
                 assert not foreign, f"{self.command}, {name}: neither in the file nor in the document: {foreign}"
+                cut = [] if _CUT.search(name) else cut_curves(name, figure)
+                assert not cut, f"{self.command}, {name}: cut by the axes: {cut}"
             yield name, figure
 
     with pytest.MonkeyPatch.context() as patch:
