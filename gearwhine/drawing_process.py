@@ -184,10 +184,31 @@ class EarlyPictures:
     def __init__(self, process: _DrawingProcess, folder: Path) -> None:
         self._process, self._folder = process, folder
         self._drawings: list[Future[Any]] = []
+        # Figures take the interpreter, which the drawings of the process do not.
+        self._figures = ThreadPoolExecutor(1)
 
     def load_figures(self) -> None:
         """Import matplotlib and the figures, which takes longer than to draw one, beside work in compiled code."""
-        self._process.beside(import_module, "gearwhine.figures")
+        self._figures.submit(import_module, "gearwhine.figures")
+
+    def draw_figures(self, draw: Callable[[Path], Any]) -> None:
+        """Have a function draw figures into the folder, on a thread of their own."""
+        self._drawings.append(self._figures.submit(copy_context().run, draw, self._folder))
+
+    def end(self) -> None:
+        """Draw no more figures."""
+        self._figures.shutdown(cancel_futures=True)
+
+    def wait(self) -> None:
+        """Wait for all pictures.
+
+        Raises
+        ------
+        RendererUnavailableError, OSError
+            As :func:`draw_in_process`.
+        """
+        for drawing in self._drawings:
+            drawing.result()
 
     def draw(self, draw: Callable[..., Any], *arguments: Any, **named: Any) -> None:
         """Have a function draw into the folder, which takes that as ``place``, and says nothing of its progress."""
@@ -202,8 +223,7 @@ class EarlyPictures:
         RendererUnavailableError, OSError
             As :func:`draw_in_process`.
         """
-        for drawing in self._drawings:
-            drawing.result()
+        self.wait()
         files = list(self._folder.glob("*"))
         for file in files:
             shutil.move(file, place / file.name)
@@ -215,7 +235,11 @@ def early_pictures() -> Iterator[EarlyPictures]:
     """Start the drawing process of this block, and draw beside its other work."""
     with tempfile.TemporaryDirectory() as folder, one_process() as process:
         process.start()
-        yield EarlyPictures(process, Path(folder))
+        early = EarlyPictures(process, Path(folder))
+        try:
+            yield early
+        finally:
+            early.end()
 
 
 class _Running(NamedTuple):

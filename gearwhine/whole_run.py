@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
@@ -18,7 +18,7 @@ from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.drawing_process import EarlyPictures, early_pictures, one_process
 from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
-from gearwhine.numerics.progress import Progress
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging
 from gearwhine.output.checkpoints import stored_record
 from gearwhine.output.files import MODE_CACHE_FILE
@@ -34,6 +34,8 @@ from gearwhine.solve.housing_modes import write_mode_cache
 from gearwhine.solve.operating_shapes import highest_lines
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from gearwhine.studied_machine import StudiedMachine
 
 _DRAWN_LINES = 6  # operating shapes of a run
@@ -108,7 +110,10 @@ class WholeRun:
             self._seconds["time_stepping"] = self.solution.transient.result.seconds
         self.document["seconds"] = self._seconds | {"total": time.perf_counter() - self._started}
         files = partial(_write_files, self.solution, self.document, self.study.progress, self._early)
-        return self.solution.result("run", self.study.origin, self.document, _files=files, _started=self._started)
+        left = None if self._early is None else self._figures_left
+        return self.solution.result(
+            "run", self.study.origin, self.document, _files=files, _figures_left=left, _started=self._started
+        )
 
     def _rotors(self) -> Document:
         self.solution = replace(self.solution, rotors=self.study.solved_rotors())
@@ -146,12 +151,20 @@ class WholeRun:
         return document
 
     def _draw_early(self) -> None:
-        """Have the modes that are shown in any case, and the housing under load, drawn beside the rest of the work."""
-        housing, comparison, load = self.solution.housing, self.solution.comparison, self.solution.load
-        if self._early is not None and housing is not None:
-            self._early.draw(draw_modes, housing, comparison, "dominant", "auto", "png", with_sheet=False)
-            if load is not None:
-                self._early.draw(draw_load_pictures, housing, load)
+        """Have figures, modes that are shown in any case and the housing under load drawn beside other work."""
+        solution, early = self.solution, self._early
+        if early is None or solution.housing is None:
+            return
+        early.draw(draw_modes, solution.housing, solution.comparison, "dominant", "auto", "png", with_sheet=False)
+        if solution.load is not None:
+            early.draw(draw_load_pictures, solution.housing, solution.load)
+        early.draw_figures(partial(_save_figures, solution, self.study.origin.title))
+
+    def _figures_left(self, progress: Progress) -> Iterator[tuple[str, Figure]]:
+        """Draw the figures that were not drawn early, after these: one at a time takes the interpreter."""
+        if self._early is not None:
+            self._early.wait()
+        yield from self.solution.figures_of_motion(self.study.origin.title, progress)
 
     def _system(self) -> Document | None:
         if self.machine is None:
@@ -216,6 +229,12 @@ class WholeRun:
         document = {"sound": sound_document(sound)}
         add_warnings(document, [*left_out, *sound.warnings(), *self.study.doubts_of_acoustics(acoustics)])
         return document
+
+
+def _save_figures(solution: RunSolution, title: str, place: Path) -> None:
+    from gearwhine.figures import save_all
+
+    save_all(solution.figures_before_motion(title, silent), place)
 
 
 def _write_files(

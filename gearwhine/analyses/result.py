@@ -96,6 +96,8 @@ class Result(Generic[Solved]):
     _started: float | None = None
     _options: tuple[Sequence[Option], Sequence[str]] = ((), ())
     _title: str = ""
+    # Of a run, those that were not drawn beside its work.
+    _figures_left: Callable[[Progress], Iterable[tuple[str, Figure]]] | None = None
 
     def __post_init__(self) -> None:
         """Take a copy of the document with its list of warnings, with those of the case."""
@@ -113,7 +115,8 @@ class Result(Generic[Solved]):
         """Return the fields for a pickle: the arrays themselves, in place of the functions that make and draw them."""
         state = {field.name: getattr(self, field.name) for field in fields(self)}
         arrays = None if self._arrays is None else partial(copy.copy, self.dataset)
-        return state | {"_arrays": arrays, "_figures": no_figures, "_files": no_files, "_options": ((), ())}
+        functions = {"_figures": no_figures, "_figures_left": None, "_files": no_files}
+        return state | functions | {"_arrays": arrays, "_options": ((), ())}
 
     def __repr__(self) -> str:
         """Return the command, the case's title and the keys of the document."""
@@ -280,7 +283,7 @@ class Result(Generic[Solved]):
                 raise
 
     def _draw_figures(self, place: Path, progress: Progress) -> None:
-        for name, figure in self.figures(progress):
+        for name, figure in (self._figures_left or self._figures)(progress):
             # Loaded where there is a figure: matplotlib takes as long as the modes of a small housing.
             from gearwhine.figures.style import save
 

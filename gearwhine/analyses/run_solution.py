@@ -123,14 +123,27 @@ class RunSolution:
 
     def figures(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
         """Draw the figures of the analyses that were made, each with its name."""
+        yield from self.figures_before_motion(title, progress)
+        yield from self.figures_of_motion(title, progress)
+
+    def figures_before_motion(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
+        """Draw those of gear pairs, load and comparison with measured modes, which need no coupled machine."""
         from gearwhine import figures
 
         if self.pairs:
             yield from figures.draw_gear_pairs(self.pairs, progress)
-        if self.condition is not None and self.condition.envelopes:
-            yield "envelope", figures.draw_envelopes(title, self.condition)
         if self.load is not None:
             yield from figures.draw_load(self.load)
+        if self.housing is not None and self.comparison is not None:
+            progress("drawing the comparison with measured modes")
+            yield from figures.draw_comparison_figures(title, self.comparison, self.housing.modes.frequencies)
+
+    def figures_of_motion(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
+        """Draw those of the coupled machine, its motion and sound."""
+        from gearwhine import figures
+
+        if self.condition is not None and self.condition.envelopes:
+            yield "envelope", figures.draw_envelopes(title, self.condition)
         if self.system is not None:
             progress("drawing the coupled system")
             yield from figures.draw_system(self.system)
@@ -143,6 +156,3 @@ class RunSolution:
         if self.sound is not None:
             progress("drawing the sound")
             yield from figures.draw_sound(title, self.sound)
-        if self.housing is not None and self.comparison is not None:
-            progress("drawing the comparison with measured modes")
-            yield from figures.draw_comparison_figures(title, self.comparison, self.housing.modes.frequencies)
