@@ -5,8 +5,9 @@ model of a line is solved thrice about the mean load,
 
     (K + iω C_s - ω² I) q = f,      C_s = s (C + Cᵀ)/2 + (C - Cᵀ)/2,      s = 1/2, 1, 2,
 
-with the same load f: all that excites the machine at the line (:mod:`gearwhine.coupling.linear.line_mechanisms`), or,
-where nothing does, unit loads along every line of action. The skew part of C is gyroscopic: it does no work and stays.
+with the load f of all that excites the machine at the line (:mod:`gearwhine.coupling.linear.line_mechanisms`), or,
+where nothing does, unit loads along every line of action. It is the same for all s but for the force by the mesh
+stiffness that varies, which follows the motion. The skew part of C is gyroscopic: it does no work and stays.
 The band are the levels for s = 1/2 and s = 2 over that for s = 1 [dB]; 0 lies within. Between resonances it is narrow,
 since mass or stiffness holds the motion there; near one it reaches from -6 to +6 dB.
 """
@@ -24,6 +25,7 @@ from gearwhine.coupling.linear.frequency_response import excitations
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
 from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -71,14 +73,20 @@ class DampingBand:
         if self.machine.system.turns:
             levels = np.array([self._turning_levels(number, w, within, rows) for number in range(len(SCALES))])
         else:
-            driven = [self.mechanisms.loads(frequency, within) for frequency in w.tolist()]
-            loads = [[np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in groups] for groups in driven]
-            levels = np.array([self._levels(number, w, loads, rows) for number in range(len(SCALES))])
+            levels = np.array(
+                [self._levels(number, w, self._loads(number, w, within), rows) for number in range(len(SCALES))]
+            )
         tiny = np.finfo(np.float64).tiny
         change = 20.0 * np.log10(np.maximum(levels, tiny) / np.maximum(levels[SCALES.index(1.0)], tiny))
         change = np.clip(change, -_WIDEST, _WIDEST)
         bands = np.stack([change.min(axis=0), change.max(axis=0)], axis=-1)
         return {name: bands[:, number] for number, name in enumerate(self.machine.sensor_rows)}
+
+    def _loads(self, scale: int, w: FloatArray, within: float) -> list[list[ComplexArray]]:
+        """Return the loads on the machine with damping by a scale, by frequency and group."""
+        forces = self.mechanisms.stiffness_forces(DampedMachine(*self._solved[scale][1]))
+        driven = [self.mechanisms.loads(frequency, within, forces) for frequency in w.tolist()]
+        return [[np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in groups] for groups in driven]
 
     def _levels(self, scale: int, w: FloatArray, loads: list[list[ComplexArray]], rows: FloatArray) -> FloatArray:
         """Size of the motion along each sensor with damping by a scale, shape (f, sensors)."""

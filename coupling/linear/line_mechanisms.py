@@ -36,8 +36,9 @@ from scipy import linalg
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, polygon_phasors
 from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero
+from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
-from gearwhine.coupling.linear.unequal_teeth import StiffnessForce
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -155,7 +156,9 @@ class LineMechanisms:
         """Linear model about the mean load."""
         return MeshHarmonicModel(self.machine)
 
-    def loads(self, frequency: float, within: float = 0.0) -> list[tuple[float, dict[str, ComplexArray]]]:
+    def loads(
+        self, frequency: float, within: float = 0.0, stiffness_forces: Mapping[int, StiffnessForce] | None = None
+    ) -> list[tuple[float, dict[str, ComplexArray]]]:
         """Return the loads near a frequency, those of one frequency together.
 
         Parameters
@@ -164,6 +167,8 @@ class LineMechanisms:
             ω > 0 [rad/s].
         within : float
             Distance up to which an excitation is at the line [rad/s], at least a small part of ω.
+        stiffness_forces : mapping of int to StiffnessForce, optional
+            Forces by the stiffness that varies, by default those of the machine as it is.
 
         Returns
         -------
@@ -172,7 +177,7 @@ class LineMechanisms:
         """
         together: list[tuple[float, dict[str, ComplexArray]]] = []
         reach = max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
-        for at, mechanism, force in self._sources(frequency, reach):
+        for at, mechanism, force in self._sources(frequency, reach, stiffness_forces):
             load = force.load
             if not np.any(load):
                 continue
@@ -274,10 +279,13 @@ class LineMechanisms:
             return 0.0
         return complex(base.harmonic_amplitude(frequency) @ self._base_rows[sensor])
 
-    def _sources(self, frequency: float, reach: float) -> Iterator[tuple[float, str, Force]]:
+    def _sources(
+        self, frequency: float, reach: float, stiffness_forces: Mapping[int, StiffnessForce] | None = None
+    ) -> Iterator[tuple[float, str, Force]]:
         """Yield frequency [rad/s], mechanism and force of every excitation within a reach of a frequency."""
+        forces = self._stiffness_forces if stiffness_forces is None else stiffness_forces
         for number in self.model.loaded:
-            yield from self._of_contact(number, frequency, reach)
+            yield from self._of_contact(number, frequency, reach, forces.get(number))
         for number, contact in enumerate(self.machine.system.contacts):
             for at, force in self._runout(number, contact):
                 if abs(at - frequency) <= reach:
@@ -289,7 +297,9 @@ class LineMechanisms:
                 amplitude = harmonic.amplitude if harmonic.frequency > 0.0 else harmonic.amplitude.conj()
                 yield at, harmonic.mechanism, Force(amplitude[:, None], np.ones(1, dtype=np.complex128))
 
-    def _of_contact(self, number: int, frequency: float, reach: float) -> Iterator[tuple[float, str, Force]]:
+    def _of_contact(
+        self, number: int, frequency: float, reach: float, varying: StiffnessForce | None
+    ) -> Iterator[tuple[float, str, Force]]:
         """Yield what a loaded contact excites near a frequency by its phase."""
         contact, stiffness = self.machine.system.contacts[number], self.model.contact.stiffness[number]
         rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
@@ -305,8 +315,8 @@ class LineMechanisms:
         spacing = rate / periods
         cycles = np.arange(max(1, np.ceil((frequency - reach) / spacing)), np.floor((frequency + reach) / spacing) + 1)
         few = len(cycles) <= _UNRESOLVED_HARMONICS
-        if number in self._stiffness_forces:
-            orders, forces = self._stiffness_forces[number].lines
+        if varying is not None:
+            orders, forces = varying.lines
             near = (np.abs(orders * rate - frequency) <= reach) & (few | (orders % 1.0 == 0.0))
             rounding = _TRANSMISSION_ERROR_ROUNDING * stiffness * np.abs(alike.transmission_error).max()
             least = max(rounding, _FAINT_HARMONIC * np.abs(forces[near]).max(initial=0.0))
@@ -337,10 +347,18 @@ class LineMechanisms:
                 law = complex(state.stiffness[number], at * state.damping[number])
                 yield at, Force.along(contact, law * error)
 
+    def stiffness_forces(self, machine: DampedMachine) -> dict[int, StiffnessForce]:
+        """Find the forces by the mesh stiffness that varies in a machine, by contact; none where directions turn."""
+        return self.model.stiffness_forces(self._varying_meshes, machine) if self._varying_meshes else {}
+
     @cached_property
     def _stiffness_forces(self) -> dict[int, StiffnessForce]:
-        """Forces by the mesh stiffness that varies, by contact; none where directions turn."""
-        return self.model.stiffness_forces(self.model.varying_meshes()) if self.model.varying_harmonics else {}
+        """Those in the machine as it is."""
+        return self.stiffness_forces(self.model.damped)
+
+    @cached_property
+    def _varying_meshes(self) -> list[VaryingMesh]:
+        return self.model.varying_meshes() if self.model.varying_harmonics else []
 
     @cached_property
     def _hunting(self) -> dict[int, tuple[LoadedMesh, LoadedMesh]]:

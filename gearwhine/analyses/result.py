@@ -283,7 +283,7 @@ class Result(Generic[Solved]):
                 raise
 
     def _draw_figures(self, place: Path, progress: Progress) -> None:
-        for name, figure in (self._figures_left or self._figures)(progress):
+        for name, figure in (self._figures_left or self.figures)(progress):
             # Loaded where there is a figure: matplotlib takes as long as the modes of a small housing.
             from gearwhine.figures.style import save
 

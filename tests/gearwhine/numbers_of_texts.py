@@ -133,7 +133,7 @@ def unsaid_figures(entry: Mapping[str, Any]) -> list[str]:
         if isinstance(value, float):
             known = known_numbers({key: value})
             known["%"] += [100.0 * (1.0 - value)]
-            known["1"] += [value]
+            known["1"] += [value, 10800.0 / pi * value]  # an angle also in minutes of arc
             if not any(_is_known(one, known) for one in [*said, *bare]):
                 unsaid.append(f"{key} = {value:.6g} in {message!r}")
     return unsaid
@@ -181,7 +181,7 @@ def _composers() -> dict[str, list[Callable[[Any], Iterable[Section]]]]:
     }
 
 
-_OWN_TEXTS = re.compile(r"-shaft|load-shaft|-static|-pattern|transmission-error|orbits")
+_OWN_TEXTS = re.compile(r"cross-orthogonality|-shaft|load-shaft|-static|-pattern|transmission-error|orbits")
 """Figures whose texts have sums, means, and components in the plane of the figure."""
 _OWN_CURVES = re.compile(
     r"diameter|phase|critical-map crit|transmissibility.* bearing|flanks|steady-motion|mesh-force|spectrum"
