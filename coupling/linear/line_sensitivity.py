@@ -60,7 +60,7 @@ from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import LineOutput, SensorAmplitude
 from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response, sum_of
 from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
-from gearwhine.coupling.linear.unequal_teeth import DampedMachine
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.machine.connectors import LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
@@ -490,18 +490,19 @@ class LineModel(MeshHarmonicModel):
         if key not in self._motions:
             if change not in self._machines:
                 self._machines.clear()
-                self._machines[change] = machine()
-            changed, load = self._machines[change], sum_of(self._mean_loads(line.causes))
-            if groups := self._groups(line.causes):
-                meshes = [mesh for group in groups for mesh in group]
-                forces = self.stiffness_forces(meshes, changed)
-                load = load + self._stiffness_load([one for one in line.causes if one[0] in forces], forces)
+                self._machines[change] = machine(), {}
+            (changed, known), load = self._machines[change], sum_of(self._mean_loads(line.causes))
+            for group in self._groups(line.causes):
+                first = group[0].number
+                if first not in known:
+                    known[first] = self.stiffness_forces(group, changed)
+                load = load + self._stiffness_load([one for one in line.causes if one[0] in known[first]], known[first])
             self._motions[key] = changed.motion(line.frequency, load)
         return (output or line.output).value(line.frequency, self._motions[key]) - line.value
 
     @cached_property
-    def _machines(self) -> dict[Hashable, DampedMachine]:
-        """The last machine with a change."""
+    def _machines(self) -> dict[Hashable, tuple[DampedMachine, dict[int, dict[int, StiffnessForce]]]]:
+        """The last machine with a change, and forces by the varying stiffness there by first mesh of a frequency."""
         return {}
 
     @cached_property
