@@ -13,14 +13,14 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar, copy_context
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import IO, Any, NamedTuple, Self, TypeVar
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,9 @@ from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 from gearwhine.housing.pictures.scene import load_pyvista
 from gearwhine.interruption import cleared_at_the_end
 from gearwhine.numerics.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 T = TypeVar("T")
 
@@ -186,17 +189,27 @@ class EarlyPictures:
         self._drawings: list[Future[Any]] = []
         # Figures take the interpreter, which the drawings of the process do not.
         self._figures = ThreadPoolExecutor(1)
+        self._is_ended = False
 
     def load_figures(self) -> None:
         """Import matplotlib and the figures, which takes longer than to draw one, beside work in compiled code."""
         self._figures.submit(import_module, "gearwhine.figures")
 
-    def draw_figures(self, draw: Callable[[Path], Any]) -> None:
-        """Have a function draw figures into the folder, on a thread of their own."""
-        self._drawings.append(self._figures.submit(copy_context().run, draw, self._folder))
+    def draw_figures(self, figures: Callable[[], Iterable[tuple[str, "Figure"]]]) -> None:
+        """Draw named figures into the folder, each as NAME.png, on a thread of their own."""
+        self._drawings.append(self._figures.submit(copy_context().run, self._save, figures))
+
+    def _save(self, figures: Callable[[], Iterable[tuple[str, "Figure"]]]) -> None:
+        from gearwhine.figures.style import save
+
+        for name, figure in figures():
+            if self._is_ended:
+                return
+            save(figure, self._folder / f"{name}.png")
 
     def end(self) -> None:
-        """Draw no more figures."""
+        """Draw no more figures than the one in hand."""
+        self._is_ended = True
         self._figures.shutdown(cancel_futures=True)
 
     def wait(self) -> None:

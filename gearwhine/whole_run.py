@@ -73,6 +73,7 @@ class WholeRun:
             _require_renderer()
         self.study, self.plan, self.folder, self.until_written = study, plan, folder, until_written
         self._early: EarlyPictures | None = None
+        self._has_early_figures = False
         if pictures and study.has_housing and until_written is not None:
             self._early = until_written.enter_context(early_pictures())
         self.document: Document = {"title": study.origin.title}
@@ -110,9 +111,13 @@ class WholeRun:
             self._seconds["time_stepping"] = self.solution.transient.result.seconds
         self.document["seconds"] = self._seconds | {"total": time.perf_counter() - self._started}
         files = partial(_write_files, self.solution, self.document, self.study.progress, self._early)
-        left = None if self._early is None else self._figures_left
         return self.solution.result(
-            "run", self.study.origin, self.document, _files=files, _figures_left=left, _started=self._started
+            "run",
+            self.study.origin,
+            self.document,
+            _files=files,
+            _figures_left=self._figures_left if self._has_early_figures else None,
+            _started=self._started,
         )
 
     def _rotors(self) -> Document:
@@ -158,13 +163,21 @@ class WholeRun:
         early.draw(draw_modes, solution.housing, solution.comparison, "dominant", "auto", "png", with_sheet=False)
         if solution.load is not None:
             early.draw(draw_load_pictures, solution.housing, solution.load)
-        early.draw_figures(partial(_save_figures, solution, self.study.origin.title))
+        early.draw_figures(partial(solution.figures_before_motion, self.study.origin.title, silent))
+        self._has_early_figures = True
 
     def _figures_left(self, progress: Progress) -> Iterator[tuple[str, Figure]]:
-        """Draw the figures that were not drawn early, after these: one at a time takes the interpreter."""
-        if self._early is not None:
-            self._early.wait()
-        yield from self.solution.figures_of_motion(self.study.origin.title, progress)
+        """Draw the figures that were not drawn early, after these: one at a time takes the interpreter.
+
+        The early ones go into the first folder that the results are written into: for a further one all are drawn.
+        """
+        title = self.study.origin.title
+        if self._early is None or not self._has_early_figures:
+            yield from self.solution.figures(title, progress)
+            return
+        self._has_early_figures = False
+        self._early.wait()
+        yield from self.solution.figures_of_motion(title, progress)
 
     def _system(self) -> Document | None:
         if self.machine is None:
@@ -229,12 +242,6 @@ class WholeRun:
         document = {"sound": sound_document(sound)}
         add_warnings(document, [*left_out, *sound.warnings(), *self.study.doubts_of_acoustics(acoustics)])
         return document
-
-
-def _save_figures(solution: RunSolution, title: str, place: Path) -> None:
-    from gearwhine.figures import save_all
-
-    save_all(solution.figures_before_motion(title, silent), place)
 
 
 def _write_files(

@@ -16,6 +16,7 @@ from gearwhine.cli import run_command
 from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.periodic import periodic_response
@@ -24,6 +25,7 @@ from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
 from gearwhine.housing.acoustics.boundary_integrals import solid_angles
 from gearwhine.housing.acoustics.medium import HardPlane
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.fem.block_products import BlockProduct
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
 MASS = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
@@ -70,13 +72,22 @@ def radiate() -> None:
     solid_angles(square, np.ones((1, 3)))
 
 
+def multiply() -> None:
+    """Product of the stiffness of one node, as of a large housing, by its blocks."""
+    node = np.zeros(1, dtype=np.int32)
+    BlockProduct(np.array([0, 1], dtype=np.int32), node, np.eye(3)[None], np.arange(3)) @ np.ones((3, 1))
+
+
 def motions() -> None:
     for method in METHODS:
         settings = TransientSettings(20.0, 0.0, 0.1, 0.1, method=method)
         for machine in (small_machine(), CoupledSystem((HELD,), (0.0,))):
             simulate(machine, settings, TransientOutputs(*[np.ones((1, 1))] * 3))
     periodic_response(small_machine())
+    (tooth,) = small_machine().contacts
+    tooth_force_history(np.zeros(2), np.ones(2), np.zeros(2), *tooth.contact.kernel_arguments)
     radiate()
+    multiply()
 
 
 def tell(command: str, *options: str) -> None:

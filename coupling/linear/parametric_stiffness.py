@@ -158,9 +158,10 @@ def varying_mesh(
 
     rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
     reach = _reach(limit, rate)
+    phases = np.array(mesh.phases)  # a kernel is compiled once more for an array that must not change
     still, away = np.zeros(mesh.phases.size), _SECANT * mesh.force / mesh.mean_mesh_stiffness
     pressed, eased = (
-        tooth_force_history(mesh.phases, mesh.transmission_error + by, still, *contact.contact.kernel_arguments)[:, 0]
+        tooth_force_history(phases, mesh.transmission_error + by, still, *contact.contact.kernel_arguments)[:, 0]
         for by in (away, -away)
     )
     secant = (pressed - eased) / (2.0 * away)

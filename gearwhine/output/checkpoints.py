@@ -24,6 +24,7 @@ from gearwhine.interruption import cleared_at_the_end
 from gearwhine.output.files import clear_stage, exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"
+_MOST_KEPT = 200e6  # bytes of blocks that stay in memory for the result of a run
 _KEY_DIGITS = 16  # digits of the key in the folder's name: no two integrations of one folder share them by chance
 
 
@@ -33,6 +34,7 @@ class BlockFiles:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._count = 0
+        self._kept: list[Arrays] | None = None
         # All are read: a disk, a copy or another program damages any of them, not only the last one written.
         while self._is_whole(self._count):
             self._count += 1
@@ -63,13 +65,30 @@ class BlockFiles:
         self._count += 1
 
     def __getitem__(self, number: int) -> Arrays:
-        """Read the arrays of a block."""
-        return self._read(range(self._count)[number])
+        """Read the arrays of a block.
+
+        Raises
+        ------
+        FileNotFoundError
+            Where the blocks are gone and were too large to keep.
+        """
+        place = range(self._count)[number]
+        return self._read(place) if self._kept is None else self._kept[place]
+
+    def keep(self) -> None:
+        """Read the blocks into memory, unless they are large: a result reads the motion when their files are gone."""
+        if sum(self._file(number).stat().st_size for number in range(self._count)) <= _MOST_KEPT:
+            self._kept = [self._read(number) for number in range(self._count)]
 
     def _file(self, number: int) -> Path:
         return self._folder / f"block-{number:08d}.npz"
 
     def _read(self, number: int) -> Arrays:
+        if not self._folder.exists():
+            raise FileNotFoundError(
+                f"the motion over time was too long to stay in memory when its results were written: it is in "
+                f"{self._folder.parent}"
+            )
         with self._file(number).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
             return {name: arrays[name] for name in arrays.files}
 
@@ -85,7 +104,7 @@ class BlockFiles:
 
 @contextmanager
 def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
-    """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
+    """Checkpoint blocks in an output folder under a key, whose files go when the work inside ends well.
 
     If a living run performs the same integration in the same folder, this one stores blocks of its own.
 
@@ -121,6 +140,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
             if note is not None and isinstance(error, KeyboardInterrupt | OSError):
                 error.add_note(note)
             raise
+        blocks.keep()
         clear_stage(place, None)
 
 

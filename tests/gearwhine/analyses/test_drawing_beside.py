@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.drawing_process import draw_in_process, early_pictures, one_process
 from gearwhine.housing.errors import RendererUnavailableError
@@ -131,6 +132,41 @@ def test_early_pictures_end_with_the_work_that_fails() -> None:
     with pytest.raises(KeyboardInterrupt):
         fail()
     assert stopped == ["stopped"]
+
+
+def test_early_figures_end_with_the_one_in_hand(tmp_path: Path) -> None:
+    begun, ended, drawn = threading.Event(), threading.Event(), list[str]()
+
+    def figures() -> Iterator[tuple[str, Figure]]:
+        for name in ("first", "second", "third"):
+            drawn.append(name)
+            begun.set()
+            if name == "second":
+                assert ended.wait(20.0)
+            yield name, Figure()
+
+    with early_pictures() as early:
+        early.draw_figures(figures)
+        assert begun.wait(20.0)
+        threading.Timer(0.2, ended.set).start()
+    assert drawn[-1] != "third"
+    with early_pictures() as early:
+        early.draw_figures(figures)
+        assert early.move_to(tmp_path) == {"first", "second", "third"}
+
+
+@pytest.mark.slow
+def test_a_run_that_is_written_twice_has_all_pictures_twice(tmp_path: Path) -> None:
+    try:
+        find_renderer()
+    except RendererUnavailableError as error:
+        pytest.skip(str(error))
+    changes = {"housing.box.mesh_size": "60 mm", "transient.revolutions": "4", "transient.discard": "2"}
+    found = gw.load("small-gearbox", changes).run_into(tmp_path / "first")
+    found.stored(tmp_path / "second")
+    first, second = ({path.name for path in (tmp_path / name).glob("*.png")} for name in ("first", "second"))
+    assert {"gears-pinion-wheel-stiffness.png", "load-shaft-input.png", "spectrum.png", "modes.png"} <= first
+    assert first == second
 
 
 def test_shapes_that_are_drawn_already_are_on_the_sheet_alone(tmp_path: Path) -> None:
