@@ -13,11 +13,13 @@ The orders couple in sets ρ + j, j whole: the mesh harmonics, ρ = 0, by the ch
 those of the hunting period of H meshes, ρ = k/H, likewise, and by what the pitch of single teeth changes in κ, which
 acts on the vibration u of the mesh harmonics; and those of runout, at the turns of a gear. This is Hill's method for a
 linear machine with periodic coefficients (Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 5), with pitch
-deviations to first order. κ is the secant over a tenth h of the mean compression,
+deviations to first order. κ is the secant over a tenth of the mean force,
 
-    κ(p) = (F(e + h, p) − F(e − h, p)) / 2h,
+    κ(p) = 0.2 F̄ / (e(p; 1.1 F̄) − e(p; 0.9 F̄)),
 
-which changes smoothly where a pitch deviation lets a pair meet a little earlier: the tangent jumps there.
+which changes smoothly where a pitch deviation lets a pair meet a little earlier: the tangent jumps there. Over the
+thousands of mesh periods of unequal teeth the table of the law, by which motions are integrated, takes a tenth of the
+time of equilibria. There κ is the secant over a tenth of the mean compression; both agree where teeth hardly differ.
 
 Left out: that flanks part, the torques at rest that follow from the mean of g (as of a free train, which has none), and
 how meshes of different frequencies change one another's lines.
@@ -29,8 +31,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.loaded.transmission_error import (
     LoadedMesh,
+    loaded_transmission_error,
     period_mean,
     phasors_between,
     polygon_phasors,
@@ -44,7 +48,7 @@ Cause = tuple[int, int]
 _FURTHER = 3  # orders beyond the limit whose coupling counts
 LEAST_REACH = 15
 """Number of harmonics at least: a mesh vibrates on its stiffness far above the modes of a housing."""
-_SECANT = 0.1  # part of the mean compression over which the stiffness is taken
+_SECANT = 0.1  # part of the mean force, or compression, over which the stiffness is taken
 _AT_ONCE = 4000  # orders whose amplitudes are summed together
 _WHOLE = 1e-9  # distance from a whole order below which a line is a mesh harmonic
 
@@ -154,17 +158,9 @@ def varying_mesh(
     between : bool
         Whether the sets between the mesh harmonics are wanted.
     """
-    from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
-
     rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
     reach = _reach(limit, rate)
-    phases = np.array(mesh.phases)  # a kernel is compiled once more for an array that must not change
-    still, away = np.zeros(mesh.phases.size), _SECANT * mesh.force / mesh.mean_mesh_stiffness
-    pressed, eased = (
-        tooth_force_history(phases, mesh.transmission_error + by, still, *contact.contact.kernel_arguments)[:, 0]
-        for by in (away, -away)
-    )
-    secant = (pressed - eased) / (2.0 * away)
+    secant = _secant(contact.contact, mesh)
     count = (2 * reach + 1) * periods
     whole = np.arange(periods // 2 + 1 if between else 1)
 
@@ -192,6 +188,26 @@ def varying_mesh(
         np.vstack([stiffness, np.zeros((len(runout), stiffness.shape[1]))]),
         np.arange(len(whole) + len(runout)) >= len(whole),
     )
+
+
+def _secant(law: ToothContact, mesh: LoadedMesh) -> FloatArray:
+    """Stiffness k̄ + κ at the phases of a mesh [N/m]."""
+    if law.hunting_period == 1:
+        states = law.pairs(mesh.phases)
+        pressed, eased = (
+            loaded_transmission_error(law, part * mesh.force, mesh.phases, states=states).transmission_error
+            for part in (1.0 + _SECANT, 1.0 - _SECANT)
+        )
+        return np.asarray(2.0 * _SECANT * mesh.force / (pressed - eased))
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force_history
+
+    phases = np.array(mesh.phases)  # a kernel is compiled once more for an array that must not change
+    still, away = np.zeros(phases.size), _SECANT * mesh.force / mesh.mean_mesh_stiffness
+    more, less = (
+        tooth_force_history(phases, mesh.transmission_error + by, still, *law.kernel_arguments)[:, 0]
+        for by in (away, -away)
+    )
+    return np.asarray((more - less) / (2.0 * away))
 
 
 def _runout(rows: FloatArray, rate: float, reach: int) -> Iterator[tuple[float, ComplexArray]]:

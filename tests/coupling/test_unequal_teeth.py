@@ -136,6 +136,18 @@ def test_another_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
     assert np.all(found.between > 0.2 * found.rms)
 
 
+def test_teeth_that_hardly_differ_have_the_mesh_harmonics_of_teeth_that_are_alike() -> None:
+    """Their stiffness is that of a table over the hunting period, and of equilibria of one mesh period."""
+    alike = small_gearbox().changed(CHANGES[:1])
+    amplitudes = []
+    for study in (alike, alike.changed([pitch(1e-4)])):
+        machine = study.machine
+        coupled = load_machine(machine, machine.operating_point()).coupled
+        speeds = [0.3 * machine.speed, 0.6 * machine.speed, machine.speed]
+        amplitudes.append(lines_over_speed(coupled, speeds, LIMIT).amplitudes)
+    np.testing.assert_allclose(amplitudes[1], amplitudes[0], rtol=5e-3)
+
+
 def test_teeth_that_are_alike_have_no_lines_between() -> None:
     machine = small_gearbox().changed(CHANGES[:1]).machine
     coupled = load_machine(machine, machine.operating_point()).coupled
