@@ -280,7 +280,7 @@ def mesh_error_responses(
         model = TurningResponse(machine.system, state)
         solved = []
         for number, w in enumerate(frequencies.tolist()):
-            solved.append(model.respond(w, [model.mesh_error(flank, w) for flank in flanks]))
+            solved.append(model.respond(w, [({}, {flank: 1.0}) for flank in flanks]))
             progress("responses to the errors of the meshes", (number + 1) / len(frequencies))
         motions: list[_Motion] = [
             _turning_motion(model, [{order: moved[place] for order, moved in at.items()} for at in solved])

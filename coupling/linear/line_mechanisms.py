@@ -23,7 +23,7 @@ Where directions turn with carriers, an excitation at ω_e moves a sensor at all
 all excitations that are so many turns off it (:mod:`gearwhine.coupling.linear.turning_response`).
 
 The parts add up with their phases to the line of the linear model. A motion has other lines than that where flanks
-part and where a bearing's law bends within the motion. With carriers that turn, the mesh stiffness is the mean one.
+part and where a bearing's law bends within the motion.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,9 +35,10 @@ from scipy import linalg
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, polygon_phasors
-from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero
+from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero, sum_by_order
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
+from gearwhine.coupling.linear.turning_stiffness import TurningStiffnessForce
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -119,11 +120,7 @@ class Drive:
         """Motions e^{i(ω_e + m·f)t} by mechanism and order m, shape (n,) each."""
         loads: list[Excitation] = []
         for forces in self.forces.values():
-            total: dict[Order, ComplexArray] = {}
-            for force in forces:
-                for order, load in force.by_order(model).items():
-                    total[order] = total.get(order, 0.0) + load
-            loads.append((total, {}))
+            loads.append((sum_by_order(force.by_order(model) for force in forces), {}))
         moved = model.respond(self.excitation, loads)
         return {
             mechanism: {order: motion[number] for order, motion in moved.items()}
@@ -176,8 +173,9 @@ class LineMechanisms:
             Frequency of the excitation [rad/s], and f of each of its mechanisms with their phases at t = 0.
         """
         together: list[tuple[float, dict[str, ComplexArray]]] = []
+        forces = self._stiffness_forces if stiffness_forces is None else stiffness_forces
         reach = max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
-        for at, mechanism, force in self._sources(frequency, reach, stiffness_forces):
+        for at, mechanism, force in self._sources(frequency, reach, forces):
             load = force.load
             if not np.any(load):
                 continue
@@ -201,23 +199,24 @@ class LineMechanisms:
     @cached_property
     def turning(self) -> TurningResponse:
         """Harmonic balance of a machine whose directions turn."""
-        return TurningResponse(self.machine.system, self.model.contact)
+        return self.model.turning.model
 
     @cached_property
     def _driven(self) -> dict[tuple[TurningResponse, float], dict[str, dict[Order, ComplexArray]]]:
         """Motions by a harmonic balance and an excitation: the sidebands of one mesh harmonic have the same."""
         return {}
 
-    def drives(self, frequency: float, within: float = 0.0) -> list[Drive]:
-        """Return the excitations of a line of a machine whose directions turn; parameters as of `loads`."""
-        model, reach = self.turning, max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
+    def _drives(self, model: TurningResponse, frequency: float, within: float) -> list[Drive]:
+        """Return the excitations of a line of a machine whose directions turn; parameters as of `turning_motions`."""
+        forces = self.model.turning_forces(model) if self.model.stiffness_varies else {}
+        reach = max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
         found: list[Drive] = []
         for order in model.orders:
             for sense in (1.0, -1.0):
                 excitation = sense * frequency - model.shift(order)
                 if excitation <= reach:
                     continue
-                for at, mechanism, force in self._sources(excitation, reach):
+                for at, mechanism, force in self._sources(excitation, reach, forces):
                     if not np.any(force.load):
                         continue
                     one = next(
@@ -234,7 +233,7 @@ class LineMechanisms:
     ) -> list[tuple[float, dict[str, ComplexArray]]]:
         """Motions as of `motions`, by a harmonic balance of the machine, perhaps with other damping."""
         together: list[tuple[float, dict[str, ComplexArray]]] = []
-        for drive in self.drives(frequency, within):
+        for drive in self._drives(model, frequency, within):
             at = abs(drive.line)
             place = next((known for w, known in together if _are_one(w, at)), None)
             if place is None:
@@ -280,10 +279,9 @@ class LineMechanisms:
         return complex(base.harmonic_amplitude(frequency) @ self._base_rows[sensor])
 
     def _sources(
-        self, frequency: float, reach: float, stiffness_forces: Mapping[int, StiffnessForce] | None = None
+        self, frequency: float, reach: float, forces: Mapping[int, StiffnessForce | TurningStiffnessForce]
     ) -> Iterator[tuple[float, str, Force]]:
         """Yield frequency [rad/s], mechanism and force of every excitation within a reach of a frequency."""
-        forces = self._stiffness_forces if stiffness_forces is None else stiffness_forces
         for number in self.model.loaded:
             yield from self._of_contact(number, frequency, reach, forces.get(number))
         for number, contact in enumerate(self.machine.system.contacts):
@@ -298,7 +296,7 @@ class LineMechanisms:
                 yield at, harmonic.mechanism, Force(amplitude[:, None], np.ones(1, dtype=np.complex128))
 
     def _of_contact(
-        self, number: int, frequency: float, reach: float, varying: StiffnessForce | None
+        self, number: int, frequency: float, reach: float, varying: StiffnessForce | TurningStiffnessForce | None
     ) -> Iterator[tuple[float, str, Force]]:
         """Yield what a loaded contact excites near a frequency by its phase."""
         contact, stiffness = self.machine.system.contacts[number], self.model.contact.stiffness[number]
@@ -311,11 +309,14 @@ class LineMechanisms:
                 yield order * rate, "transmission_error", Force.along(contact, stiffness * error[0])
             if (rubbed := self.model.friction((number, order))) is not None:
                 yield order * rate, "friction", rubbed
+            if isinstance(varying, TurningStiffnessForce):
+                for turns, force in varying.at(order).items():
+                    yield order * rate, "varying_stiffness", Force.along(contact, force, turns)
         # The harmonics of the hunting period that the line does not resolve make it together.
         spacing = rate / periods
         cycles = np.arange(max(1, np.ceil((frequency - reach) / spacing)), np.floor((frequency + reach) / spacing) + 1)
         few = len(cycles) <= _UNRESOLVED_HARMONICS
-        if varying is not None:
+        if isinstance(varying, StiffnessForce):
             orders, forces = varying.lines
             near = (np.abs(orders * rate - frequency) <= reach) & (few | (orders % 1.0 == 0.0))
             rounding = _TRANSMISSION_ERROR_ROUNDING * stiffness * np.abs(alike.transmission_error).max()
@@ -348,7 +349,7 @@ class LineMechanisms:
                 yield at, Force.along(contact, law * error)
 
     def stiffness_forces(self, machine: DampedMachine) -> dict[int, StiffnessForce]:
-        """Find the forces by the mesh stiffness that varies in a machine, by contact; none where directions turn."""
+        """Find the forces by the mesh stiffness that varies in a machine, by contact; none where it is the mean one."""
         return self.model.stiffness_forces(self._varying_meshes, machine) if self._varying_meshes else {}
 
     @cached_property
@@ -358,7 +359,7 @@ class LineMechanisms:
 
     @cached_property
     def _varying_meshes(self) -> list[VaryingMesh]:
-        return self.model.varying_meshes() if self.model.varying_harmonics else []
+        return self.model.varying_meshes() if self.model.stiffness_varies else []
 
     @cached_property
     def _hunting(self) -> dict[int, tuple[LoadedMesh, LoadedMesh]]:

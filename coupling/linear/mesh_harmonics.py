@@ -12,11 +12,11 @@ with it, and their phases are those of one mesh period: at a harmonic they add a
 above another at a sensor. A transmissibility by transmission error alone misses the others.
 
 Where directions turn with planet carriers, the force k e acts along d(t) and the moments turn with the mesh, and the
-motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carrier_sidebands`), each a response of its own here. The
-mesh stiffness is the mean one there: g is left out.
+motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carrier_sidebands`), each a response of its own here. So
+has g (:mod:`gearwhine.coupling.linear.turning_stiffness`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -36,8 +36,9 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 )
 from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands, Sideband
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
-from gearwhine.coupling.linear.parametric_stiffness import Cause, VaryingMesh, varying_mesh
+from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
 from gearwhine.coupling.linear.turning_response import Order, TurningResponse
+from gearwhine.coupling.linear.turning_stiffness import TurningStiffnessForce, turning_stiffness_forces
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce, stiffness_forces
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
@@ -161,16 +162,19 @@ class Force:
     amplitudes : ndarray of complex, shape (d,)
     turning : tuple of TurningPart
         Parts of the directions that turn.
+    order : tuple of int
+        Turns of carriers by which the force is off the frequency of what excites it; none by default.
     """
 
     directions: FloatArray | ComplexArray
     amplitudes: ComplexArray
     turning: tuple[TurningPart, ...] = ()
+    order: Order = ()
 
     @classmethod
-    def along(cls, contact: ContactConnector, amplitude: complex) -> "Force":
+    def along(cls, contact: ContactConnector, amplitude: complex, order: Order = ()) -> "Force":
         """Force along the line of action of a contact."""
-        return cls(contact.direction[:, None], np.array([amplitude], dtype=np.complex128), contact.turning)
+        return cls(contact.direction[:, None], np.array([amplitude], dtype=np.complex128), contact.turning, order)
 
     @property
     def load(self) -> ComplexArray:
@@ -179,10 +183,11 @@ class Force:
 
     def by_order(self, model: TurningResponse) -> dict[Order, ComplexArray]:
         """Split the force into loads on the coordinates by the order of their frequency, shape (n,) each."""
-        if not self.turning:
-            return {model.still: self.load}
-        parts = model.directions_by_order(self.directions.real, self.turning)
-        return {order: np.asarray(directions @ self.amplitudes) for order, directions in parts.items()}
+        loads = {model.still: self.load}
+        if self.turning:
+            parts = model.directions_by_order(self.directions.real, self.turning)
+            loads = {order: np.asarray(directions @ self.amplitudes) for order, directions in parts.items()}
+        return model.at_order(loads, self.order) if self.order else loads
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +232,7 @@ class MeshHarmonicModel:
     machine : CoupledMachine
         Assembled about its operating point.
     stiffness_varies : bool
-        Whether the stiffness of meshes varies with the phase, where no directions turn; otherwise it is the mean one.
+        Whether the stiffness of meshes varies with the phase; otherwise it is the mean one.
     """
 
     machine: CoupledMachine
@@ -352,8 +357,8 @@ class MeshHarmonicModel:
             return np.ones(machine.system.size, dtype=np.bool_)
         return np.asarray(np.any(machine.rows(machine.housing.name, np.eye(machine.housing.size)) != 0.0, axis=0))
 
-    def _turning_loads(self, w: float, cause: Cause) -> dict[str, dict[Order, ComplexArray]]:
-        """Return the loads of a cause at ω by mechanism and order; every cause has the same mechanisms."""
+    def _mean_turning_loads(self, w: float, cause: Cause) -> dict[str, dict[Order, ComplexArray]]:
+        """Return the loads of a cause at ω on the machine with the mean mesh stiffness, by mechanism and order."""
         number, harmonic = cause
         model, force = self.turning.model, self.contact.stiffness[number] * self._errors[number][harmonic - 1]
         amplitude, frame = self._shuttling[number].get(harmonic), self.turning.frame_of_contact(number)
@@ -365,6 +370,44 @@ class MeshHarmonicModel:
             rubbed = self.friction(cause)
             loads["friction"] = {} if rubbed is None else rubbed.by_order(model)
         return loads
+
+    def _turning_loads(self, w: float, cause: Cause) -> dict[str, dict[Order, ComplexArray]]:
+        """Return the loads of a cause at ω by mechanism and order; every cause has the same mechanisms."""
+        (number, harmonic), model = cause, self.turning.model
+        loads = self._mean_turning_loads(w, cause)
+        if not self.stiffness_varies:
+            return loads
+        contact, varying = self.machine.system.contacts[number], list[Mapping[Order, ComplexArray]]()
+        for order, amplitude in self.turning_forces(model)[number].at(harmonic).items():
+            varying.append(Force.along(contact, amplitude, order).by_order(model))
+        return {**loads, "varying_stiffness": sum_by_order(varying)}
+
+    def turning_forces(self, model: TurningResponse) -> dict[int, TurningStiffnessForce]:
+        """Solve the forces by the mesh stiffness that varies of a machine whose directions turn, by contact.
+
+        The machine has the directions of this one, and perhaps other damping.
+        """
+        if model in self._turning_forces:
+            return self._turning_forces[model]
+        groups = dict[float, list[VaryingMesh]]()
+        for mesh in self.varying_harmonics.values():
+            near = (rate for rate in groups if abs(mesh.rate - rate) <= _SAME_FREQUENCY_DIFFERENCE * rate)
+            groups.setdefault(next(near, mesh.rate), []).append(mesh)
+        found = dict[int, TurningStiffnessForce]()
+        for rate, meshes in groups.items():
+
+            def loads(harmonic: int) -> dict[Order, ComplexArray]:
+                causes = [(mesh.number, harmonic) for mesh in meshes]  # noqa: B023
+                mean = [self._mean_turning_loads(harmonic * rate, cause) for cause in causes]  # noqa: B023
+                return sum_by_order(load for by_mechanism in mean for load in by_mechanism.values())
+
+            found |= turning_stiffness_forces(meshes, model, loads)
+        self._turning_forces[model] = found
+        return found
+
+    @cached_property
+    def _turning_forces(self) -> dict[TurningResponse, dict[int, TurningStiffnessForce]]:
+        return {}
 
     def dynamic_stiffness(self, frequency: float) -> ComplexArray:
         """Z at a frequency [rad/s], shape (n, n), with directions that turn as they stand at t = 0."""
@@ -522,9 +565,8 @@ class MeshHarmonicModel:
     @cached_property
     def varying_harmonics(self) -> dict[int, VaryingMesh]:
         """Loaded meshes with their mesh harmonics, by contact; none where the stiffness is the mean one."""
-        if not self.stiffness_varies or self.machine.system.turns:
-            return {}
-        return {mesh.number: mesh for mesh in self.varying_meshes(between=False)}
+        meshes = self.varying_meshes(between=False) if self.stiffness_varies else []
+        return {mesh.number: mesh for mesh in meshes}
 
     @cached_property
     def _stiffness_forces(self) -> dict[int, StiffnessForce]:
@@ -539,7 +581,7 @@ class MeshHarmonicModel:
     @cached_property
     def _errors(self) -> dict[int, ComplexArray]:
         """Return e of every loaded contact by harmonic."""
-        return {n: self._error(n, self.meshes[n]) for n in self.loaded}
+        return {n: self._error(n, self.meshes[n], LEAST_REACH) for n in self.loaded}
 
     @cached_property
     def meshes(self) -> dict[int, LoadedMesh]:
@@ -587,6 +629,15 @@ def _merged(lines: Sequence[ResponseParts]) -> list[ResponseParts]:
 def sum_of(loads: Mapping[str, ComplexArray]) -> ComplexArray:
     """Sum of loads or motions by mechanism, shape (n,)."""
     return np.asarray(np.sum([*loads.values()], axis=0))
+
+
+def sum_by_order(loads: Iterable[Mapping[Order, ComplexArray]]) -> dict[Order, ComplexArray]:
+    """Sum of loads on the coordinates by the order of their frequency."""
+    total = dict[Order, ComplexArray]()
+    for by_order in loads:
+        for order, load in by_order.items():
+            total[order] = total[order] + load if order in total else load
+    return total
 
 
 def at_time_zero(

@@ -7,17 +7,17 @@ that turn, of directions D(t) = Σ D_l e^{i l·f t} and laws φ = k δ + c δ', 
 
     Z(ω_m) q_m + Σ_l D_l φ_{m-l} = F_m,     φ_m = (k + i ω_m c) (Σ_l D_lᵀ q_{m-l} - e_m),
 
-F the loads and e the transmission errors of the connectors that turn. Only the few φ are sought: with the compliances
-D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. Without the connectors that turn, parts of a train turn
-freely: at orders where ω_m is all but zero, springs κ on these motions are added to Z, and springs -κ to the connectors
-sought. Z falls into parts that connectors that turn alone couple, each solved on its own
+F the loads and e the transmission errors. Only the few φ are sought, those of tooth contacts that stand still too: with
+the compliances D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. Without the connectors sought, parts of a
+train turn freely: at orders where ω_m is all but zero, springs κ on these motions are added to Z, and springs -κ to the
+connectors sought. Z falls into parts that these alone couple, each solved on its own
 (:mod:`gearwhine.coupling.linear.dynamic_stiffness`).
 
 It is the amplitudes of the sidebands ω + m·f that a sensor on the housing shows; a frozen picture of the carrier would
 put all of them into one line.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -36,7 +36,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 Order = tuple[int, ...]
 Excitation = tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]
-"""Loads on the coordinates by the order of their frequency, and errors of contacts that turn by their number [m]."""
+"""Loads on the coordinates by the order of their frequency, and errors of contacts by their number [m]."""
 
 SIDEBANDS = 6
 """Number of times that connectors hand a motion on to other orders."""
@@ -53,8 +53,8 @@ _SAME_SHIFT = 1e-6  # part of the largest rate by which shifts of one order diff
 
 
 @dataclass(frozen=True, eq=False)
-class _Turning:
-    """A connector that turns: its stiffness and damping, and its directions by their order, (n, d) each."""
+class _Sought:
+    """A connector whose force is sought: its stiffness and damping, and its directions by their order, (n, d) each."""
 
     stiffness: FloatArray
     damping: FloatArray
@@ -63,7 +63,7 @@ class _Turning:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Coordinates that connectors that turn alone couple to all others, and the columns that touch them.
+    """Coordinates that the connectors sought alone couple to all others, and the columns that touch them.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class _Part:
     mix : ndarray of complex, shape (r, c)
         The columns as sums of the basis.
     free, restrained : DynamicStiffness
-        Without the connectors that turn, and with springs on free motions too.
+        Without the connectors sought, and with springs on free motions too.
     """
 
     coordinates: IntArray
@@ -98,6 +98,47 @@ class _Reach:
     deflected: IntArray
     acting: IntArray
     acted: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Balance:
+    """Harmonic balance about an excitation: the unknowns are deflections of the connectors sought by order.
+
+    Attributes
+    ----------
+    frequencies : mapping of order to complex
+        ω_m [rad/s].
+    stands : bool
+        Whether one of these is zero.
+    unknowns : mapping of order to slice
+        Unknowns of each order.
+    sought : ndarray of int
+        Unknown of each direction at each order; -1 where none is.
+    reaches : mapping of order to list of _Reach
+        Of each part.
+    compliance : ndarray of complex, shape (u, u)
+        S transposed: by force and deflection, without the connectors sought.
+    by_loads : list of (ndarray of int, ndarray of complex)
+        Unknowns, and their deflections by the loads without the connectors sought.
+    motions : mapping of order to list of ndarray of complex
+        Motions of each part under unit forces along its basis, and under the loads, of each order that is asked for.
+    """
+
+    frequencies: Mapping[Order, complex]
+    stands: bool
+    unknowns: Mapping[Order, slice]
+    sought: IntArray
+    reaches: Mapping[Order, list[_Reach]]
+    compliance: ComplexArray
+    by_loads: list[tuple[IntArray, ComplexArray]]
+    motions: Mapping[Order, list[ComplexArray]]
+
+    def deflected(self, count: int) -> ComplexArray:
+        """Deflections by some loads without the connectors sought, (u, i)."""
+        found = np.zeros((len(self.compliance), count), dtype=np.complex128)
+        for unknowns, deflections in self.by_loads:
+            found[unknowns] += deflections
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,24 +206,29 @@ class TurningResponse:
         """Order of the excitation itself, and of directions that stand still."""
         return tuple(0 for _ in self.rates)
 
+    @cached_property
+    def _places(self) -> dict[Order, int]:
+        """Place of each order among all."""
+        return {order: place for place, order in enumerate(self.orders)}
+
     def shift(self, order: Order) -> float:
         """Frequency m·f of an order over the excitation's [rad/s]."""
         return float(np.dot(order, self.rates)) if order else 0.0
 
     @cached_property
     def _unrestrained(self) -> tuple[FloatArray, FloatArray]:
-        """Stiffness and damping without the connectors that turn, (n, n) both."""
+        """Stiffness and damping without the connectors sought, (n, n) both."""
         system = self.system
         stiffness, damping = system.own_stiffness.copy(), system.own_damping + system.gyroscopic
-        for directions, law_stiffness, law_damping, turning in self._laws:
-            if not turning:
+        for (directions, law_stiffness, law_damping, _), sought in zip(self._laws, self._is_sought, strict=True):
+            if not sought:
                 stiffness += directions @ law_stiffness @ directions.T
                 damping += directions @ law_damping @ directions.T
         return stiffness, damping
 
     @cached_property
     def _restraint(self) -> tuple[FloatArray, float]:
-        """Motions that no connector but those that turn resists, (n, r), and the stiffness κ that is put on them."""
+        """Motions that no connector but those sought resists, (n, r), and the stiffness κ that is put on them."""
         stiffness = self._unrestrained[0]
         free_motions = [np.zeros((len(stiffness), 0))]
         for block in self._blocks:
@@ -211,18 +257,24 @@ class TurningResponse:
             laws.append((tooth.direction[:, None], np.array([[stiffness]]), np.array([[damping]]), tooth.turning))
         return laws
 
+    @property
+    def _is_sought(self) -> list[bool]:
+        """Whether the force of each law is sought: connectors that turn, and all contacts."""
+        linear = [bool(connector.turning) for connector in self.system.linear]
+        return linear + [True] * len(self.system.contacts)
+
     @cached_property
-    def _turning(self) -> list[_Turning]:
-        """Springs that undo those on free motions, then the connectors that turn, linear ones first, in their order."""
+    def _connectors(self) -> list[_Sought]:
+        """Springs that undo those on free motions, then the connectors sought, linear ones first, in their order."""
         free, spring = self._restraint
         count = free.shape[1]
-        undoing = _Turning(-spring * np.eye(count), np.zeros((count, count)), {self.still: free.astype(np.complex128)})
+        undoing = _Sought(-spring * np.eye(count), np.zeros((count, count)), {self.still: free.astype(np.complex128)})
         return [
             *([undoing] if count else []),
             *(
-                _Turning(stiffness, damping, self.directions_by_order(directions, turning))
-                for directions, stiffness, damping, turning in self._laws
-                if turning
+                _Sought(stiffness, damping, self.directions_by_order(directions, turning))
+                for (directions, stiffness, damping, turning), sought in zip(self._laws, self._is_sought, strict=True)
+                if sought
             ),
         ]
 
@@ -242,7 +294,7 @@ class TurningResponse:
         """Directions D_l that are not zero, (n, c), the order l of each, and its number among the d directions."""
         columns, orders, numbers = [np.zeros((self.system.size, 0), dtype=np.complex128)], [], []
         first = 0
-        for one in self._turning:
+        for one in self._connectors:
             for order, directions in one.directions.items():
                 moving = np.flatnonzero(np.any(directions != 0.0, axis=0))
                 columns.append(directions[:, moving])
@@ -258,7 +310,7 @@ class TurningResponse:
         Directions of free motions stand still, and meet the motion of their own order alone.
         """
         _, orders, numbers = self._columns
-        places = {order: number for number, order in enumerate(self.orders)}
+        places = self._places
 
         def reached(
             order: Order, step: Callable[[Order, Order], Order], part: _Part, first: int
@@ -280,7 +332,7 @@ class TurningResponse:
 
     @cached_property
     def _parts(self) -> list[_Part]:
-        """Parts of the machine that connectors that turn alone couple; coordinates without any coupling are one."""
+        """Parts of the machine that the connectors sought alone couple; coordinates without any coupling are one."""
         stiffness, damping = self._unrestrained
         free, spring = self._restraint
         columns = self._columns[0]
@@ -316,26 +368,15 @@ class TurningResponse:
 
     @cached_property
     def _width(self) -> int:
-        """Number d of the directions that turn."""
-        return sum(len(one.stiffness) for one in self._turning)
+        """Number d of the directions sought."""
+        return sum(len(one.stiffness) for one in self._connectors)
 
     @cached_property
     def _blocks(self) -> list[IntArray]:
-        """Coordinates of parts that are coupled by connectors that turn alone, or not at all."""
+        """Coordinates of parts that are coupled by the connectors sought alone, or not at all."""
         coupled = sparse.csr_array(np.any([part != 0.0 for part in self._unrestrained], axis=0))
         count, labels = sparse.csgraph.connected_components(coupled, directed=False)
         return [np.flatnonzero(labels == number) for number in range(count)]
-
-    def mesh_error(self, number: int, frequency: float) -> Excitation:
-        """Load of a unit transmission error of a contact at ω [rad/s]: on coordinates by order, or as its own error.
-
-        The error of flanks that turn is a deflection of their own connector; that of others is a load (k + iωc) d.
-        """
-        tooth = self.system.contacts[number]
-        if tooth.turning:
-            return {}, {number: 1.0}
-        law = complex(self.contact.stiffness[number], frequency * self.contact.damping[number])
-        return {self.still: np.asarray(law * tooth.direction, dtype=np.complex128)}, {}
 
     def respond(
         self,
@@ -351,7 +392,7 @@ class TurningResponse:
             ω [rad/s]; complex for the motion e^{iωt} of growing or decaying excitations.
         excitations : sequence of (mapping of order to ndarray of complex, shape (n,), mapping of int to complex)
             Of each excitation, loads on the coordinates by the order m of their frequency ω + m·f, and transmission
-            errors at ω of contacts that turn, by the number of the contact [m].
+            errors at ω of contacts, by the number of the contact [m].
         orders : sequence of order, optional
             Orders of the motions that are asked for; by default all.
 
@@ -363,7 +404,7 @@ class TurningResponse:
         Raises
         ------
         CouplingError
-            For an error of a contact that does not turn, or a load of an order that is not followed.
+            For a load of an order that is not followed.
         """
         unknown = {order for loads, _ in excitations for order in loads} - set(self.orders)
         if unknown:
@@ -373,6 +414,52 @@ class TurningResponse:
             for order in self.orders
             if any(order in one for one, _ in excitations)
         }
+        balance = self._balance(frequency, loads, set(self.orders if orders is None else orders))
+        deflections = balance.deflected(len(excitations))
+        errors = np.array([self._error(errors) for _, errors in excitations]).T
+        still = balance.unknowns[self.still]
+        deflections[still] -= errors[_last(still, self._width)]
+        solved = self._solved(balance, deflections)
+        forces = np.concatenate([self._law(balance, order) @ solved[own] for order, own in balance.unknowns.items()])
+        motion = {}
+        for order, motions in balance.motions.items():
+            total = np.zeros((self.system.size, len(excitations)), dtype=np.complex128)
+            for part, reach, alone in zip(self._parts, balance.reaches[order], motions, strict=True):
+                rank = part.basis.shape[1]
+                own_motion = -alone[:, :rank] @ (part.mix[:, reach.acting] @ forces[balance.sought[reach.acted]])
+                total[part.coordinates] = own_motion + alone[:, rank:] if order in loads else own_motion
+            motion[order] = total.T
+        return motion
+
+    def compressions(
+        self, frequency: float, contacts: Sequence[int], excitation: Mapping[Order, ComplexArray]
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """Compressions of contacts at ω + m·f, with all connectors as they are.
+
+        Parameters
+        ----------
+        frequency : float
+            ω [rad/s]. At 0, what is constant in time leaves the train's own turning open, which compresses nothing.
+        contacts : sequence of int
+            Numbers of the contacts.
+        excitation : mapping of order to ndarray of complex, shape (n,)
+            Loads on the coordinates by the order of their frequency.
+
+        Returns
+        -------
+        (ndarray of complex, shape (m, c, m, c), ndarray of complex, shape (m, c))
+            By order and contact those by unit forces along each contact at each order [m/N], and by the excitation [m].
+        """
+        balance = self._balance(frequency, {order: load[:, None] for order, load in excitation.items()}, set())
+        first = self._width - len(self.system.contacts)
+        places = np.arange(len(self.orders))[:, None] * self._width + first + np.asarray(contacts, dtype=np.int64)
+        unknowns = balance.sought[places.ravel()]
+        deflections = np.concatenate([balance.compliance[unknowns].T, balance.deflected(1)], axis=1)
+        found = self._solved(balance, deflections)[unknowns]
+        return found[:, :-1].reshape(*places.shape, *places.shape), found[:, -1].reshape(places.shape)
+
+    def _balance(self, frequency: complex, loads: Mapping[Order, ComplexArray], asked: Set[Order]) -> _Balance:
+        """Set up the harmonic balance of loads at ω by order, (n, i) each, with motions at the orders asked for."""
         scale = max(self.rates, default=0.0)
         at = {order: frequency + self.shift(order) for order in self.orders}
         stands = min(map(abs, at.values())) <= _STANDSTILL * scale
@@ -385,15 +472,12 @@ class TurningResponse:
             unknowns[order] = slice(end, end + self._width - free)
             end += self._width - free
             sought[place * self._width + free : (place + 1) * self._width] = np.arange(end)[unknowns[order]]
-        deflections = np.zeros((end, len(excitations)), dtype=np.complex128)
-        # Transposed: compliances by force and deflection.
-        between = np.zeros((end, end), dtype=np.complex128)
-        # Motions under unit forces along each part's basis, and under the loads, of each order that is asked for.
-        moved: dict[Order, list[ComplexArray]] = {}
-        asked = set(self.orders if orders is None else orders)
+        compliance = np.zeros((end, end), dtype=np.complex128)
+        deflections, moved = [], {}
+        reaches = {order: self._reached[order, is_restrained[order]] for order in self.orders}
         for order, w in at.items():
             motions = []
-            for part, reach in zip(self._parts, self._reached[order, is_restrained[order]], strict=True):
+            for part, reach in zip(self._parts, reaches[order], strict=True):
                 basis, mix, rank = part.basis, part.mix, part.basis.shape[1]
                 pushed = np.concatenate([basis, loads[order][part.coordinates]], axis=1) if order in loads else basis
                 alone = (part.restrained if is_restrained[order] else part.free).solve(w, pushed)
@@ -402,39 +486,34 @@ class TurningResponse:
                 seen_by = mix[:, reach.seen].T @ (basis.T @ alone)
                 # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
                 seen = sought[reach.deflected]
-                between[np.ix_(sought[reach.acted], seen)] += (seen_by[:, :rank] @ mix[:, reach.acting]).T
+                compliance[np.ix_(sought[reach.acted], seen)] += (seen_by[:, :rank] @ mix[:, reach.acting]).T
                 if order in loads:
-                    deflections[seen] += seen_by[:, rank:]
+                    deflections.append((seen, seen_by[:, rank:]))
             if order in asked:
                 moved[order] = motions
-        errors = np.array([self._error(errors) for _, errors in excitations]).T
-        deflections[unknowns[self.still]] -= errors[_last(unknowns[self.still], self._width)]
-        for order, w in at.items():
-            own = unknowns[order]
-            between[own] = self._law(w, own).T @ between[own]
-        between[np.diag_indices(end)] += 1.0
-        if stands:
+        return _Balance(at, stands, unknowns, sought, reaches, compliance, deflections, moved)
+
+    def _solved(self, balance: _Balance, deflections: ComplexArray) -> ComplexArray:
+        """Solve the deflections with the connectors sought by those without, both by unknown, (u, i)."""
+        between = balance.compliance.copy()
+        for order, own in balance.unknowns.items():
+            between[own] = self._law(balance, order).T @ between[own]
+        between[np.diag_indices(len(between))] += 1.0
+        if balance.stands:
             # What is constant in time leaves the train's own turning open.
-            solved = np.linalg.lstsq(between.T, deflections, rcond=_STANDSTILL)[0]
-        else:
-            solved = np.linalg.solve(between.T, deflections)
-        forces = np.concatenate([self._law(w, unknowns[order]) @ solved[unknowns[order]] for order, w in at.items()])
-        motion = {}
-        for order, motions in moved.items():
-            total = np.zeros((self.system.size, len(excitations)), dtype=np.complex128)
-            reaches = self._reached[order, is_restrained[order]]
-            for part, reach, alone in zip(self._parts, reaches, motions, strict=True):
-                rank = part.basis.shape[1]
-                own_motion = -alone[:, :rank] @ (part.mix[:, reach.acting] @ forces[sought[reach.acted]])
-                total[part.coordinates] = own_motion + alone[:, rank:] if order in loads else own_motion
-            motion[order] = total.T
-        return motion
+            return np.asarray(np.linalg.lstsq(between.T, deflections, rcond=_STANDSTILL)[0])
+        return np.asarray(np.linalg.solve(between.T, deflections))
 
     def force_along(self, number: int, force: complex) -> dict[Order, ComplexArray]:
         """Split a harmonic force along the line of action of a contact into loads by order, (n,) each."""
         tooth = self.system.contacts[number]
         parts = self.directions_by_order(tooth.direction[:, None], tooth.turning)
         return {order: np.asarray(force * direction[:, 0]) for order, direction in parts.items()}
+
+    def at_order(self, loads: Mapping[Order, ComplexArray], order: Order) -> dict[Order, ComplexArray]:
+        """Shift the loads by order of a force to those of one at ω + m·f, m an order; those that are followed."""
+        shifted = {_plus(order, step): load for step, load in loads.items()}
+        return {place: load for place, load in shifted.items() if place in self._places}
 
     def deflection(
         self,
@@ -475,31 +554,27 @@ class TurningResponse:
 
     @cached_property
     def _law_matrices(self) -> tuple[FloatArray, FloatArray]:
-        """Stiffness and damping of the connectors that turn, (d, d) both."""
+        """Stiffness and damping of the connectors sought, (d, d) both."""
         stiffness, damping = np.zeros((self._width, self._width)), np.zeros((self._width, self._width))
         begin = 0
-        for one in self._turning:
+        for one in self._connectors:
             own = slice(begin, begin + len(one.stiffness))
             stiffness[own, own], damping[own, own] = one.stiffness, one.damping
             begin = own.stop
         return stiffness, damping
 
-    def _law(self, w: complex, unknowns: slice) -> ComplexArray:
-        """Law k + i ω_m c of the last connectors that turn, as many directions as there are unknowns."""
-        last = _last(unknowns, self._width)
+    def _law(self, balance: _Balance, order: Order) -> ComplexArray:
+        """Law k + i ω_m c of the connectors sought at an order."""
+        last = _last(balance.unknowns[order], self._width)
         stiffness, damping = (matrix[last, last] for matrix in self._law_matrices)
-        return np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
+        return np.asarray(stiffness + 1j * balance.frequencies[order] * damping, dtype=np.complex128)
 
     def _error(self, errors: Mapping[int, complex]) -> ComplexArray:
-        """Errors of the contacts that turn over the directions of the connectors that do, (d,)."""
+        """Errors of contacts over all directions that are sought, the last of which are those of contacts, (d,)."""
         found = np.zeros(self._width, dtype=np.complex128)
-        turning = [number for number, tooth in enumerate(self.system.contacts) if tooth.turning]
+        first = self._width - len(self.system.contacts)
         for number, error in errors.items():
-            if number not in turning:
-                raise CouplingError(
-                    f"an error of {self.system.contacts[number].name}, which does not turn; expected its load instead"
-                )
-            found[self._width - len(turning) + turning.index(number)] = error
+            found[first + number] = error
         return found
 
 

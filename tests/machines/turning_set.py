@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.gears import TableStiffness
@@ -17,6 +18,8 @@ TEETH = (25, 29)
 """Sun and planets; the ring has 83, which three planets do not divide."""
 RIPPLE = 0.002
 """Part of the mesh stiffness by which its first two harmonics vary: transmission error, and hardly parametric."""
+STRONG_RIPPLE = 0.1
+"""One that is parametric: it makes lines of harmonics that the transmission error hardly has."""
 
 
 def housing(natural_hz: Sequence[float], shape: float = 0.2, damping_ratio: float = 0.03) -> HousingComponent:
@@ -37,11 +40,17 @@ def housing(natural_hz: Sequence[float], shape: float = 0.2, damping_ratio: floa
     )
 
 
+def wave(position: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Variation of the mesh stiffness over a mesh period, of two harmonics."""
+    return np.asarray(np.cos(2.0 * np.pi * position) + np.sin(4.0 * np.pi * position))
+
+
 def turning_set(
     natural_hz: Sequence[float],
     *,
     speed: float = 300.0,
     angles_deg: Sequence[float] | None = None,
+    ripple: float = RIPPLE,
     unbalanced: str | None = None,
     damping: float = 1.0,
     mode_count: int | None = 1,
@@ -68,8 +77,7 @@ def turning_set(
         replace(mounted, seat="seat") if mounted.rotor == "ring" else mounted for mounted in parts["bearings"]
     ]
     position = np.linspace(0.0, 1.0, 401)
-    wave = np.cos(2.0 * np.pi * position) + np.sin(4.0 * np.pi * position)
-    law = TableStiffness(position, MESH_STIFFNESS * (1.0 + (0.0 if unbalanced else RIPPLE) * wave))
+    law = TableStiffness(position, MESH_STIFFNESS * (1.0 + (0.0 if unbalanced else ripple) * wave(position)))
     parts["shafts"] = [
         replace(shaft, unbalances=[Unbalance(0.05, 1e-4, 0.4)]) if shaft.name == unbalanced else shaft
         for shaft in parts["shafts"]

@@ -1,0 +1,106 @@
+r"""Parametric stiffness of meshes that turn: forces by stiffness that varies, at mesh harmonics and their sidebands.
+
+As of :mod:`gearwhine.coupling.linear.parametric_stiffness` the stiffness κ of a mesh varies with its phase, of
+frequency Ω. Where directions turn with carriers at rates f, a mesh is compressed at all nΩ + m·f: what stands still is
+not alike all round. With h the force that the stiffness adds along the mesh and S(n) the compressions at nΩ + m·f by
+unit forces at nΩ + m'·f (:meth:`gearwhine.coupling.linear.turning_response.TurningResponse.compressions`),
+
+    h_{n,m} = -Σ_j κ_{n-j} u_{j,m},      u_{n,m} = u°_{n,m} + Σ_m' S_{m m'}(n) h_{n,m'},
+
+u° with the mean stiffness. κ couples the mesh harmonics, and S the meshes and the turns m: this is Hill's method for
+two periods. The unknowns are thousands, and κ varies by a part of its mean: GMRES solves them in some tens of steps.
+
+κ is that of the mesh harmonics: what pitch deviations change in it is left out here.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
+from gearwhine.coupling.linear.turning_response import Order, TurningResponse
+from gearwhine.numerics.arrays import ComplexArray
+
+_TOLERANCE = 1e-10  # of the compressions, relative
+_STEPS = 200  # of GMRES
+
+
+@dataclass(frozen=True, eq=False)
+class TurningStiffnessForce:
+    """Force of a mesh by its stiffness that varies, along its line of action.
+
+    Attributes
+    ----------
+    orders : tuple of order
+        Turns m.
+    amplitudes : ndarray of complex, shape (J + 1, m)
+        By e^{i(nΩ + m·f)t} from n = 0 on [N].
+    """
+
+    orders: tuple[Order, ...]
+    amplitudes: ComplexArray
+
+    def at(self, harmonic: int) -> dict[Order, complex]:
+        """Amplitudes beside a mesh harmonic by order [N]; none beyond those that are known."""
+        if harmonic >= len(self.amplitudes):
+            return {}
+        return dict(zip(self.orders, self.amplitudes[harmonic].tolist(), strict=True))
+
+
+def turning_stiffness_forces(
+    meshes: Sequence[VaryingMesh], model: TurningResponse, loads: Callable[[int], Mapping[Order, ComplexArray]]
+) -> dict[int, TurningStiffnessForce]:
+    """Solve the forces of meshes of one frequency by their stiffness that varies, by contact.
+
+    Parameters
+    ----------
+    meshes : sequence of VaryingMesh
+        Of one frequency and reach J.
+    model : TurningResponse
+        The machine with the mean mesh stiffness.
+    loads : callable
+        Loads of the meshes at a harmonic n of their frequency on the machine with the mean stiffness, by the order of
+        their frequency, one-sided by e^{i(nΩ + m·f)t}.
+
+    Raises
+    ------
+    CouplingError
+        Where the forces are not found, as of a machine that is about to grow on its own.
+    """
+    reach, rate, numbers = meshes[0].reach, meshes[0].rate, [mesh.number for mesh in meshes]
+    still = model.orders.index(model.still)
+    opposite = [model.orders.index(tuple(-turn for turn in order)) for order in model.orders]
+    shape = 2 * reach + 1, len(model.orders), len(meshes)
+    width = shape[1] * shape[2]
+    free = np.zeros(shape, dtype=np.complex128)
+    compliance = np.zeros((2 * reach + 1, width, width), dtype=np.complex128)
+    # The motion is real: what is at -n and -m is the conjugate of that at n and m.
+    for harmonic in range(reach + 1):
+        by_forces, by_loads = model.compressions(harmonic * rate, numbers, loads(harmonic) if harmonic else {})
+        compliance[reach - harmonic] = by_forces[opposite][:, :, opposite].conj().reshape(width, width)
+        compliance[reach + harmonic] = by_forces.reshape(width, width)
+        if harmonic:
+            free[reach + harmonic] = 0.5 * by_loads
+            free[reach + harmonic, still] -= [mesh.error[0, reach + harmonic] for mesh in meshes]
+            free[reach - harmonic] = free[reach + harmonic][opposite].conj()
+    varying = np.array([mesh.coupling[0] for mesh in meshes])
+
+    def forces(compression: ComplexArray) -> ComplexArray:
+        return np.asarray(-np.einsum("cnj,jmc->nmc", varying, compression.reshape(shape)))
+
+    def less_that_of_forces(compression: ComplexArray) -> ComplexArray:
+        by_forces = compliance @ forces(compression).reshape(len(compliance), width, 1)
+        return np.asarray(compression - by_forces.ravel())
+
+    operator = LinearOperator((free.size, free.size), less_that_of_forces, dtype=np.complex128)
+    solved, unsolved = gmres(operator, free.ravel(), rtol=_TOLERANCE, restart=_STEPS, maxiter=1)
+    if unsolved:
+        raise CouplingError(
+            f"forces by the mesh stiffness that varies at {rate / (2.0 * np.pi):.6g} Hz: GMRES has not settled in "
+            f"{_STEPS} steps; expected a machine that is stable with its varying stiffness"
+        )
+    found = 2.0 * forces(solved)[reach:]
+    return {number: TurningStiffnessForce(model.orders, found[:, :, place]) for place, number in enumerate(numbers)}
