@@ -18,7 +18,7 @@ has g (:mod:`gearwhine.coupling.linear.turning_stiffness`).
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -391,17 +391,15 @@ class MeshHarmonicModel:
             return self._turning_forces[model]
         groups = dict[float, list[VaryingMesh]]()
         for mesh in self.varying_harmonics.values():
-            near = (rate for rate in groups if abs(mesh.rate - rate) <= _SAME_FREQUENCY_DIFFERENCE * rate)
-            groups.setdefault(next(near, mesh.rate), []).append(mesh)
+            groups.setdefault(round(mesh.rate, 6), []).append(mesh)
+
+        def loads(meshes: Sequence[VaryingMesh], harmonic: int) -> dict[Order, ComplexArray]:
+            mean = [self._mean_turning_loads(harmonic * mesh.rate, (mesh.number, harmonic)) for mesh in meshes]
+            return sum_by_order(load for by_mechanism in mean for load in by_mechanism.values())
+
         found = dict[int, TurningStiffnessForce]()
-        for rate, meshes in groups.items():
-
-            def loads(harmonic: int) -> dict[Order, ComplexArray]:
-                causes = [(mesh.number, harmonic) for mesh in meshes]  # noqa: B023
-                mean = [self._mean_turning_loads(harmonic * rate, cause) for cause in causes]  # noqa: B023
-                return sum_by_order(load for by_mechanism in mean for load in by_mechanism.values())
-
-            found |= turning_stiffness_forces(meshes, model, loads)
+        for meshes in groups.values():
+            found |= turning_stiffness_forces(meshes, model, partial(loads, meshes))
         self._turning_forces[model] = found
         return found
 
