@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwhine.meshes.cad.shape import stated_unit
-from gearwhine.meshes.cad.worker import FORESEEN_FILE, JOINING, MESHING, READING, STARTING, Request
+from gearwhine.meshes.cad.worker import FORESEEN_FILE, JOINING, MESHING, READING, SPENT_FILE, STARTING, Request
 from gearwhine.meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from gearwhine.meshes.gmsh_meshing import Tetrahedra, check_mesh_request
 from gearwhine.meshes.mesh import Mesh
@@ -83,9 +83,9 @@ def mesh_cad(
     refined_size : float, optional
         Edge length aimed at around these bores [m].
     time_limit : float, optional
-        Seconds after which the attempt is given up, meshing included; by default reading and joining the solids is
-        given five seconds and five minutes for each megabyte of the file, meshing six seconds and two for each thousand
-        elements foreseen, and the whole an hour.
+        Seconds after which the attempt is given up, meshing included; by default an hour. Reading and joining
+        the solids is given five seconds of processor time and five minutes for each megabyte of the file, meshing six
+        seconds and two for each thousand elements foreseen.
 
     Raises
     ------
@@ -163,30 +163,35 @@ def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> 
 
 
 def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: float, time_limit: float) -> bytes:
-    """Return the error output of a worker that ends within the time limits, each stage timed from its beginning."""
+    """Return the error output of a worker that ends within the time limits, each stage timed from its beginning.
+
+    Stages are given processor time, so that what else runs on the machine does not matter.
+    """
     begin = time.monotonic()
-    since = {"": begin}
+    since = dict[str, float]()
     while True:
         try:
             return worker.communicate(timeout=_LOOK)[1]
         except subprocess.TimeoutExpired as error:
-            now, stage = time.monotonic(), _stage(folder)
+            now, stage = _number(folder / SPENT_FILE), _stage(folder)
             # Reading and joining count as one stage.
             spent = now - since.setdefault(READING if stage == JOINING else stage, now)
             limit = {READING: reading_limit, JOINING: reading_limit, MESHING: _meshing_limit(folder)}.get(
                 stage, _LONGEST_READING
             )
-            if now - begin > time_limit or spent > limit:
+            if time.monotonic() - begin > time_limit or spent > limit:
                 raise subprocess.TimeoutExpired(error.cmd, min(limit, time_limit)) from error
 
 
 def _meshing_limit(folder: Path) -> float:
     """Seconds in which the elements that the worker foresees are to be made."""
-    foreseen = folder / FORESEEN_FILE
-    text = foreseen.read_text(encoding="utf-8") if foreseen.is_file() else ""
-    # The file may be there before its number is.
-    elements = float(text) if text.strip() else 0.0
-    return min(_MESHING + _MESHING_PER_ELEMENT * elements, _LONGEST_READING)
+    return min(_MESHING + _MESHING_PER_ELEMENT * _number(folder / FORESEEN_FILE), _LONGEST_READING)
+
+
+def _number(path: Path) -> float:
+    """Return the number in a file of the worker, which may be there before its number is; 0 without one."""
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    return float(text) if text.strip() else 0.0
 
 
 def _stage(folder: Path) -> str:

@@ -11,6 +11,7 @@ import shutil
 import sys
 import threading
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from gearwhine.meshes.gmsh_meshing import Tetrahedra, check_mesh_size, coarse_si
 
 STARTING, READING, JOINING, MESHING = "starting", "reading it", "joining its solids", "meshing it"
 FORESEEN_FILE = "foreseen"  # the file with the number of elements to come
+SPENT_FILE = "spent"  # the file with the seconds of processor time so far
 
 _FILLING = 10.0  # tetrahedra in a cube of their edge length, about
 _WATCH = 0.5  # seconds between looks at the parent
@@ -62,7 +64,7 @@ class Request:
 
 
 def end_with(parent: int, folder: Path) -> None:
-    """Watch the parent process from a thread; once it is gone, remove the folder and end this process.
+    """Watch the parent process from a thread, and tell the time spent; once it is gone, end, the folder removed.
 
     A process whose parent has died gets another one. The parent's number is handed over, because the parent may be
     gone before this begins. A thread is enough: gmsh's calls leave Python's lock to it while they last.
@@ -70,6 +72,8 @@ def end_with(parent: int, folder: Path) -> None:
 
     def watch() -> None:
         while os.getppid() == parent:
+            with suppress(OSError):
+                (folder / SPENT_FILE).write_text(f"{time.process_time()}", encoding="utf-8")
             time.sleep(_WATCH)
         shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)

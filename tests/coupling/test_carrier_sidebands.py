@@ -11,7 +11,7 @@ from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import unbalance_responses
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
+from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, ResponseParts, sum_by_order
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
 from gearwhine.coupling.signals.line_names import line_names
@@ -194,6 +194,50 @@ def test_isotropic_seat_gives_the_lines_of_time_invariant_equations(angles: tupl
         harmonic = line.causes[0][1]
         expected = shape * _as_by_time_invariant_equations(machine, harmonic)[carrier_turns(line)]
         assert np.abs(rows @ line.motion - expected).max() < 1e-9 * scale[harmonic]
+
+
+def test_motion_with_varying_stiffness_satisfies_the_equations_in_time() -> None:
+    machine = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL, ripple=STRONG_RIPPLE)
+    system, model = machine.system, MeshHarmonicModel(machine)
+    turning, meshes = model.turning.model, model.varying_harmonics
+    forces, rate = model.turning_forces(turning), meshes[0].rate
+    waves: list[tuple[float, ComplexArray]] = []
+    for harmonic in range(meshes[0].reach + 1):
+        part = 0.5 if harmonic == 0 else 1.0
+        loads = [
+            Force.along(system.contacts[number], part * amplitude, order).by_order(turning)
+            for number, force in forces.items()
+            for order, amplitude in force.at(harmonic).items()
+        ]
+        for number, mesh in meshes.items() if harmonic else ():
+            error = 2.0 * mesh.error[0, mesh.reach + harmonic]
+            loads.append(turning.force_along(number, model.contact.stiffness[number] * error))
+        moved = turning.respond(harmonic * rate, [(sum_by_order(loads), {})])
+        waves += [(harmonic * rate + turning.shift(order), motion[0]) for order, motion in moved.items()]
+    for time in np.linspace(0.0, 2.0 * np.pi / machine.speeds["carrier"], 7):
+        q, v, a = (
+            np.sum([((1j * w) ** power * np.exp(1j * w * time) * motion).real for w, motion in waves], axis=0)
+            for power in (0, 1, 2)
+        )
+        left = a + (system.own_damping + system.gyroscopic) @ v + system.own_stiffness @ q
+        largest = 0.0
+        laws = [(one.directions, one.stiffness, one.damping, one.turning, 0.0) for one in system.linear]
+        for number, contact in enumerate(system.contacts):
+            mesh, c = meshes[number], model.contact.damping[number]
+            orders = np.arange(-2 * mesh.reach, 2 * mesh.reach + 1)
+            varying = (mesh.stiffness[0] @ np.exp(1j * orders * rate * time)).real
+            error = (mesh.error[0] @ np.exp(1j * mesh.orders[0] * rate * time)).real
+            k = model.contact.stiffness[number] + varying
+            laws.append((contact.direction[:, None], np.array([[k]]), np.array([[c]]), contact.turning, k * error))
+        for directions, stiffness, damping, turning_parts, through in laws:
+            now = directions + sum(part.change(time) for part in turning_parts)
+            step = 1e-7
+            change = sum((part.change(time + step) - part.change(time - step) for part in turning_parts), 0.0)
+            swept = np.transpose(change) @ q / (2.0 * step) if turning_parts else 0.0
+            force = now @ (stiffness @ (now.T @ q) + damping @ (now.T @ v + swept) - through)
+            left = left + force
+            largest = max(largest, float(np.abs(force).max()))
+        assert np.abs(left).max() < 2e-6 * largest
 
 
 def test_carrier_that_hardly_turns_gives_the_lines_of_one_that_stands() -> None:
