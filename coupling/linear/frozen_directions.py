@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from gearwhine.coupling.machine.connectors import turned
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 
@@ -22,15 +23,16 @@ FROZEN_MODES = "natural modes, damping ratios and stability"
 """Subject of the warning of natural modes."""
 
 
-def frozen(system: CoupledSystem) -> CoupledSystem:
-    """Return a system whose directions stand as they do at t = 0."""
+def frozen(system: CoupledSystem, time: float = 0.0) -> CoupledSystem:
+    """Return a system whose directions stand as they do at a nominal time [s]."""
     if not system.turns:
         return system
-    return replace(
-        system,
-        linear=tuple(replace(one, turning=()) for one in system.linear),
-        contacts=tuple(replace(one, turning=()) for one in system.contacts),
-    )
+    linear = [replace(one, directions=turned(one.directions, one.turning, time), turning=()) for one in system.linear]
+    contacts = [
+        replace(one, direction=turned(one.direction[:, None], one.turning, time)[:, 0], turning=())
+        for one in system.contacts
+    ]
+    return replace(system, linear=tuple(linear), contacts=tuple(contacts))
 
 
 def frozen_warnings(

@@ -23,6 +23,7 @@ from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_mesh
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
+_PLACES = 8  # of a carrier in a turn
 _ONE_FREQUENCY = 1e-9
 """Relative difference of frequencies that are one."""
 
@@ -76,28 +77,51 @@ def _rms(amplitudes: FloatArray) -> FloatArray:
 def sensor_rms(machine: CoupledMachine, limit: float) -> FloatArray:
     """Root mean square at each sensor of all lines of the teeth up to a limit [rad/s], shape (o,) [m/s²].
 
-    Of a machine with turning carriers these are the mesh harmonics with their sidebands.
+    Of a machine with turning carriers these are the mesh harmonics with their sidebands, and what differs between
+    teeth as of `_frozen_lines`.
     """
     if not machine.system.turns:
         return np.asarray(lines_over_speed(machine, [machine.speed], limit).rms[:, 0])
-    lines = MeshHarmonicModel(machine).responses(limit)
+    model = MeshHarmonicModel(machine)
+    lines = model.responses(limit)
     moved = np.array([line.frequency**2 * line.motion for line in lines]).reshape(-1, machine.system.size)
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
-    return _rms(np.abs(rows @ moved.T))
+    between = [one.between[:, 0] ** 2 for one in _frozen_lines(model, limit)]
+    return np.asarray(np.hypot(_rms(np.abs(rows @ moved.T)), np.sqrt(np.mean(between, axis=0) if between else 0.0)))
 
 
 def housing_rates(machine: CoupledMachine, limit: float) -> tuple[FloatArray, ComplexArray]:
     """Frequencies of the lines of the teeth up to a limit [rad/s], and the rates of the housing's coordinates by each.
 
-    Of a machine with turning carriers these are the mesh harmonics with their sidebands. The arrays have the shapes
-    (l,) and (l, h).
+    Of a machine with turning carriers these are the mesh harmonics with their sidebands, and what differs between teeth
+    as of `_frozen_lines`, a line for each place of the carriers. The arrays have the shapes (l,) and (l, h).
     """
     if not machine.system.turns:
         return lines_over_speed(machine, [machine.speed], limit).housing_lines(0)
-    lines = MeshHarmonicModel(machine).responses(limit)
+    model = MeshHarmonicModel(machine)
+    lines = model.responses(limit)
     rows = _housing_rows(machine)
     rates = [1j * line.frequency * (rows @ line.motion) for line in lines]
-    return np.array([line.frequency for line in lines]), np.array(rates).reshape(-1, len(rows))
+    still = [one.rates_between[0] for one in _frozen_lines(model, limit)]
+    frequencies = [np.array([line.frequency for line in lines]), *(frequency for frequency, _ in still)]
+    every = [np.array(rates).reshape(-1, len(rows)), *(part / np.sqrt(len(still)) for _, part in still)]
+    return np.concatenate(frequencies), np.concatenate(every)
+
+
+def _frozen_lines(model: MeshHarmonicModel, limit: float) -> list["LinesOverSpeed"]:
+    """Lines of a machine with turning carriers frozen at places all round; none where no teeth differ.
+
+    Carriers turn slowly beside the lines, which are hundreds for each mesh: the power of a line and its sidebands
+    together is the mean over the places, by Parseval's equation, but for what a resonance rises within m f.
+    """
+    machine = model.machine
+    contacts = machine.system.contacts
+    differing = [n for n in model.loaded if contacts[n].contact.hunting_period > 1 or np.any(contacts[n].errors[:, :2])]
+    if not differing:
+        return []
+    period = 2.0 * np.pi / min(map(abs, machine.system.turning_rates))
+    places = np.arange(_PLACES) * period / _PLACES
+    return [_solved_lines(model.frozen(float(time)), [machine.speed], limit) for time in places]
 
 
 def _housing_rows(machine: CoupledMachine) -> FloatArray:
@@ -126,13 +150,18 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
         Where the machine stands still, a speed is 0 or of the other sense, or directions turn with a carrier: their
         sidebands are not these lines.
     """
-    system, nominal = machine.system, machine.speed
-    if system.turns:
+    if machine.system.turns:
         raise CouplingError("lines over speed: directions turn with a carrier; expected a machine without such")
+    return _solved_lines(MeshHarmonicModel(machine), speeds, limit)
+
+
+def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: float) -> LinesOverSpeed:
+    """Solve as `lines_over_speed` does, the machine of a model whose directions stand."""
+    machine = model.machine
+    system, nominal = machine.system, machine.speed
     ratios = [speed / nominal for speed in speeds] if nominal != 0.0 else []
     if not ratios or min(ratios) <= 0.0:
         raise CouplingError(f"lines over speed: speeds of {list(speeds)} rad/s beside {nominal:g}; expected one sense")
-    model = MeshHarmonicModel(machine)
     highest = limit / min(ratios)
     meshes = model.varying_meshes(highest)
     further = model.loads(highest + max((mesh.rate * mesh.reach for mesh in meshes), default=0.0))

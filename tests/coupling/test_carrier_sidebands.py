@@ -11,6 +11,7 @@ from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import unbalance_responses
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.linear.lines_over_speed import housing_rates, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, ResponseParts, sum_by_order
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.frames import orders_and_quarter_turn
@@ -386,3 +387,37 @@ def test_far_sidebands_are_named_by_the_nearest_harmonic() -> None:
     # Where turns cannot be told apart, none is named.
     (vague,) = line_names(machine, [103 * turn], 0.45 * turn)
     assert vague.kind == "other"
+
+
+def test_level_has_the_power_of_what_differs_between_teeth() -> None:
+    """Runout of all gears, beside the harmonic balance of each line: carriers frozen all round leave out m f, up to a dB."""
+    even = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL)
+    rng, contacts = np.random.default_rng(0), []
+    for contact in even.system.contacts:
+        rate = 2.0 * np.pi * abs(contact.mesh_frequency)
+        turns = [k * rate / teeth for teeth in TEETH for k in (3, 11, 17, 22, 24, 28, 33, 40)]
+        amplitudes, angles = rng.uniform(3e-7, 1e-6, len(turns)), rng.uniform(0.0, 2.0 * np.pi, len(turns))
+        contacts.append(replace(contact, errors=np.column_stack([amplitudes, turns, angles])))
+    machine = replace(even, system=replace(even.system, contacts=tuple(contacts)))
+    model, rows = MeshHarmonicModel(machine), np.array(list(machine.sensor_rows.values()))
+    by_line: dict[float, ComplexArray] = {}
+    for rate in {round(rate, 6) for contact in contacts for rate in contact.errors[:, 1].tolist()}:
+        loads = []
+        for number, contact in enumerate(contacts):
+            for amplitude, turns, angle in contact.errors[np.abs(contact.errors[:, 1] - rate) < 1e-3].tolist():
+                law = model.contact.stiffness[number] + 1j * turns * model.contact.damping[number]
+                loads.append(model.turning.model.force_along(number, law * amplitude * np.exp(1j * angle)))
+        for order, motion in model.turning.respond(rate, [sum_by_order(loads)]).items():
+            w = rate + model.turning.model.shift(order)
+            moved = -(w**2) * (rows @ motion[0])
+            by_line[round(abs(w), 3)] = by_line.get(round(abs(w), 3), 0.0) + (moved if w > 0.0 else moved.conj())
+    power = [np.abs(moved) ** 2 for w, moved in by_line.items() if w <= LIMIT]
+    power += [np.abs(line.frequency**2 * rows @ line.motion) ** 2 for line in model.parts(LIMIT)]
+    expected = np.sqrt(0.5 * np.sum(power, axis=0))
+    found = sensor_rms(machine, LIMIT)
+    np.testing.assert_allclose(found, expected, rtol=0.12)
+    assert np.all(found > 3.0 * sensor_rms(even, LIMIT))
+    # The housing's coordinates are those of the sensors, but for the size of their shapes.
+    frequency, rates = housing_rates(machine, LIMIT)
+    of_rates = np.sqrt(0.5 * np.sum(np.abs(frequency[:, None] * rates) ** 2, axis=0))
+    np.testing.assert_allclose(0.2 * of_rates, found, rtol=1e-9)
