@@ -65,8 +65,9 @@ default: a shorter one is solved within seconds."""
 _PHASES = 8192  # least number of phases at which the neglected force is evaluated
 _PHASES_OF_A_MESH = 16  # of these in each mesh cycle of a hunting period
 _MOST_PHASES = 2**18
-_LONG_RECORD = 2**15  # samples of the neglected force where there is no common period
-_SAMPLES = 32  # of the neglected force in a cycle of the fastest mesh
+_MOST_CYCLES = 2**14  # longest common period over which the neglected force is solved, in cycles of the fastest mesh
+_MANY_CYCLES = 2**9  # record of the neglected force where there is none
+_SAMPLES = 64  # of the neglected force in such a cycle
 _SPACING = 0.6180339887498949  # sample spacing over the slowest period: its multiples cover all phases evenly
 _SAME_FREQUENCY = 1e-9
 
@@ -179,15 +180,21 @@ class SuperposedResponse:
     def neglected_spectrum(self) -> Spectrum:
         """Spectrum of the neglected force of each contact, shape (c, m) [N].
 
-        Its lines are exact over the common period, unless this is longer than the record or there is none.
+        Its lines are of the common period, or of many cycles where this is too long or there is none.
         """
-        rate = _SAMPLES * max(abs(contact.mesh_frequency) for contact in self.system.contacts)
+        fastest = max(abs(contact.mesh_frequency) for contact in self.system.contacts)
         try:
-            count = min(round(rate * common_period(self.system)), _MOST_PHASES)
+            cycles = round(fastest * common_period(self.system))
         except CouplingError:
-            count = _LONG_RECORD
-        parts = [self._forces(piece) for piece in np.array_split(np.arange(count) / rate, -(-count // _PHASES))]
-        return amplitude_spectrum(np.concatenate([force - assumed for _, force, assumed in parts]).T, 1.0 / rate)
+            cycles = 0
+        if not 0 < cycles <= _MOST_CYCLES:
+            cycles = _MANY_CYCLES
+        count = cycles * min(_SAMPLES, _MOST_PHASES // cycles)
+        times = cycles / fastest * (np.arange(count) + 0.5) / count
+        parts = [self._forces(piece) for piece in np.array_split(times, -(-count // _PHASES))]
+        neglected = np.concatenate([force - assumed for _, force, assumed in parts]).T
+        spectrum = amplitude_spectrum(neglected, cycles / fastest / count)
+        return replace(spectrum, phase=spectrum.phase - 2.0 * np.pi * spectrum.frequencies * times[0])
 
     @property
     def mean_force(self) -> FloatArray:
