@@ -25,6 +25,7 @@ from gearwhine.coupling.periodic.superposition import (
     SuperposedResponse,
     common_cycles,
     excitation_groups,
+    hunting_period,
     superposed_response,
 )
 from gearwhine.coupling.signals.line_names import line_names
@@ -45,7 +46,7 @@ _SHARED_LINE = 1e-9  # relative distance of lines of several motions that are on
 _NAMED_LINE_DISTANCE = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
 _DOUBTFUL_FORCE_SHARE = 0.1  # part of a mesh's varying force that may be neglected without a warning
 _DOUBTFUL_SENSOR_SHARE = 0.3  # part of a sensor's rms that this may make: 5 % of the rms where phases are random
-_INSTEAD = "hold them against run, or use --exact"
+_INSTEAD = "hold them against run or steady --exact"
 
 _NARROW_RANGE_SHARE = 0.01  # width over that of the whole range below which ranges are told together
 _WHY_NOT_SETTLED = "the motion settles at none of the points there; `run` shows what the machine does"
@@ -228,7 +229,7 @@ class SolvedSteady:
         """Mesh cycles after which the same teeth meet, where motions by unequal teeth of each gear are superposed."""
         if not any(motion.group.weight < 0 for motion in self.motions):
             return None
-        return max(self.machine.system.contacts[i].contact.hunting_period for i in self.machine.loaded_contacts)
+        return hunting_period(self.machine.system)
 
     def bearing_parts(self, motion: SteadyMotion | None = None) -> list[tuple[str, SignalParts]]:
         """Mean and alternating part of each bearing's load in one motion, or in all that are superposed.
@@ -373,7 +374,7 @@ def solve_steady(
         return SolvedSteady(machine, (_motion(machine, speed, settled),))
     longest = (1.0, 1.0) if superpose else (LONGEST_COMMON_PERIOD, LONGEST_HUNTING_PERIOD)
     groups = () if exact or turning else excitation_groups(machine.system, *longest)
-    hunting = max((contact.contact.hunting_period for contact in machine.system.contacts if contact.loaded), default=1)
+    hunting = hunting_period(machine.system)
     if len(groups) > 1 and over_speed is not None:
         cycles = max(common_cycles(machine.system), hunting)
         raise CouplingError(f"expected {_NO_BRANCH.format(_period_in_words(cycles))}")

@@ -32,6 +32,7 @@ period of K gears is a motion of its own, and q_a counts 1 - K times. The sum le
 of the second order: lines at k1/z1 + k2/z2 of the mesh frequency, by teeth of both gears together.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -146,8 +147,7 @@ class SuperposedResponse:
     def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compression, force by the law and assumed force over the phases of all groups, shape (s, c) each."""
         slowest = max(motion.response.period for motion in self.motions)
-        hunting = [self.system.contacts[i].contact.hunting_period for one in self.motions for i in one.group.meshes]
-        count = min(max(_PHASES, _PHASES_OF_A_MESH * max(hunting, default=0)), _MOST_PHASES)
+        count = min(max(_PHASES, _PHASES_OF_A_MESH * hunting_period(self.system)), _MOST_PHASES)
         times = slowest * _SPACING * np.arange(count, dtype=np.float64)
         parts = [self._forces(piece) for piece in np.array_split(times, -(-count // _PHASES))]
         compression, force, assumed = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -242,6 +242,15 @@ def common_cycles(system: CoupledSystem) -> float:
         return np.inf
 
 
+def hunting_period(system: CoupledSystem) -> int:
+    """Mesh cycles after which the same teeth meet in all meshes that share a frequency: the most of any frequency."""
+    periods = dict[str, int]()
+    for contact in (one for one in system.contacts if one.loaded):
+        rate = f"{abs(contact.mesh_frequency):.9g}"
+        periods[rate] = math.lcm(periods.get(rate, 1), contact.contact.hunting_period)
+    return max(periods.values(), default=1)
+
+
 def excitation_groups(
     system: CoupledSystem,
     longest: float = LONGEST_COMMON_PERIOD,
@@ -261,11 +270,10 @@ def excitation_groups(
     longest : float
         Largest number of cycles of the fastest excitation in a group's common period.
     longest_hunting : float
-        Largest number of mesh cycles in a hunting period that is one group.
+        Largest number of mesh cycles in the hunting period of meshes that share their frequency that is one group.
     """
-    hunting = max((one.contact.hunting_period for one in system.contacts if one.loaded and _divides(one)), default=1)
     groups: list[ExcitationGroup] = []
-    by_mesh = _with_teeth_of(system, 0.0) if hunting > longest_hunting else system
+    by_mesh = _with_teeth_of(system, 0.0) if hunting_period(system) > longest_hunting else system
     meshes, loads = _atoms(system)
     for atom in meshes:
         _join(by_mesh, groups, atom, longest)

@@ -22,6 +22,7 @@ from gearwhine.coupling.gears import (
 )
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.periodic import excitation_groups, periodic_response, superposed_response
 from gearwhine.coupling.time.transient import TransientResult
 from gearwhine.numerics.arrays import FloatArray
@@ -168,6 +169,32 @@ def test_equilibrium_is_found_however_far_the_teeth_stand_apart(gap: float) -> N
         for system in (system_of(contact, 50.0), system_of(moved, 50.0))
     )
     assert there == pytest.approx(here + gap, rel=1e-9)
+
+
+def test_meshes_of_an_idler_have_a_motion_for_each_gear_and_loads_go_with_their_gear() -> None:
+    """12, 18 and 13 teeth: three periods of mesh cycles; a load of the mesh is in all motions, whose weights make 1."""
+    first = contact_of(PotentialEnergyStiffness(), 0.1)
+    gears = [
+        Gear(str(teeth), teeth, 4e-3, math.radians(25.0), 12e-3, pitch_deviations=(1e-6, *(0.0,) * (teeth - 1)))
+        for teeth in (18, 13)
+    ]
+    second = tooth_contact(GearPairGeometry(*gears), PotentialEnergyStiffness())
+    system = system_of(first, 800.0)
+    (mesh,) = system.contacts
+    unit = np.ones(1, dtype=np.complex128)
+    rates = {"mesh": 800.0, "idler": 800.0 / 18.0, "other": 321.0}
+    system = replace(
+        system,
+        contacts=(replace(mesh, name="a -> b"), replace(mesh, name="b -> c", contact=second)),
+        harmonic_loads=tuple(HarmonicLoad(2.0 * math.pi * rate, unit) for rate in rates.values()),
+    )
+    assert [one.contact.hunting_period for one in system.contacts] == [36, 234]
+    groups = excitation_groups(system)  # together 468 mesh cycles
+    assert [one.weight for one in groups] == [-2, 1, 1, 1, 1]
+    assert [round(800.0 / one.turn) if one.turn else one.turn for one in groups] == [0.0, 12, 13, 18, None]
+    loads = [[round(rate / (2.0 * math.pi), 3) for rate in one.frequencies] for one in groups]
+    assert loads == [[800.0], [800.0], [800.0], [800.0, 44.444], [321.0]]
+    assert [one.turn for one in excitation_groups(system, longest_hunting=468)] == [None, None]
 
 
 def superposed_and_whole(scale: float, relief: float) -> tuple[FloatArray, FloatArray, float]:
