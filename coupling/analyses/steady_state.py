@@ -501,7 +501,8 @@ def _neglected_acceleration(machine: CoupledMachine, superposed: SuperposedRespo
     for number, contact in enumerate(system.contacts):
         if contact.loaded:
             moved += damped.answers(rows, system.contact_directions[:, number], w) * spectrum.lines[number, inside]
-    return dict(zip(machine.sensor_rows, np.linalg.norm(w**2 * moved, axis=1) / np.sqrt(2.0), strict=True))
+    rms = np.linalg.norm(w**2 * moved, axis=1) / np.sqrt(2.0)
+    return dict(zip(machine.sensor_rows, rms.tolist(), strict=True))
 
 
 def _motion(
