@@ -230,7 +230,13 @@ class Study(StudiedMachine):
         return system_result(machine, solved, self.progress)
 
     def steady(
-        self, *, curve: bool = False, down: bool = False, points: Annotated[int, POINTS] = 100, exact: bool = False
+        self,
+        *,
+        curve: bool = False,
+        down: bool = False,
+        points: Annotated[int, POINTS] = 100,
+        exact: bool = False,
+        superpose: bool = False,
     ) -> "Result[SolvedSteady]":
         """Periodic steady state by shooting, its stability by Floquet multipliers, and its continuation over speed.
 
@@ -247,7 +253,10 @@ class Study(StudiedMachine):
             Number of points on a straight part of the curve, from 2 to 2000.
         exact : bool
             Solve over the common period of all excitations, however long; by default excitations without a short common
-            period, such as the meshes of several stages, are solved one by one and superposed.
+            period, such as the meshes of several stages and the unequal teeth of two gears whose hunting period is
+            longer than 300 mesh cycles, are solved one by one and superposed.
+        superpose : bool
+            Superpose them however short the common period is; not together with ``exact``.
 
         Raises
         ------
@@ -263,7 +272,9 @@ class Study(StudiedMachine):
         self.require("steady")
         machine = self.under_load()
         speeds = self._branch_speeds(down=down) if curve or down else None
-        solved = solve_steady(machine.coupled, self.progress, over_speed=speeds, points=points, exact=exact)
+        solved = solve_steady(
+            machine.coupled, self.progress, over_speed=speeds, points=points, exact=exact, superpose=superpose
+        )
         if solved.curve is not None:
             solved = replace(solved, assumed_damping=self._assumed_mesh_damping())
         return steady_result(machine, solved, self.progress)

@@ -1,7 +1,7 @@
 """Steady state of a machine: the periodic motion under its excitation, and the branch of such motions over speed."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
 from gearwhine.coupling.periodic.continuation import ResponseCurve, response_curve
@@ -18,14 +19,18 @@ from gearwhine.coupling.periodic.settled_curve import settled_curve
 from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response
 from gearwhine.coupling.periodic.superposition import (
+    LONGEST_COMMON_PERIOD,
+    LONGEST_HUNTING_PERIOD,
     ExcitationGroup,
     SuperposedResponse,
     common_cycles,
     excitation_groups,
+    hunting_period,
     superposed_response,
 )
 from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, amplitude_spectrum, signal_parts
+from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices
 from gearwhine.coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
 from gearwhine.coupling.time.histories import histories as coupled_histories
 from gearwhine.numerics.progress import Progress, silent
@@ -35,12 +40,13 @@ FloatArray = npt.NDArray[np.float64]
 
 _RPM = 60.0 / (2.0 * np.pi)
 _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of interest: little folds back below it
-_LEAST_SAMPLES = 512
+_LEAST_SAMPLES, _LEAST_OF_A_CYCLE = 512, 64  # of a period, and of a part of it that motions share
 _HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
-_LINES = 20  # reported lines of each signal
-_LONG_HUNTING = 300  # mesh periods after which the same teeth meet from which a steady motion takes long
+_SHARED_LINE = 1e-9  # relative distance of lines of several motions that are one
 _NAMED_LINE_DISTANCE = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
 _DOUBTFUL_FORCE_SHARE = 0.1  # part of a mesh's varying force that may be neglected without a warning
+_DOUBTFUL_SENSOR_SHARE = 0.3  # part of a sensor's rms that this may make: 5 % of the rms where phases are random
+_INSTEAD = "hold them against run or steady --exact"
 
 _NARROW_RANGE_SHARE = 0.01  # width over that of the whole range below which ranges are told together
 _WHY_NOT_SETTLED = "the motion settles at none of the points there; `run` shows what the machine does"
@@ -48,6 +54,9 @@ _WHY_NOT = (
     "the branch is lost there and no other start led to a motion; --points 400 takes shorter steps, a narrower [sweep] "
     "more of them, and `run` or `sweep` shows what the machine does there"
 )
+
+REPORTED_LINES = 20
+"""Number of the highest lines of a signal that are reported."""
 
 CURVE_TOLERANCE = 1e-5
 """Relative tolerance of the points of a branch: a tenth of a transient's default."""
@@ -68,6 +77,8 @@ class SteadyMotion:
         Highest frequency that the model carries [Hz].
     excitation : str
         Name of its excitations, where it is one of several superposed motions; empty for the motion under all.
+    group : ExcitationGroup
+        These excitations; with no meshes and loads for the motion under all.
     """
 
     speed: float
@@ -75,29 +86,15 @@ class SteadyMotion:
     histories: Histories
     trusted_limit: float
     excitation: str = ""
+    group: ExcitationGroup = field(default_factory=ExcitationGroup)
 
     def spectrum(self, signal: FloatArray) -> Spectrum:
-        """Lines of a signal of the histories, exact."""
-        return amplitude_spectrum(signal, self.response.period / len(signal))
-
-    @property
-    def reported_lines(self) -> int:
-        """Number of the highest lines of a signal that are reported."""
-        return _LINES
+        """Lines of a signal of the histories, shape (..., s), exact."""
+        return amplitude_spectrum(signal, self.response.period / signal.shape[-1])
 
     def lines(self, signal: FloatArray, limit: float = np.inf) -> list[tuple[float, float, float]]:
-        """Frequencies [Hz], amplitudes and phases [rad] of a signal's highest lines up to a limit [Hz].
-
-        Each is a whole number of times the period's frequency; the phase is that of its cosine at t = 0.
-        """
-        spectrum = self.spectrum(signal)
-        inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit * (1.0 + 1e-9)))
-        highest = inside[np.argsort(-spectrum.amplitude[inside], kind="stable")][:_LINES]
-        return [
-            (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]), float(spectrum.phase[i]))
-            for i in highest
-            if spectrum.amplitude[i] > 0.0
-        ]
+        """Return the highest lines of a signal, multiples of the period's frequency; see :func:`highest_lines`."""
+        return highest_lines(self.spectrum(signal), limit)
 
     def resampled(self, signal: FloatArray, count: int) -> FloatArray:
         """Resample a whole period of a signal to another number of samples, by its own lines."""
@@ -110,6 +107,42 @@ class SteadyMotion:
         """Rms value of each sensor's acceleration up to the trusted limit [m/s²]."""
         signals = self.histories.sensor_acceleration
         return {name: float(self.spectrum(signal).rms(self.trusted_limit)) for name, signal in signals.items()}
+
+
+def highest_lines(spectrum: Spectrum, limit: float = np.inf) -> list[tuple[float, float, float]]:
+    """Frequencies [Hz], amplitudes and phases [rad] of the highest lines up to a limit [Hz], as many as are reported.
+
+    The phase is that of the line's cosine at t = 0.
+    """
+    inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit * (1.0 + 1e-9)))
+    highest = inside[np.argsort(-spectrum.amplitude[inside], kind="stable")][:REPORTED_LINES]
+    return [
+        (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]), float(spectrum.phase[i]))
+        for i in highest
+        if spectrum.amplitude[i] > 0.0
+    ]
+
+
+def spectra_of_sum(motions: Sequence[SteadyMotion], signals: Sequence[FloatArray]) -> list[Spectrum]:
+    """Spectra of a signal, shape (..., s), in motions that are superposed, each line of their sum in one of them.
+
+    A line that several motions have is the sum of their complex amplitudes, each as often as its motion counts, in the
+    spectrum of the first of them; it is 0 in the others.
+    """
+    found: list[Spectrum] = []
+    for motion, signal in zip(motions, signals, strict=True):
+        spectrum = motion.spectrum(signal)
+        lines = motion.group.weight * spectrum.lines
+        for number, (other, before) in enumerate(zip(motions, found, strict=False)):
+            cycles = spectrum.frequencies * other.response.period
+            place = np.round(cycles).astype(np.int64)
+            shared = (place > 0) & (place < before.frequencies.size) & (np.abs(cycles - place) <= _SHARED_LINE * place)
+            together = before.lines
+            together[..., place[shared]] += lines[..., shared]
+            lines[..., shared] = 0.0
+            found[number] = replace(before, amplitude=np.abs(together), phase=np.angle(together))
+        found.append(replace(spectrum, amplitude=np.abs(lines), phase=np.angle(lines)))
+    return found
 
 
 @dataclass(frozen=True)
@@ -169,6 +202,9 @@ class SolvedSteady:
         Loudest point of each sensor on the branch.
     assumed_damping : tuple of str
         Gear pairs whose mesh damping the case leaves to the default.
+    neglected_acceleration : dict of str to float
+        Rms acceleration of each sensor up to the trusted limit by the forces that the sum of motions leaves out, of the
+        machine with the mean mesh stiffness [m/s²]: an estimate of its error.
     """
 
     machine: CoupledMachine
@@ -178,6 +214,7 @@ class SolvedSteady:
     superposed: SuperposedResponse | None = None
     loudest: tuple[LoudestPoint, ...] = ()
     assumed_damping: tuple[str, ...] = ()
+    neglected_acceleration: dict[str, float] = field(default_factory=dict)
 
     @property
     def contact_loss(self) -> FloatArray:
@@ -187,19 +224,46 @@ class SolvedSteady:
         losses += [] if self.curve is None else [self.curve.contact_loss.max(axis=0)]
         return np.asarray(np.max(losses, axis=0))
 
+    @property
+    def hunting_mesh_cycles(self) -> int | None:
+        """Mesh cycles after which the same teeth meet, where motions by unequal teeth of each gear are superposed."""
+        if not any(motion.group.weight < 0 for motion in self.motions):
+            return None
+        return hunting_period(self.machine.system)
+
     def bearing_parts(self, motion: SteadyMotion | None = None) -> list[tuple[str, SignalParts]]:
         """Mean and alternating part of each bearing's load in one motion, or in all that are superposed.
 
         Forces along x, y, z [N] and moments about x, y [N m]; the peak of superposed motions is a bound.
         """
-        motions = self.motions if motion is None else (motion,)
+        if motion is not None or self.superposed is None:
+            histories = (motion or self.motions[0]).histories
+            return [(name, signal_parts(load.T)) for name, load in histories.bearing_load.items()]
+        motions = self.motions
+        weights = np.array([one.group.weight for one in motions], dtype=np.float64)
+        alike = {one.group.meshes: place for place, one in enumerate(motions) if one.group.weight < 0}
         loads = []
         for name in motions[0].histories.bearing_load:
-            parts = [signal_parts(motion.histories.bearing_load[name].T) for motion in motions]
-            # Each group's motion has the mean load; of different frequencies the powers add.
-            mean, rms = np.mean([part.mean for part in parts], axis=0), np.hypot.reduce([part.rms for part in parts])
-            loads.append((name, SignalParts(mean, rms, np.sum([part.peak for part in parts], axis=0))))
+            signals = [np.ascontiguousarray(one.histories.bearing_load[name].T) for one in motions]
+            rms = np.hypot.reduce([spectrum.rms(np.inf) for spectrum in spectra_of_sum(motions, signals)])
+            means = np.array([signal.mean(axis=-1) for signal in signals])
+            # Each group's motion has the mean load.
+            mean = weights @ means - (weights.sum() - 1.0) * means.mean(axis=0)
+            peak = np.zeros(len(mean))
+            for one, signal in zip(motions, signals, strict=True):
+                varying = signal
+                if one.group.meshes in alike and one.group.weight > 0:
+                    cycle = signals[alike[one.group.meshes]]
+                    varying = signal - np.tile(cycle, signal.shape[-1] // cycle.shape[-1])
+                peak += signal_parts(varying).peak
+            loads.append((name, SignalParts(mean, rms, peak)))
         return loads
+
+    def rms_of_sum(self, sensor: str) -> float:
+        """Rms acceleration of a sensor up to the trusted limit in the sum of the motions [m/s²]."""
+        signals = [motion.histories.sensor_acceleration[sensor] for motion in self.motions]
+        limit = self.motions[0].trusted_limit
+        return float(np.hypot.reduce([spectrum.rms(limit) for spectrum in spectra_of_sum(self.motions, signals)]))
 
     def branch_warnings(self) -> list[dict[str, Any]]:
         """Warnings of every range of speeds over which no motion was followed; narrow ones together."""
@@ -242,12 +306,18 @@ class SolvedSteady:
                 text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
             else:
                 continue
-            message = (
-                f"superposed motions are doubtful at {contact.name}: {text}; hold them against run, or use --exact"
-            )
+            message = f"superposed motions are doubtful at {contact.name}: {text}; {_INSTEAD}"
             warnings.append(
                 warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss)
             )
+        for name, rms in self.neglected_acceleration.items():
+            part = rms / max(self.rms_of_sum(name), np.finfo(np.float64).tiny)
+            if part > _DOUBTFUL_SENSOR_SHARE:
+                message = (
+                    f"superposed motions are doubtful at sensor {name}: what the sum leaves out makes some "
+                    f"{100.0 * part:.2g} % of its acceleration, rms; {_INSTEAD}"
+                )
+                warnings.append(warning("superposition", message, sensor=name, neglected_part=part))
         return warnings
 
 
@@ -258,6 +328,7 @@ def solve_steady(
     over_speed: tuple[float, float] | None = None,
     points: int = 100,
     exact: bool = False,
+    superpose: bool = False,
 ) -> SolvedSteady:
     """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
 
@@ -265,7 +336,8 @@ def solve_steady(
     :mod:`gearwhine.coupling.periodic.settling`; over speed it is settled anew at each of the points.
 
     If the common period of all excitations is long, such as that of hunting teeth, each group of excitations has its
-    own motion and these are superposed, see :mod:`gearwhine.coupling.periodic.superposition`.
+    own motion and these are superposed, see :mod:`gearwhine.coupling.periodic.superposition`. Beyond
+    ``LONGEST_HUNTING_PERIOD`` mesh cycles the teeth of each gear of a pair that differ are such groups, too.
 
     Parameters
     ----------
@@ -277,15 +349,19 @@ def solve_steady(
         Number of points on a straight branch.
     exact : bool
         Whether the common period is solved however long it is.
+    superpose : bool
+        Whether motions are superposed however short it is, where there are several.
 
     Raises
     ------
     gearwhine.coupling.CouplingError
-        Where the machine stands still, the excitation does not repeat, or a branch is asked for of motions that are
-        superposed.
+        Where the machine stands still, the excitation does not repeat, a branch is asked for of motions that are
+        superposed, or both ``exact`` and ``superpose`` are given.
     gearwhine.coupling.PeriodicError
         Where no motion is found. A branch that is lost on its way is given as far as it was followed.
     """
+    if exact and superpose:
+        raise CouplingError("exact and superpose together; expected one of them, or neither: the common period decides")
     speed = machine.speed
     if speed == 0.0:
         raise CouplingError("a speed of 0; expected a speed: what stands still has no motion that repeats")
@@ -296,15 +372,16 @@ def solve_steady(
             machine.system, progress=lambda fraction: progress("settling in a motion that repeats", fraction)
         )
         return SolvedSteady(machine, (_motion(machine, speed, settled),))
-    groups = () if exact or turning else excitation_groups(machine.system)
+    longest = (1.0, 1.0) if superpose else (LONGEST_COMMON_PERIOD, LONGEST_HUNTING_PERIOD)
+    groups = () if exact or turning else excitation_groups(machine.system, *longest)
+    hunting = hunting_period(machine.system)
     if len(groups) > 1 and over_speed is not None:
-        cycles = common_cycles(machine.system)
+        cycles = max(common_cycles(machine.system), hunting)
         raise CouplingError(f"expected {_NO_BRANCH.format(_period_in_words(cycles))}")
-    hunting = max((contact.contact.hunting_period for contact in machine.system.contacts if contact.loaded), default=1)
-    if hunting > _LONG_HUNTING:
-        progress(f"a motion over {hunting} mesh periods, after which the same teeth meet: `run` takes less time")
     if len(groups) > 1:
         return _superposed(machine, speed, groups, progress)
+    if hunting > LONGEST_HUNTING_PERIOD:
+        progress(f"a motion over {hunting} mesh cycles, after which the same teeth meet: `run` takes less time")
     if over_speed is None:
         response = periodic_response(machine.system)
         return SolvedSteady(machine, (_motion(machine, speed, response),))
@@ -393,23 +470,55 @@ def _superposed(
 ) -> SolvedSteady:
     progress(f"the motions of {len(groups)} groups of excitations without a short common period")
     superposed, loads = superposed_response(machine.system, groups), machine.loads
+    cycles = {one.group.meshes: one.response.period for one in superposed.motions if one.group.weight < 0}
     motions = tuple(
         replace(
-            _motion(replace(machine, loads=of_group), speed, one.response),
+            _motion(replace(machine, loads=of_group), speed, one.response, cycles.get(one.group.meshes)),
             excitation=one.name,
+            group=one.group,
         )
         for one in superposed.motions
         for of_group in [loads if loads.base is None else replace(loads, base=one.group.part_of(loads.base))]
     )
-    return SolvedSteady(machine, motions, superposed=superposed)
+    neglected = _neglected_acceleration(machine, superposed, motions[0].trusted_limit)
+    return SolvedSteady(machine, motions, superposed=superposed, neglected_acceleration=neglected)
 
 
-def _motion(machine: CoupledMachine, speed: float, response: PeriodicResponse | SettledMotion) -> SteadyMotion:
-    """Motion of a machine at its speed; it carries some harmonics of the meshes where no housing limits the model."""
+def _neglected_acceleration(machine: CoupledMachine, superposed: SuperposedResponse, limit: float) -> dict[str, float]:
+    """Rms acceleration of each sensor up to a limit [Hz] by the neglected forces, at the mean mesh stiffness [m/s²]."""
+    rows = transient_outputs(machine).acceleration
+    if not len(rows) or not any(contact.mesh_frequency for contact in machine.system.contacts):
+        return {}
+    spectrum, system = superposed.neglected_spectrum, machine.system
+    state = ContactState(
+        np.array([mean.stiffness for mean in superposed.means]),
+        np.array([contact.contact.damping if contact.loaded else 0.0 for contact in system.contacts]),
+    )
+    damped = DampedMachine(*linear_matrices(system, state))
+    inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
+    w = 2.0 * np.pi * spectrum.frequencies[inside]
+    moved = np.zeros((len(rows), w.size), dtype=np.complex128)
+    for number, contact in enumerate(system.contacts):
+        if contact.loaded:
+            moved += damped.answers(rows, system.contact_directions[:, number], w) * spectrum.lines[number, inside]
+    rms = np.linalg.norm(w**2 * moved, axis=1) / np.sqrt(2.0)
+    return dict(zip(machine.sensor_rows, rms.tolist(), strict=True))
+
+
+def _motion(
+    machine: CoupledMachine, speed: float, response: PeriodicResponse | SettledMotion, cycle: float | None = None
+) -> SteadyMotion:
+    """Motion of a machine at its speed; it carries some harmonics of the meshes where no housing limits the model.
+
+    Motions that share a cycle [s], a part of their periods, have as many samples in each.
+    """
     limit = _HARMONICS * max((abs(contact.mesh_frequency) for contact in machine.system.contacts), default=250.0)
     if machine.housing is not None and machine.housing.complete_below is not None:
         limit = machine.housing.complete_below / (2.0 * np.pi)
     rate = max(_OVERSAMPLING * limit, least_sampling_rate(response.system)[0])
-    samples = 2 ** math.ceil(math.log2(max(rate * response.period, _LEAST_SAMPLES)))
+    if cycle is None:
+        samples = 2 ** math.ceil(math.log2(max(rate * response.period, _LEAST_SAMPLES)))
+    else:
+        samples = 2 ** math.ceil(math.log2(max(rate * cycle, _LEAST_OF_A_CYCLE))) * round(response.period / cycle)
     record = response.record(transient_outputs(machine), samples)
     return SteadyMotion(speed, response, coupled_histories(machine, record), limit)

@@ -20,8 +20,19 @@ The sum satisfies every linear part of the equations of motion exactly. What it 
 
 the law at the superposed motion less the forces that were assumed. It is evaluated over all phases, and is the measure
 of what is neglected: combination lines at sums and differences of the groups' frequencies.
+
+A mesh whose gears both have teeth that differ repeats after their hunting period alone, lcm(z1, z2) mesh cycles. To the
+first order in what differs its motion is
+
+    q(t) = q_1(t) + q_2(t) - q_a(t),
+
+the motions with the differences of the pinion's teeth alone (z1 mesh cycles), of the wheel's alone (z2), and of neither
+(their greatest common divisor, mostly one cycle), each with the whole law. In meshes that share their frequency each
+period of K gears is a motion of its own, and q_a counts 1 - K times. The sum leaves the same force r_h as others, here
+of the second order: lines at k1/z1 + k2/z2 of the mesh frequency, by teeth of both gears together.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -38,6 +49,7 @@ from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoa
 from gearwhine.coupling.machine.driving_frequencies import driving_frequencies
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.shooting import common_period, periodic_response
+from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_meshes
 from gearwhine.coupling.time.step_matrices import contact_arrays
 
@@ -47,7 +59,16 @@ LONGEST_COMMON_PERIOD = 40
 """Number of cycles of the fastest mesh in a common period beyond which excitations are superposed by default: the cost
 of a periodic motion is proportional to it, and most pairs' hunting periods are longer."""
 
-_PHASES = 8192  # number of phases at which the neglected force is evaluated
+LONGEST_HUNTING_PERIOD = 300
+"""Number of mesh cycles after which the same teeth meet beyond which the gears' differences of teeth are superposed by
+default: a shorter one is solved within seconds."""
+
+_PHASES = 8192  # least number of phases at which the neglected force is evaluated
+_PHASES_OF_A_MESH = 16  # of these in each mesh cycle of a hunting period
+_MOST_PHASES = 2**18
+_MOST_CYCLES = 2**14  # longest common period over which the neglected force is solved, in cycles of the fastest mesh
+_MANY_CYCLES = 2**9  # record of the neglected force where there is none
+_SAMPLES = 64  # of the neglected force in such a cycle
 _SPACING = 0.6180339887498949  # sample spacing over the slowest period: its multiples cover all phases evenly
 _SAME_FREQUENCY = 1e-9
 
@@ -62,10 +83,16 @@ class ExcitationGroup:
         Numbers of the drive flanks' contacts in the system; their back flanks belong to them.
     frequencies : tuple of float
         Circular frequencies of harmonic loads and runout errors [rad/s].
+    turn : float or None
+        Turns in a second of the gears whose teeth alone differ in this motion [Hz], 0 for none; None where all do.
+    weight : int
+        Number of times that the motion counts in the sum.
     """
 
     meshes: tuple[int, ...] = ()
     frequencies: tuple[float, ...] = ()
+    turn: float | None = None
+    weight: int = 1
 
     def part_of(self, base: BaseMotion) -> BaseMotion:
         """Return the harmonics of a base's motion that are excitations of this group."""
@@ -119,28 +146,55 @@ class SuperposedResponse:
     @cached_property
     def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compression, force by the law and assumed force over the phases of all groups, shape (s, c) each."""
+        slowest = max(motion.response.period for motion in self.motions)
+        count = min(max(_PHASES, _PHASES_OF_A_MESH * hunting_period(self.system)), _MOST_PHASES)
+        times = slowest * _SPACING * np.arange(count, dtype=np.float64)
+        parts = [self._forces(piece) for piece in np.array_split(times, -(-count // _PHASES))]
+        compression, force, assumed = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return compression, force, assumed
+
+    def _forces(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Compression, force by the law and assumed force at times [s], shape (t, c) each."""
         from gearwhine.coupling.collocation.arrays import element_work
         from gearwhine.coupling.collocation.integration_kernels import forces_at
 
-        slowest = max(motion.response.period for motion in self.motions)
-        times = slowest * _SPACING * np.arange(_PHASES, dtype=np.float64)
         at_rest = self.system.contact_directions.T @ self.rest
         contacts = self.system.contacts
-        compression = np.tile(at_rest - [contact.clearance for contact in contacts], (_PHASES, 1))
-        rate = np.zeros((_PHASES, len(contacts)))
-        assumed = np.tile([mean.force for mean in self.means], (_PHASES, 1))
+        compression = np.tile(at_rest - [contact.clearance for contact in contacts], (len(times), 1))
+        rate = np.zeros((len(times), len(contacts)))
+        assumed = np.tile([mean.force for mean in self.means], (len(times), 1))
         mean_force = np.array([mean.force for mean in self.means])
         for motion in self.motions:
-            response = motion.response
+            response, weight = motion.response, motion.group.weight
             delta, speed, force = response.contacts_at(np.mod(times, response.period))
             clearance = np.array([contact.clearance for contact in response.system.contacts])
-            compression = compression + delta - (at_rest - clearance)
-            rate = rate + speed
-            assumed += force - mean_force
+            compression = compression + weight * (delta - (at_rest - clearance))
+            rate = rate + weight * speed
+            assumed += weight * (force - mean_force)
         work = element_work(1, 1, len(contacts))
-        law_force = np.zeros((_PHASES, len(contacts)))
+        law_force = np.zeros((len(times), len(contacts)))
         forces_at(contact_arrays(self.system), times, compression, rate, work, law_force)
         return compression, law_force, assumed
+
+    @cached_property
+    def neglected_spectrum(self) -> Spectrum:
+        """Spectrum of the neglected force of each contact, shape (c, m) [N].
+
+        Its lines are of the common period, or of many cycles where this is too long or there is none.
+        """
+        fastest = max(abs(contact.mesh_frequency) for contact in self.system.contacts)
+        try:
+            cycles = round(fastest * common_period(self.system))
+        except CouplingError:
+            cycles = 0
+        if not 0 < cycles <= _MOST_CYCLES:
+            cycles = _MANY_CYCLES
+        count = cycles * min(_SAMPLES, _MOST_PHASES // cycles)
+        times = cycles / fastest * (np.arange(count) + 0.5) / count
+        parts = [self._forces(piece) for piece in np.array_split(times, -(-count // _PHASES))]
+        neglected = np.concatenate([force - assumed for _, force, assumed in parts]).T
+        spectrum = amplitude_spectrum(neglected, cycles / fastest / count)
+        return replace(spectrum, phase=spectrum.phase - 2.0 * np.pi * spectrum.frequencies * times[0])
 
     @property
     def mean_force(self) -> FloatArray:
@@ -188,30 +242,109 @@ def common_cycles(system: CoupledSystem) -> float:
         return np.inf
 
 
-def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PERIOD) -> tuple[ExcitationGroup, ...]:
+def hunting_period(system: CoupledSystem) -> int:
+    """Mesh cycles after which the same teeth meet in all meshes that share a frequency: the most of any frequency."""
+    periods = dict[str, int]()
+    for contact in (one for one in system.contacts if one.loaded):
+        rate = f"{abs(contact.mesh_frequency):.9g}"
+        periods[rate] = math.lcm(periods.get(rate, 1), contact.contact.hunting_period)
+    return max(periods.values(), default=1)
+
+
+def excitation_groups(
+    system: CoupledSystem,
+    longest: float = LONGEST_COMMON_PERIOD,
+    longest_hunting: float = LONGEST_HUNTING_PERIOD,
+) -> tuple[ExcitationGroup, ...]:
     """Group excitations whose common period holds at most a number of the fastest one's cycles.
 
     Meshes are grouped first, the fastest first, then loads and runout errors; each joins the group with which its
     common period is the shortest, or begins one. What repeats within a group's own period joins it however long that
     is: the load shuttling of a mesh whose teeth are not alike adds to its lines with their phases. Constant loads are
-    in none.
+    in none. Where a hunting period is too long, meshes are grouped as with teeth that are alike, and the differences of
+    teeth are groups by the turns of their gears.
 
     Parameters
     ----------
     system : CoupledSystem
     longest : float
         Largest number of cycles of the fastest excitation in a group's common period.
+    longest_hunting : float
+        Largest number of mesh cycles in the hunting period of meshes that share their frequency that is one group.
     """
     groups: list[ExcitationGroup] = []
-    for atom in _atoms(system):
-        joined = [ExcitationGroup(group.meshes + atom.meshes, group.frequencies + atom.frequencies) for group in groups]
-        cycles = [common_cycles(_driven_by(system, group)) for group in joined]
-        best = int(np.argmin(cycles)) if cycles else -1
-        if best >= 0 and (cycles[best] <= longest or _repeats_within(system, groups[best], joined[best])):
-            groups[best] = joined[best]
-        else:
-            groups.append(atom)
+    by_mesh = _with_teeth_of(system, 0.0) if hunting_period(system) > longest_hunting else system
+    meshes, loads = _atoms(system)
+    for atom in meshes:
+        _join(by_mesh, groups, atom, longest)
+    if by_mesh is not system:
+        groups = [part for group in groups for part in _by_turns(system, group)]
+    for atom in loads:
+        _join(system, groups, atom, longest)
     return tuple(groups)
+
+
+def _join(system: CoupledSystem, groups: list[ExcitationGroup], atom: ExcitationGroup, longest: float) -> None:
+    """Let an excitation join the group with which its common period is the shortest, or begin a group."""
+    joined = [
+        replace(group, meshes=group.meshes + atom.meshes, frequencies=group.frequencies + atom.frequencies)
+        for group in groups
+    ]
+    for number, group in enumerate(groups):
+        if group.weight < 0 and _repeats_within(system, group, joined[number]):
+            # Of teeth that are alike: it is in every motion of these meshes, whose weights add up to one.
+            groups[:] = [new if old.meshes == group.meshes else old for old, new in zip(groups, joined, strict=True)]
+            return
+    cycles = [
+        common_cycles(_driven_by(system, one)) if group.weight > 0 else np.inf
+        for group, one in zip(groups, joined, strict=True)
+    ]
+    best = int(np.argmin(cycles)) if cycles else -1
+    if best >= 0 and (cycles[best] <= longest or _repeats_within(system, groups[best], joined[best])):
+        groups[best] = joined[best]
+    else:
+        groups.append(atom)
+
+
+def _by_turns(system: CoupledSystem, group: ExcitationGroup) -> list[ExcitationGroup]:
+    """Divide a group of meshes by the turns of gears whose teeth differ, the motion of no such gear with them."""
+    turns: list[float] = []
+    for contact in (system.contacts[i] for i in group.meshes):
+        common = contact.contact.teeth_of().hunting_period
+        for side in ("driver", "driven"):
+            turn = _turns_of(contact)[side]
+            if contact.contact.teeth_of(**{side: True}).hunting_period > common and not _among(turn, turns):
+                turns.append(turn)
+    if len(turns) < 2:
+        return [group]
+    parts = [replace(group, turn=turn) for turn in sorted(turns, reverse=True)]
+    return [replace(group, turn=0.0, weight=1 - len(turns)), *parts]
+
+
+def _divides(contact: ContactConnector) -> bool:
+    """Whether the teeth of the gears are known apart."""
+    return all(contact.contact.tooth_counts) and contact.mesh_frequency != 0.0
+
+
+def _turns_of(contact: ContactConnector) -> dict[str, float]:
+    """Return the turns in a second of driver and driven gear against the mesh [Hz]; zeros where they are not known."""
+    rate = abs(contact.mesh_frequency)
+    return {
+        side: rate / count if count else 0.0
+        for side, count in zip(("driver", "driven"), contact.contact.tooth_counts, strict=True)
+    }
+
+
+def _with_teeth_of(system: CoupledSystem, turn: float | None) -> CoupledSystem:
+    """Return the system in which only the teeth of gears differ that make some turns in a second [Hz]; None: all."""
+    return replace(system, contacts=tuple(_teeth_of(contact, turn) for contact in system.contacts))
+
+
+def _teeth_of(contact: ContactConnector, turn: float | None) -> ContactConnector:
+    if turn is None or not _divides(contact):
+        return contact
+    sides = {side: turn > 0.0 and _among(one, [turn]) for side, one in _turns_of(contact).items()}
+    return replace(contact, contact=contact.contact.teeth_of(**sides))
 
 
 def _repeats_within(system: CoupledSystem, group: ExcitationGroup, joined: ExcitationGroup) -> bool:
@@ -250,8 +383,12 @@ def superposed_response(
     chosen = excitation_groups(system) if groups is None else tuple(groups)
     if not chosen:
         common_period(system)  # says that nothing varies
+    # Means of the whole hunting period are those of teeth that are alike, to the first order.
+    divided = any(group.turn is not None for group in chosen)
     means = []
-    for contact, mean in zip(system.contacts, mean_meshes(system), strict=True):
+    for contact, mean in zip(
+        system.contacts, mean_meshes(_with_teeth_of(system, 0.0 if divided else None)), strict=True
+    ):
         if contact.loaded and (mean is None or mean.force <= 0.0):
             raise PeriodicError(
                 f"mesh {contact.name!r} carries no mean force, so its flanks part and it is not linear about a mean; "
@@ -268,8 +405,8 @@ def superposed_response(
     return SuperposedResponse(system, tuple(motions), tuple(means), rest)
 
 
-def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
-    """Each varying mesh, the fastest first, then each frequency of loads and runout errors, the highest first."""
+def _atoms(system: CoupledSystem) -> tuple[list[ExcitationGroup], list[ExcitationGroup]]:
+    """Each varying mesh, the fastest first; and each frequency of loads and runout errors, the highest first."""
     loaded = [i for i, contact in enumerate(system.contacts) if contact.loaded]
     meshes = [i for i in loaded if driving_frequencies(_driven_by(system, ExcitationGroup((i,))))]
     meshes.sort(key=lambda i: -abs(system.contacts[i].mesh_frequency))
@@ -277,9 +414,9 @@ def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
     load_frequencies += [abs(row[1]) for contact in system.contacts for row in contact.errors if row[0] != 0.0]
     frequencies: list[float] = []
     for frequency in sorted(load_frequencies, reverse=True):
-        if frequency != 0.0 and not any(abs(frequency - one) <= _SAME_FREQUENCY * one for one in frequencies):
+        if frequency != 0.0 and not _among(frequency, frequencies):
             frequencies.append(frequency)
-    return [*(ExcitationGroup((i,)) for i in meshes), *(ExcitationGroup((), (frequency,)) for frequency in frequencies)]
+    return [ExcitationGroup((i,)) for i in meshes], [ExcitationGroup((), (frequency,)) for frequency in frequencies]
 
 
 def _driven_by(
@@ -291,7 +428,7 @@ def _driven_by(
     for number, contact in enumerate(system.contacts):
         drives = contact.name.removesuffix(", back") in names
         if drives:
-            stands = contact
+            stands = _teeth_of(contact, group.turn)
         elif linear is not None:
             stands = linear[number]
         else:
@@ -331,6 +468,14 @@ def _rest_position(linear: CoupledSystem) -> FloatArray:
 def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
     """Name of a group by its excitations."""
     names = [f"mesh {system.contacts[i].name}" for i in group.meshes]
+    if group.turn:
+        gears = [
+            gear
+            for contact in (system.contacts[i] for i in group.meshes)
+            for gear, turn in zip(contact.name.split(" -> "), _turns_of(contact).values(), strict=False)
+            if _among(group.turn, [turn])
+        ]
+        names = [f"unequal teeth of {' and '.join(dict.fromkeys(gears))}"]
     rates = [2.0 * np.pi * abs(system.contacts[i].mesh_frequency) for i in group.meshes]
     for frequency in group.frequencies:
         # Harmonics of a mesh, such as those of load shuttling, are not listed.

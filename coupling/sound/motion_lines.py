@@ -121,7 +121,9 @@ def lines_of_steady(solved: SolvedSteady, limit: float) -> MotionLines:
     lines = []
     for motion in solved.motions[: 1 if solved.superposed is None else None]:
         spectra = {
-            name: amplitude_spectrum(np.ascontiguousarray(force.T), motion.response.period / len(force))
+            name: amplitude_spectrum(
+                motion.group.weight * np.ascontiguousarray(force.T), motion.response.period / len(force)
+            )
             for name, force in motion.histories.forces_on_housing.items()
         }
         lines.append(_lines_of(spectra, _PERIODIC / motion.response.period))

@@ -388,8 +388,9 @@ def sound_result(
     field, coupled, motion = housing.displacement_field, None, None
     if machine is not None:
         coupled = machine.coupled
-        motion = lines_of_steady(solve_steady(coupled, progress), acoustics.estimated_below_hz(field))
-        warnings = [*warnings, *machine.warnings]
+        steady = solve_steady(coupled, progress)
+        motion = lines_of_steady(steady, acoustics.estimated_below_hz(field))
+        warnings = [*warnings, *machine.warnings, *steady.superposition_warnings()]
     solved, housing = sound_of_housing(acoustics, housing, motion, coupled, progress)
     title = origin.title
     document = {"title": title} | sound_document(solved)

@@ -116,8 +116,7 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
     return [
         {
             "name": name,
-            # The frequencies differ, so their powers add.
-            "rms_m_per_s2": float(np.hypot.reduce([motion.sensor_rms[name] for motion in motions])),
+            "rms_m_per_s2": solved.rms_of_sum(name) if motion is None else motion.sensor_rms[name],
             "lines": _lines(
                 solved.machine,
                 motions,
@@ -126,6 +125,7 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
                 motions[0].trusted_limit,
             ),
         }
+        | ({"neglected_rms_m_per_s2": solved.neglected_acceleration[name]} if motion is None else {})
         for name in motions[0].histories.sensor_acceleration
     ]
 
@@ -134,14 +134,16 @@ def _lines(
     machine: "CoupledMachine", motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str, limit: float = np.inf
 ) -> list[dict[str, Any]]:
     """Return the highest lines of all motions together up to a limit [Hz], each with its name and its excitations."""
+    from gearwhine.coupling.analyses.steady_state import REPORTED_LINES, highest_lines, spectra_of_sum
+
     found = sorted(
         (
             (frequency, amplitude, phase, motion)
-            for motion, signal in zip(motions, signals, strict=True)
-            for frequency, amplitude, phase in motion.lines(signal, limit)
+            for motion, spectrum in zip(motions, spectra_of_sum(motions, signals), strict=True)
+            for frequency, amplitude, phase in highest_lines(spectrum, limit)
         ),
         key=lambda line: -line[1],
-    )[: motions[0].reported_lines]
+    )[:REPORTED_LINES]
     if not found:
         return []
     within = np.array([_EXACT_LINE_DISTANCE / motion.response.period for *_, motion in found])
@@ -245,6 +247,14 @@ def _resampled(of: Any, name: str, dimension: str, unit: str, quantity: str) -> 
 
 EXCITATION = (
     Quantity("name", "motion.excitation", "excitation"),
+    Quantity(
+        "weight",
+        "motion.group.weight",
+        "excitation_weight",
+        (),
+        "1",
+        "number of times that the motion counts in the sum",
+    ),
     in_file("excitation_period", "", "motion.response.period", "period of the motion", "s"),
     in_file("excitation_stable", "", "motion.response.stable"),
     in_file(
@@ -279,6 +289,7 @@ def _excitations(solved: "SolvedSteady") -> list[_Excitation]:
 
 
 SUPERPOSED = (
+    Quantity("hunting_mesh_cycles", optional=True),
     Quantity("stable", "superposed.stable"),
     Rows("excitations", _excitations, EXCITATION, "excitation"),
     Rows("gear_pairs", lambda solved: _pairs(solved, solved.motions, solved.superposed), PAIR),
@@ -499,6 +510,11 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
             "The excitations have no short common period: each has its own motion, other meshes linear about their "
             "mean load, and these are superposed"
         )
+        if cycles := motion.get("hunting_mesh_cycles"):
+            yield (
+                f"The same teeth meet after {cycles} mesh cycles: the unequal teeth of each gear have a motion of "
+                "their own, to the first order, and the mesh of teeth that are alike counts once"
+            )
         for excitation in motion["excitations"]:
             yield _proof(excitation, f"  {excitation['name']}: ")
         for pair in motion["gear_pairs"]:
@@ -506,6 +522,8 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
                 f"  left out in {pair['driver']} → {pair['driven']}: {pair['neglected_force_n']:.3g} N rms, "
                 f"{percent(pair['neglected_part'])} of its varying force"
             )
+        for sensor in motion["sensors"]:
+            yield f"  by that at {sensor['name']}, estimated: {sensor['neglected_rms_m_per_s2']:.3g} m/s² rms"
     else:
         yield _proof(motion, name)
     yield from map(mesh_sentence, motion["gear_pairs"])

@@ -22,6 +22,8 @@ from gearwhine.coupling.gears import (
 )
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.periodic import excitation_groups, periodic_response, superposed_response
 from gearwhine.coupling.time.transient import TransientResult
 from gearwhine.numerics.arrays import FloatArray
 
@@ -167,3 +169,70 @@ def test_equilibrium_is_found_however_far_the_teeth_stand_apart(gap: float) -> N
         for system in (system_of(contact, 50.0), system_of(moved, 50.0))
     )
     assert there == pytest.approx(here + gap, rel=1e-9)
+
+
+def test_meshes_of_an_idler_have_a_motion_for_each_gear_and_loads_go_with_their_gear() -> None:
+    """12, 18 and 13 teeth: three periods of mesh cycles; a load of the mesh is in all motions, whose weights make 1."""
+    first = contact_of(PotentialEnergyStiffness(), 0.1)
+    gears = [
+        Gear(str(teeth), teeth, 4e-3, math.radians(25.0), 12e-3, pitch_deviations=(1e-6, *(0.0,) * (teeth - 1)))
+        for teeth in (18, 13)
+    ]
+    second = tooth_contact(GearPairGeometry(*gears), PotentialEnergyStiffness())
+    system = system_of(first, 800.0)
+    (mesh,) = system.contacts
+    unit = np.ones(1, dtype=np.complex128)
+    rates = {"mesh": 800.0, "idler": 800.0 / 18.0, "other": 321.0}
+    system = replace(
+        system,
+        contacts=(replace(mesh, name="a -> b"), replace(mesh, name="b -> c", contact=second)),
+        harmonic_loads=tuple(HarmonicLoad(2.0 * math.pi * rate, unit) for rate in rates.values()),
+    )
+    assert [one.contact.hunting_period for one in system.contacts] == [36, 234]
+    groups = excitation_groups(system)  # together 468 mesh cycles
+    assert [one.weight for one in groups] == [-2, 1, 1, 1, 1]
+    assert [round(800.0 / one.turn) if one.turn else one.turn for one in groups] == [0.0, 12, 13, 18, None]
+    loads = [[round(rate / (2.0 * math.pi), 3) for rate in one.frequencies] for one in groups]
+    assert loads == [[800.0], [800.0], [800.0], [800.0, 44.444], [321.0]]
+    assert [one.turn for one in excitation_groups(system, longest_hunting=468)] == [None, None]
+
+
+def superposed_and_whole(scale: float, relief: float) -> tuple[FloatArray, FloatArray, float]:
+    """Lines at k / 36 of the mesh frequency of the sum and over the hunting period, and the neglected force."""
+    contact = contact_of(PotentialEnergyStiffness(), scale, relief=relief)
+    contact = contact.with_damping(2.0 * 0.1 * math.sqrt(contact.unloaded_mean_mesh_stiffness * MASS))
+    system = system_of(contact, 800.0)
+    groups = excitation_groups(system, longest_hunting=PERIOD - 1)
+    # 12 and 18 teeth have six mesh cycles in common, which both motions have.
+    assert [(one.weight, round(800.0 / one.turn) if one.turn else 0) for one in groups] == [(-1, 0), (1, 12), (1, 18)]
+    whole, found = periodic_response(system), superposed_response(system, groups)
+    assert [round(800.0 * one.response.period, 9) for one in found.motions] == [6, 12, 18]
+    times = whole.period * (np.arange(PERIOD * 64) + 0.5) / (PERIOD * 64)
+    total = np.zeros(times.size)
+    for one in found.motions:
+        total += one.group.weight * one.response.contacts_at(np.mod(times, one.response.period))[2][:, 0]
+    sum_, exact = (np.fft.rfft(force) / times.size for force in (total, whole.contacts_at(times)[2][:, 0]))
+    return sum_, exact, float(found.neglected_force[0])
+
+
+def test_the_sum_by_teeth_of_each_gear_is_the_motion_over_the_hunting_period() -> None:
+    """While the same pairs touch, gaps of pairs only add to the load: the sum is the whole motion, line by line."""
+    sum_, exact, neglected = superposed_and_whole(0.1, 10e-6)
+    assert np.abs(exact[1:PERIOD]).max() > 1e-2 * np.abs(exact[PERIOD])
+    np.testing.assert_allclose(sum_, exact, atol=1e-5 * np.abs(exact[PERIOD]))
+    assert neglected < 1e-6 * LOAD
+
+
+def test_the_difference_from_the_hunting_period_falls_with_the_square_of_the_deviations() -> None:
+    """Where a gap decides how long a pair touches, lines of both gears' teeth together are of the second order."""
+    missed, parts = [], []
+    for scale in (0.2, 0.1, 0.05):
+        sum_, exact, neglected = superposed_and_whole(scale, 60e-6)
+        difference = np.abs(exact - sum_)[1:]
+        missed.append(difference[: 3 * PERIOD].max())
+        parts.append(math.sqrt(2.0 * np.sum(difference**2)) / neglected)
+    assert 3.0 < missed[0] / missed[1] < 5.0
+    assert 3.0 < missed[1] / missed[2] < 5.0
+    # The mass does not follow the shortest of the pulses that the sum leaves out.
+    assert 0.7 < parts[0] < 1.3
+    assert max(parts) < 1.3

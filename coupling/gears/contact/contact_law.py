@@ -182,6 +182,8 @@ class ToothContact:
     mean_load : float
         Mean mesh force along the line of action, negative where the back flanks carry it [N]; the tilt of bodies under
         an uneven load counts in motion at this load.
+    tooth_counts : tuple of int
+        Numbers of teeth of the driver and the driven gear; zeros where the pairs are not known by gears.
     """
 
     contact_ratio: float
@@ -199,6 +201,7 @@ class ToothContact:
     module: float = 0.0
     shared_compliance: float = 0.0
     mean_load: float = 0.0
+    tooth_counts: tuple[int, int] = (0, 0)
 
     def __post_init__(self) -> None:
         """Check the values, the curves of the pairs, the pitch gaps and the indices of variants."""
@@ -453,6 +456,32 @@ class ToothContact:
             back_pair_variants=sound,
         )
 
+    def teeth_of(self, *, driver: bool = False, driven: bool = False) -> ToothContact:
+        """Return the law in which only the teeth of the named gears differ: its part with their period.
+
+        Gaps are means over the pairs that the period has at one place, so that those of the driver and of the driven
+        gear together, less those of neither, are those of both. The variant is the one that most of these pairs have.
+        """
+        z1, z2 = self.tooth_counts
+        if not self.hunting_numbers or not z1 or (driver and driven):
+            return self
+        period = math.gcd(z1 if driver else z2 if driven else math.gcd(z1, z2), self.hunting_numbers)
+
+        def most(variants: IntArray) -> IntArray:
+            pairs = variants.reshape(-1, period).T if variants.size else variants
+            return np.array([np.bincount(row).argmax() for row in pairs], dtype=np.int64)
+
+        def mean(gaps: FloatArray) -> FloatArray:
+            return np.asarray(gaps.reshape(-1, period).mean(axis=0)) if gaps.size else gaps
+
+        return replace(
+            self,
+            pitch_gaps=mean(self.pitch_gaps),
+            back_pitch_gaps=mean(self.back_pitch_gaps),
+            pair_variants=most(self.pair_variants),
+            back_pair_variants=most(self.back_pair_variants),
+        )
+
     @property
     def back_flanks(self) -> ToothContact:
         """Contact law of the back flanks by their own phase: the same law, with gaps and variants of their own pairs.
@@ -659,6 +688,7 @@ def tooth_contact(
         faces=None if faces is None else slices_of_teeth(faces, model, geometry),
         module=geometry.driver.module,
         shared_compliance=shared_compliance(model, geometry),
+        tooth_counts=(abs(geometry.driver.tooth_count), abs(geometry.driven.tooth_count)),
     )
 
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion, spectra_of_sum
 from gearwhine.coupling.periodic.continuation import ResponseCurve
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
@@ -192,11 +192,12 @@ def _sum_of(solved: SolvedSteady, name: str, times: FloatArray) -> FloatArray:
     ]
     # Each motion has the mean force.
     means = [float(motion.histories.mesh_force[name].mean()) for motion in solved.motions]
-    return np.asarray(np.sum(forces, axis=0) - np.sum(means) + np.mean(means))
+    weights = np.array([motion.group.weight for motion in solved.motions])
+    return np.asarray(weights @ np.array(forces) - (weights.sum() - 1) * np.mean(means))
 
 
 def _spectrum(axes: Axes, motions: list[SteadyMotion], name: str) -> None:
-    spectra = [motion.spectrum(motion.histories.mesh_force[name]) for motion in motions]
+    spectra = spectra_of_sum(motions, [motion.histories.mesh_force[name] for motion in motions])
     limit = min(1.02 * motions[0].trusted_limit, *(float(spectrum.frequencies[-1]) for spectrum in spectra))
     # The highest last: it sets the axis.
     tops = [float(spectrum.amplitude[1:].max(initial=0.0)) for spectrum in spectra]

@@ -10,12 +10,14 @@ from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sound
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case, swept_keys
+from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.coupling.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
 from gearwhine.coupling.sound.solution import build_radiation, solve_sound
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, sounding_lines
 from gearwhine.housing.pictures.drawn_shapes import drawn_housing
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
@@ -24,12 +26,13 @@ from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 
 
-def motion(period: float, harmonics: dict[int, complex]) -> Any:
+def motion(period: float, harmonics: dict[int, complex], weight: int = 1) -> Any:
     """One period of a bearing's force along x, of harmonics of the period."""
     at = np.arange(256) / 256
     force = np.sum([(a * np.exp(2j * np.pi * n * at)).real for n, a in harmonics.items()], axis=0)
     histories = SimpleNamespace(forces_on_housing={"front": force[:, None]})
-    return SimpleNamespace(response=SimpleNamespace(period=period), histories=histories)
+    group = SimpleNamespace(weight=weight)
+    return SimpleNamespace(response=SimpleNamespace(period=period), histories=histories, group=group)
 
 
 def test_lines_of_superposed_motions_at_one_frequency_are_added_with_their_phases() -> None:
@@ -46,9 +49,23 @@ def test_lines_of_superposed_motions_at_one_frequency_are_added_with_their_phase
     assert heights[300.0] == pytest.approx(2.0 + 3.0j)
     assert abs(heights[600.0]) < 1e-9
     assert max(heights) == 630.0  # nothing above the limit
+    # One that is taken off: its second harmonic is alone at 400 Hz.
+    off = motion(1.0 / 200.0, {1: 2.0, 2: 4.0j, 3: 3.0}, weight=-1)
+    solved = SimpleNamespace(motions=(off, fast, slow), superposed=object())
+    found = lines_of_steady(solved, 650.0)
+    heights = dict(zip(np.round(found.frequencies, 6).tolist(), found.forces["front"][:, 0].tolist(), strict=True))
+    assert heights[400.0] == pytest.approx(-4.0j)
+    assert heights[600.0] == pytest.approx(-3.0)
     # Of several motions at one speed on a branch the first is taken.
     branch: Any = SimpleNamespace(motions=(fast, slow), superposed=None)
     assert lines_of_steady(branch, 650.0).forces["front"][2, 0] == pytest.approx(3.0j)
+
+
+@pytest.mark.slow
+def test_the_sound_of_doubtful_superposed_motions_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    doubt = warning("superposition", "doubtful at a mesh")
+    monkeypatch.setattr(SolvedSteady, "superposition_warnings", lambda _: [doubt])
+    assert doubt in sounding_gearbox(QUICK).sound().document["warnings"]
 
 
 def test_bearings_share_the_frequencies_of_their_tones() -> None:
