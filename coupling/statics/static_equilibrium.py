@@ -25,7 +25,7 @@ _HALVINGS = 12  # largest number of halvings of a Newton step that increases the
 
 
 def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
-    """Coordinates in static equilibrium under the constant load, at the mesh phases and cage angles of a time.
+    """Coordinates in static equilibrium under the constant load, at mesh phases, cage and carrier angles of a time.
 
     Newton's method solves K q + Σ d f(dᵀ q) = F, with the friction of the sliding teeth. Rigid-body motions, such as
     gears that roll together, must carry no load; they stay at zero.
@@ -41,6 +41,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     TransientError
         Where teeth or bearings find no equilibrium.
     """
+    system = system.standing(time)
     rigid, stiffest = system.rigid_body_motions
     if not load_balances(system):
         raise CouplingError(
