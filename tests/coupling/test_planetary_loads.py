@@ -8,7 +8,7 @@ import pytest
 
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.description.planetary import PlanetarySet
-from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load, turned_carrier
+from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
@@ -107,7 +107,7 @@ def test_weight_turns_through_the_planets_over_a_turn_of_the_carrier() -> None:
     for angle in (1, 2):
         # A third of a turn takes each planet to the place of the next one.
         assert shares[angle] == pytest.approx(np.roll(shares[0], -angle), abs=1e-9)
-    axis = turned_carrier(machine, "carrier", np.radians(120.0)).shaft("planet 1").axis
+    axis = machine.turned(np.radians(120.0)).shaft("planet 1").axis
     assert axis == pytest.approx(machine.shaft("planet 2").axis, abs=1e-12)
 
 
