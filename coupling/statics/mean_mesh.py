@@ -18,7 +18,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import GearError, ToothContact, loaded_transmission_error
 from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-from gearwhine.coupling.statics.static_equilibrium import load_balances, static_equilibrium, tangent_offset
+from gearwhine.coupling.statics.static_equilibrium import drives, load_balances, static_equilibrium, tangent_offset
 from gearwhine.numerics.arrays import FloatArray
 
 _POINTS = 200  # number of phases of a mesh period, in addition to its events
@@ -124,10 +124,14 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
     meshes: list[MeanMesh | None] = [None] * len(driving)
     for _ in range(_ITERATIONS):
         matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.mT
-        if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False).min() < _ZERO_STIFFNESS_SHARE * stiffest:
-            # The mean load opens flanks, and nothing else holds the train.
-            return without_force, at_rest
-        q = np.linalg.solve(matrix, (load + directions @ (stiffness * loaded * offset))[..., None])[..., 0]
+        pressed = load + directions @ (stiffness * loaded * offset)
+        if not np.all(loaded):
+            loose = [_loose_motions(one, stiffest) for one in matrix]
+            if any(drives(force, free) for force, free in zip(pressed, loose, strict=True)):
+                # The mean load opens flanks, and nothing else holds the train.
+                return without_force, at_rest
+            matrix += stiffest * np.array([free @ free.T for free in loose])
+        q = np.linalg.solve(matrix, pressed[..., None])[..., 0]
         compression = np.einsum("tnc,tn->tc", directions, q)
         force = stiffness * (compression.mean(axis=0) - offset)
         rounding = _FORCE_ROUNDING * stiffness * np.einsum("tnc,tn->tc", np.abs(directions), np.abs(q)).mean(axis=0)
@@ -151,6 +155,12 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
     for number, mesh in zip(driving, meshes, strict=True):
         without_force[number] = mesh
     return without_force, np.asarray(q)
+
+
+def _loose_motions(stiffness: FloatArray, stiffest: float) -> FloatArray:
+    """Orthonormal motions that a stiffness does not resist, as columns: a planet that has lost contact may turn."""
+    values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+    return np.asarray(vectors[:, np.abs(values) < _ZERO_STIFFNESS_SHARE * stiffest])
 
 
 @dataclass(frozen=True)

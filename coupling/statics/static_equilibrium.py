@@ -108,11 +108,14 @@ def tangent_offset(system: CoupledSystem, time: float = 0.0) -> FloatArray:
 
 def load_balances(system: CoupledSystem) -> bool:
     """Whether the constant load does no work in any rigid-body motion."""
-    rigid, _ = system.rigid_body_motions
-    driven = rigid.T @ system.load
+    return not drives(system.load, system.rigid_body_motions[0])
+
+
+def drives(load: FloatArray, motions: FloatArray) -> bool:
+    """Whether a load (n,) does work in one of motions, columns of (n, m)."""
     # Relative to the load's entries, and beside the rounding of the motions themselves.
-    scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _LOAD_ROUNDING * np.linalg.norm(system.load)
-    return not np.any(np.abs(driven) > scale)
+    scale = 1e-6 * np.abs(motions.T) @ np.abs(load) + _LOAD_ROUNDING * np.linalg.norm(load)
+    return bool(np.any(np.abs(motions.T @ load) > scale))
 
 
 def _out_of_balance(

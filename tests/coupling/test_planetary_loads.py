@@ -8,9 +8,12 @@ import pytest
 
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.description.planetary import PlanetarySet
+from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings
 from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load
+from gearwhine.coupling.load_analysis.solved_load import solve_load
 from gearwhine.coupling.machine.loads import ShaftForce
-from gearwhine.coupling.statics.mean_mesh import mean_meshes
+from gearwhine.coupling.statics.mean_mesh import mean_contact, mean_meshes
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.rotors import ShaftMaterial
 from tests.machines.plane_planetary_set import MESH_STIFFNESS, STEEL, equal_angles, plane_set
@@ -132,6 +135,31 @@ def test_an_acceleration_leaves_no_load_on_the_set_as_a_whole() -> None:
     assert machine.assembled.train_inertia == pytest.approx(inertia, rel=1e-9)
 
 
+def test_laws_of_equal_planets_are_those_of_the_torques() -> None:
+    machine = _machine(3, error=0.0)
+    laws = machine.linearised(machine.operating_point()).loaded_pairs()
+    assert [pair.torque for pair in laws[:3]] == [pytest.approx(200.0 / 3.0, rel=1e-12)] * 3
+
+
+def test_a_planet_that_loses_contact_leaves_its_load_to_the_others() -> None:
+    """Its pin is far behind: by a constant stiffness of the meshes it would pull. It turns loosely on its pin."""
+    machine = replace(_machine(3, error=400e-6, shafts=STIFF), torque=40.0)
+    solved = solve_load(machine)
+    forces = np.array([pair.force for pair in solved.point.pairs])
+    radius = machine.pair_geometries[0].driver.base_radius
+    assert forces[[0, 3]] == pytest.approx([0.0, 0.0])
+    assert forces[[1, 2, 4, 5]] == pytest.approx(np.full(4, 20.0 / radius), rel=1e-6)
+    lost = [entry["driver"] for entry in load_warnings(solved) if entry["name"] == "lost contact"]
+    assert lost == ["sun gear", "planet gear 1"]
+    system = machine.linearised(solved.point).assemble().system
+    contact = mean_contact(system)
+    # Deflections circle with the carrier, against the bearings' dashpots.
+    assert contact.force == pytest.approx(forces, rel=5e-4)
+    assert (contact.stiffness == 0.0).tolist() == (forces == 0.0).tolist()
+    # The train rolls, and the planet by itself; all else is held.
+    assert np.count_nonzero(coupled_modes(system).frequencies_hz < 1e-3) == 2
+
+
 def _under_a_force() -> Machine:
     """A slow set whose carrier is pulled down; bearings of carrier and sun are stiffer across than along the pull."""
     base, softer = _machine(3, shafts=STIFF), np.diag([1.0, 0.3, 1.0, 1.0, 1.0])
@@ -152,6 +180,10 @@ def test_mean_forces_are_the_means_of_statics_over_a_turn_of_the_carrier() -> No
     turn = np.array([[pair.force for pair in point.pairs] for point in over_carrier_turn(machine, "carrier").points])
     assert np.ptp(turn[:, 0]) > 0.2 * turn.mean()
     assert [mean.force for mean in mean_meshes(system) if mean] == pytest.approx(turn.mean(axis=0), rel=2e-5)
+    # The laws are made at these forces, which carry the torque of the sun.
+    pairs = machine.linearised(machine.operating_point()).loaded_pairs()
+    assert [pair.static.force for pair in pairs] == pytest.approx(turn.mean(axis=0), rel=2e-5)
+    assert sum(pair.torque for pair in pairs[:3]) == pytest.approx(machine.torque, rel=1e-9)
     # Where the carrier stands, its sets share as the operating point there; so does the start of a motion.
     for part in (0, 5):
         place = 2.0 * np.pi * part / 24 / machine.speeds["carrier"]
