@@ -334,12 +334,12 @@ def assemble_machine(
         centrifugal_load=of_planets + acting.centrifugal,
         nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
-    system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
 
     def turning(still: CoupledSystem) -> CoupledSystem:
         return _in_turning_frames(still, coordinates, bearings, flanks, frames) if frames.turn else still
 
+    system = with_loaded_flanks(system, _back_contacts(meshes), turning)
     with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, turning, mean_faces)
     system = turning(with_balanced_friction(with_faces))
     return CoupledMachine(

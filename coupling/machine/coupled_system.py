@@ -16,6 +16,7 @@ from gearwhine.numerics.arrays import ComplexArray, FloatArray
 AnyConnector = ContactConnector | LinearConnector | NonlinearConnector
 
 _RIGID_MOTION_STIFFNESS = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_FREE_OVER_TURN = 1e-10  # force on a motion that nothing resists at all angles, over the largest stiffness
 _ANGLES = 7  # number of angles of a turn for means over it
 _TURNS = 12  # largest number of turns of the slowest carrier until all stand as at first
 _WHOLE = 1e-6  # distance from a whole number below which a ratio of rates is whole
@@ -244,6 +245,16 @@ class CoupledSystem:
     def over_turn(self) -> tuple["CoupledSystem", ...]:
         """The system as it stands at each of `turn_times`, see `standing`."""
         return tuple(map(self.standing, self.turn_times.tolist())) if self.turns else (self,)
+
+    @cached_property
+    def free_over_turn(self) -> tuple[FloatArray, ...]:
+        """Rigid-body motions of each system of `over_turn`, mostly the same, see `rigid_body_motions`."""
+        rigid, stiffest = self.rigid_body_motions
+        largest = _FREE_OVER_TURN * stiffest
+        return tuple(
+            rigid if np.abs(one.mean_stiffness @ rigid).max(initial=0.0) <= largest else one.rigid_body_motions[0]
+            for one in self.over_turn
+        )
 
     def standing(self, time: float) -> "CoupledSystem":
         """Return the system as it stands at a nominal time [s], with the loads that are constant in any frame.

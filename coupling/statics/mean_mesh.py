@@ -106,13 +106,11 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
     driving = [number for number, contact in enumerate(system.contacts) if contact.loaded]
     stands = system.over_turn
     at_rest = np.zeros((len(stands), system.size))
-    if not driving or not any(np.any(one.load) for one in stands) or not all(map(load_balances, stands)):
+    if not driving or not any(np.any(one.load) for one in stands) or not load_balances(system):
         return without_force, at_rest
     stiffest = system.rigid_body_motions[1]
-    rigid = [one.rigid_body_motions[0] for one in stands]
-    stiffness_held = np.array(
-        [one.stiffness + stiffest * free @ free.T for one, free in zip(stands, rigid, strict=True)]
-    )
+    rigid = np.array([stiffest * free @ free.T for free in system.free_over_turn])
+    stiffness_held = np.array([one.stiffness for one in stands]) + rigid
     directions = np.array([one.contact_directions[:, driving] for one in stands])
     load = np.array([one.load + tangent_offset(one) for one in stands])
     laws = [system.contacts[number].contact for number in driving]
