@@ -9,7 +9,7 @@ come from :mod:`gearwhine.coupling.statics`.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -74,7 +74,7 @@ from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
-from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_equilibrium
+from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
 from gearwhine.rotors import Bearing
 
@@ -334,12 +334,14 @@ def assemble_machine(
         centrifugal_load=of_planets + acting.centrifugal,
         nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
-    system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
-    with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, mean_faces)
-    system = with_balanced_friction(with_faces)
-    if frames.turn:
-        system = _in_turning_frames(system, coordinates, bearings, flanks, frames)
+
+    def turning(still: CoupledSystem) -> CoupledSystem:
+        return _in_turning_frames(still, coordinates, bearings, flanks, frames) if frames.turn else still
+
+    system = with_loaded_flanks(system, _back_contacts(meshes), turning)
+    with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, turning, mean_faces)
+    system = turning(with_balanced_friction(with_faces))
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -644,16 +646,17 @@ def _with_faces(
     coordinates: MachineCoordinates,
     flanks: Sequence[tuple[GearMesh, int]],
     frames: Frames,
+    turning: Callable[[CoupledSystem], CoupledSystem],
     known: MeanFaces | None = None,
 ) -> tuple[CoupledSystem, MeanFaces]:
     """Return the system with flanks that resist tilting and with load shuttling, and their faces.
 
-    ``flanks`` are mesh and sense of each contact of the system, ``known`` the faces of the machine at another speed.
-    See `gearwhine.coupling.machine.mesh_face`.
+    ``flanks`` are mesh and sense of each contact of the system, ``turning`` turns its directions with the carriers, and
+    ``known`` are the faces of the machine at another speed. See `gearwhine.coupling.machine.mesh_face`.
     """
     mean = known if known is not None and known.hold_in(system) else None
     if mean is None:
-        mean = MeanFaces(system, _face_states(system, coordinates, flanks))
+        mean = MeanFaces(system, _face_states(system, coordinates, flanks, turning))
     if not mean.states:
         return system, mean
     harmonics = list(system.harmonic_loads)
@@ -667,12 +670,15 @@ def _with_faces(
 
 
 def _face_states(
-    system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
+    system: CoupledSystem,
+    coordinates: MachineCoordinates,
+    flanks: Sequence[tuple[GearMesh, int]],
+    turning: Callable[[CoupledSystem], CoupledSystem],
 ) -> dict[int, _FaceState]:
     """Solve the faces of all contacts under the mean load.
 
     Mean forces, the flanks' tangents under them and the mean motion depend on each other only where meshes share a
-    torque.
+    torque. Slopes are those of carriers at t = 0, where the operating point has the flanks' gaps.
     """
     every = {
         number: _face(coordinates, mesh, sense, contact.contact)
@@ -682,20 +688,20 @@ def _face_states(
     faces = {number: face for number, face in every.items() if face.yields}
     if not faces:
         return {}
-    means, motion = mean_equilibrium(system)
+    means, motions = equilibrium_over_turn(turning(system))
     for _ in range(_ROUNDS):
         states = {}
         for number, face in faces.items():
             mean = means[number] or MeanMesh(0.0, face.contact.unloaded_mean_mesh_stiffness, 0.0, 0.0)
             tangent = face.tangent(mean.force, _standing_phase(system.contacts[number]))
-            states[number] = (face, tangent, mean, float(face.tilting[0] @ motion))
-        means, motion = mean_equilibrium(_on_faces(system, states, slope_is_found=False))
+            states[number] = (face, tangent, mean, float(face.tilting[0] @ motions[0]))
+        means, motions = equilibrium_over_turn(turning(_on_faces(system, states, slope_is_found=False)))
         forces = {number: mean.force for number, (_, _, mean, _) in states.items()}
         changes = [abs(mean.force - forces[n]) for n, mean in enumerate(means) if mean is not None and n in faces]
         if max(changes, default=0.0) <= _SETTLED_FORCE_CHANGE * max(forces.values()):
             break
     return {
-        number: (face, tangent, mean, float(face.tilting[0] @ motion))
+        number: (face, tangent, mean, float(face.tilting[0] @ motions[0]))
         for number, (face, tangent, mean, _) in states.items()
     }
 

@@ -138,6 +138,9 @@ from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
+_ANGLES = 7  # number of angles of a carrier's turn over which mesh forces are averaged
+_EQUAL_SHARES = 1e-6  # part of a mesh force by which that of an operating point differs from it by rounding
+
 _GEOMETRIC = frozenset(
     (
         "_geometries",
@@ -588,7 +591,8 @@ class Machine:
     def loaded_pairs(self, progress: Callable[[str], None] = lambda text: None) -> tuple[LoadedGearPair, ...]:
         """Contact law of every gear pair, and its static mesh under the mean torque.
 
-        Flanks whose misalignment is None take that of the operating point, see :attr:`assembled`.
+        Flanks whose misalignment is None take that of the operating point, and pairs that share a torque their part of
+        it there, see :attr:`assembled`.
         """
         loaded, pairs = [], self._aligned.gear_pairs
         rows = zip(pairs, self.pair_geometries, self.pair_torques, self.mesh_speeds, strict=True)
@@ -737,21 +741,28 @@ class Machine:
 
     @property
     def needs_operating_point(self) -> bool:
-        """Whether a bearing's stiffness or a pair's misalignment is still to follow from the loads."""
-        return self._needs_alignment or any(mounted.needs_load for mounted in self.bearings)
+        """Whether a bearing's stiffness, a pair's misalignment or its share is still to follow from the loads."""
+        return self._needs_flanks or any(mounted.needs_load for mounted in self.bearings)
 
     @property
-    def _needs_alignment(self) -> bool:
-        """Whether a torque on shafts in bearings loads flanks whose misalignment is None."""
-        unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
-        return unaligned and bool(self.bearings) and any(torque.value != 0.0 for torque in self.constant_torques)
+    def leaves_flanks_to_load(self) -> bool:
+        """Whether a pair has no misalignment, or shares a torque and has no mean force."""
+        rows = zip(self.gear_pairs, self.train.shares_torque, strict=True)
+        return any(pair.misalignment is None or (shares and pair.mean_force is None) for pair, shares in rows)
+
+    @property
+    def _needs_flanks(self) -> bool:
+        """Whether a torque on shafts in bearings loads flanks that are left to it."""
+        loaded = bool(self.bearings) and any(torque.value != 0.0 for torque in self.constant_torques)
+        return loaded and self.leaves_flanks_to_load
 
     def at_operating_point(self, point: OperatingPoint | None = None) -> "Machine":
         """Return the machine linearised about its static equilibrium.
 
         Rolling bearings whose stiffness is not given get their tangent stiffness under load, with the force that they
         have there; those with a nonlinear law start there. Pairs whose misalignment is None get the gap over the face
-        by the deflection of shafts, bearings and housing. Given stiffness and misalignment stay as they are.
+        by the deflection of shafts, bearings and housing. Given stiffness and misalignment stay as they are. Pairs that
+        share a torque, as planets do, get their mean force, see :meth:`mean_mesh_forces`.
 
         Parameters
         ----------
@@ -777,17 +788,54 @@ class Machine:
     def with_flanks_of(self, point: OperatingPoint | None) -> "Machine":
         """Return the machine whose pairs have the gap over the face of an operating point, where they give none.
 
-        Without a point flanks that give none are aligned.
+        Pairs that share a torque get their mean force there. Without a point flanks that give no misalignment are
+        aligned, and shares those of equal meshes.
         """
         open_pairs = [pair.label for pair in self.gear_pairs if pair.misalignment is None]
         gaps = {} if point is None else point.flank_gaps(open_pairs)
-        pairs = [
-            replace(pair, misalignment=0.0, face_gap=gaps.get((pair.driver, pair.driven), ()))
-            if pair.misalignment is None
-            else pair
-            for pair in self.gear_pairs
-        ]
+        pairs = []
+        for pair, shares, force in zip(
+            self.gear_pairs, self.train.shares_torque, self.mean_mesh_forces(point), strict=True
+        ):
+            if pair.misalignment is None:
+                pair = replace(pair, misalignment=0.0, face_gap=gaps.get((pair.driver, pair.driven), ()))
+            if shares and pair.mean_force is None:
+                pair = replace(pair, mean_force=force)
+            pairs.append(pair)
         return self._linear(gear_pairs=tuple(pairs))
+
+    def mean_mesh_forces(self, point: OperatingPoint | None) -> list[float]:
+        """Mean mesh force of each pair at an operating point [N]; those of the train without one.
+
+        The torques alone give it but where pairs share one. As carriers turn, what stands still changes the shares of
+        their planets: the means over a turn are those of operating points at angles from that of ``point`` on. All
+        carriers turn by the same angles there.
+        """
+        rows = zip(self.pair_torques, self.pair_geometries, strict=True)
+        equal = np.array([abs(torque / geometry.driver.base_radius) for torque, geometry in rows])
+        if point is None or not point.pairs or not any(self.train.shares_torque):
+            return list(equal.tolist())
+        over_turn = [np.array([pair.force for pair in point.pairs])]
+        rounding = _EQUAL_SHARES * equal
+        if any(shaft.carrier is not None and self.speeds[shaft.carrier] != 0.0 for shaft in self.shafts):
+            for angle in 2.0 * np.pi * np.arange(1, _ANGLES) / _ANGLES:
+                over_turn.append(np.array([pair.force for pair in self.turned(float(angle)).operating_point().pairs]))
+                if np.all(np.abs(over_turn[-1] - over_turn[0]) <= rounding):
+                    break  # alike all round
+        mean = np.mean(over_turn, axis=0)
+        return list(np.where(np.abs(mean - equal) <= rounding, equal, mean).tolist())
+
+    def turned(self, angle: float, carrier: str | None = None) -> "Machine":
+        """Return the machine with a carrier and its planets turned about its axis [rad]; by default all that turn."""
+        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        shafts = []
+        for shaft in self.shafts:
+            turns = shaft.carrier is not None and (shaft.carrier == carrier if carrier else self.speeds[shaft.carrier])
+            if turns and shaft.carrier is not None:
+                center = np.array(self.shaft(shaft.carrier).axis)
+                shaft = replace(shaft, axis=tuple((center + turn @ (np.array(shaft.axis) - center)).tolist()))
+            shafts.append(shaft)
+        return replace(self, shafts=shafts)
 
     def linearised(self, point: OperatingPoint | None) -> "Machine":
         """Return the machine whose bearings and flanks that are left to an operating point are those of a given one.
@@ -807,9 +855,7 @@ class Machine:
                 names = [mounted.bearing.name for mounted in self.bearings if mounted.needs_load]
                 raise CouplingError(f"no operating point; the stiffness of {', '.join(names)} follows from it")
             return self.at_operating_point(point)
-        if not self._needs_alignment:
-            return self
-        return self.with_flanks_of(point)
+        return self.with_flanks_of(point) if self._needs_flanks else self
 
     @cached_property
     def _linearised(self) -> "Machine":
@@ -819,15 +865,17 @@ class Machine:
 
     @cached_property
     def _aligned(self) -> "Machine":
-        """The machine with the misalignment of its operating point; as it is where none is found, with a warning."""
-        if not self._needs_alignment:
+        """The machine with the flanks of its operating point; as it is where none is found, with a warning."""
+        if not self._needs_flanks:
             return self
         try:
             return self.with_flanks_of(self.operating_point())
         except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError) as error:
             if any(mounted.needs_load for mounted in self.bearings):
                 raise
-            message = f"flanks are taken as aligned, as the machine has no operating point: {error}"
+            unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
+            taken = "flanks are taken as aligned" if unaligned else "meshes are taken to share the torque equally"
+            message = f"{taken}, as the machine has no operating point: {error}"
             warnings.warn(message, stacklevel=2)
             return self.with_flanks_of(None)
 

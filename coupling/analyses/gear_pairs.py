@@ -10,6 +10,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
+from gearwhine.coupling.description.gear_train import EQUAL_MESHES, GearTrain
 from gearwhine.coupling.gears import (
     GearPairGeometry,
     LoadedMesh,
@@ -161,7 +162,8 @@ class PairAnalysis:
     aim_given : bool
         Whether that is asked for, and not chosen by default.
     force_origin : str
-        What the mean force follows from: ``torques`` alone, or ``equal meshes`` in a loop of pairs.
+        What the mean force follows from: ``torques`` alone, or in a loop of pairs ``operating point``, or
+        ``equal meshes`` where there is none.
     """
 
     solved: LoadedGearPair
@@ -324,6 +326,15 @@ def analyse_pair(
     return PairAnalysis(pair, misalignment, widths_given, unloaded, pressure, _pitch_pressure(pair))
 
 
+def force_origins(train: GearTrain, point: OperatingPoint | None) -> tuple[str, ...]:
+    """Return what the mean force of each pair follows from; ``point`` is their operating point, if they have one.
+
+    See :attr:`PairAnalysis.force_origin`.
+    """
+    shared = EQUAL_MESHES if point is None else "operating point"
+    return tuple(shared if origin == EQUAL_MESHES else origin for origin in train.force_origins)
+
+
 def analyse_machine(
     machine: Machine,
     point: OperatingPoint | None = None,
@@ -336,7 +347,7 @@ def analyse_machine(
     ``pairs`` are those of the machine about that point, where they are loaded already.
     """
     pairs = machine.with_flanks_of(point).loaded_pairs(progress) if pairs is None else pairs
-    rows = zip(pairs, taken_misalignments(machine.gear_pairs, point), machine.train.force_origins, strict=True)
+    rows = zip(pairs, taken_misalignments(machine.gear_pairs, point), force_origins(machine.train, point), strict=True)
     return tuple(replace(analyse_pair(pair, misalignment), force_origin=origin) for pair, misalignment, origin in rows)
 
 

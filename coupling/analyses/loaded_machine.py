@@ -24,7 +24,7 @@ _MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparis
 def point_of_flanks(
     machine: Machine, progress: Progress = silent, *, is_needed: bool | None = None
 ) -> OperatingPoint | None:
-    """Return the operating point of a machine where a pair has its misalignment from there; else None.
+    """Return the operating point of a machine where a pair has its misalignment or its share from there; else None.
 
     A machine that has none has aligned flanks, unless the point ``is_needed``; by default it is where a bearing has its
     stiffness from its load.
@@ -34,9 +34,9 @@ def point_of_flanks(
     CouplingError, EquilibriumNotFoundError
         Where it is needed, and the machine has none.
     """
-    if all(pair.misalignment is not None for pair in machine.gear_pairs):
+    if not machine.leaves_flanks_to_load:
         return None
-    progress("misalignment of the flanks at the operating point")
+    progress("load of the flanks at the operating point")
     try:
         return machine.operating_point()
     except NO_OPERATING_POINT:

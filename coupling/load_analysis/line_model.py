@@ -218,10 +218,8 @@ def solve_lines(
     # Flanks that nearly carry evenly keep their gap here, whose derivative is sought.
     gaps = {pair.names: pair.station_gap for pair in point.pairs}
     flanks = [
-        replace(pair, misalignment=0.0, face_gap=gaps.get((pair.driver, pair.driven), ()))
-        if pair.misalignment is None
-        else pair
-        for pair in machine.gear_pairs
+        replace(pair, face_gap=gaps.get((pair.driver, pair.driven), ())) if given.misalignment is None else pair
+        for pair, given in zip(about.gear_pairs, machine.gear_pairs, strict=True)
     ]
     pairs = replace(about, gear_pairs=flanks).loaded_pairs(progress)
     components = about.rotor_components(progress=progress)

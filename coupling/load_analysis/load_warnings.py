@@ -210,6 +210,13 @@ def _stiffness_warnings(solved: SolvedLoad, warned: set[str]) -> Iterator[Result
 def _face_warnings(load: PairLoad) -> Iterator[ResultWarning]:
     label = load.pair.label
     if load.force == 0.0:
+        yield warning(
+            "lost contact",
+            f"{label}: the mean load holds the flanks apart, and the pairs that share the torque carry its part; "
+            "linear analyses have no stiffness there",
+            driver=load.pair.driver.name,
+            driven=load.pair.driven.name,
+        )
         return
     if load.k_h_beta > _UNEVEN_FACE_LOAD_FACTOR:
         yield warning(

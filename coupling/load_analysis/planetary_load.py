@@ -12,7 +12,7 @@ angles of the carrier, each at rest there; inertia beside the planets' centrifug
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -168,21 +168,6 @@ class CarrierTurn:
         return np.array([[planet.load_share for planet in one.planets] for one in found])
 
 
-def turned_carrier(machine: Machine, carrier: str, angle: float) -> Machine:
-    """Return the machine with a carrier and its planets turned by an angle about its axis [rad]."""
-    center, turn = (
-        np.array(machine.shaft(carrier).axis),
-        np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]),
-    )
-    shafts = [
-        replace(shaft, axis=tuple((center + turn @ (np.array(shaft.axis) - center)).tolist()))
-        if shaft.carrier == carrier
-        else shaft
-        for shaft in machine.shafts
-    ]
-    return replace(machine, shafts=shafts)
-
-
 def over_carrier_turn(
     machine: Machine, carrier: str, angles: Sequence[float] | None = None, progress: Progress = silent
 ) -> CarrierTurn:
@@ -212,7 +197,7 @@ def over_carrier_turn(
     points, sets = [], []
     for number, angle in enumerate(chosen.tolist()):
         progress(f"static equilibrium over a turn of {carrier}", number / len(chosen))
-        turned = turned_carrier(machine, carrier, angle)
+        turned = machine.turned(angle, carrier)
         point = turned.operating_point()
         points.append(point)
         on_it = [placed for placed in turned.placed_sets if placed.of.carrier == carrier]

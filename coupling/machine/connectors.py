@@ -11,6 +11,7 @@ y; nonlinear laws of bearings are those of :mod:`gearwhine.coupling.machine.bear
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -57,6 +58,16 @@ class TurningPart:
 def turned(directions: FloatArray, parts: Iterable[TurningPart], time: float) -> FloatArray:
     """Directions (n, d) at a nominal time [s], of those at the nominal time 0 and their turning parts."""
     return np.asarray(sum((part.change(time) for part in parts), directions))
+
+
+_Turning = TypeVar("_Turning", "LinearConnector", "NonlinearConnector", "Sliding")
+
+
+def standing(connector: _Turning, time: float) -> _Turning:
+    """Return a connector, or the sliding of one, whose directions stand as they do at a nominal time [s]."""
+    if not connector.turning:
+        return connector
+    return replace(connector, directions=turned(connector.directions, connector.turning, time), turning=())
 
 
 @dataclass(frozen=True)
@@ -258,6 +269,11 @@ class ContactConnector:
     def direction_at(self, time: float) -> FloatArray:
         """Compression by each coordinate at a nominal time [s], shape (n,)."""
         return turned(self.direction[:, None], self.turning, time)[:, 0] if self.turning else self.direction
+
+    def standing(self, time: float) -> "ContactConnector":
+        """Return the contact whose directions stand as they do at a nominal time [s]."""
+        sliding = None if self.sliding is None else standing(self.sliding, time)
+        return replace(self, direction=self.direction_at(time), turning=(), sliding=sliding)
 
     def runout(self, time: float) -> float:
         """Runout error at a time [m]."""

@@ -1,7 +1,7 @@
 """Coupled system: components, connectors and loads in one set of modal coordinates, with its stiffness and damping."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -10,12 +10,16 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import Component
-from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, standing
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 AnyConnector = ContactConnector | LinearConnector | NonlinearConnector
 
 _RIGID_MOTION_STIFFNESS = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_FREE_OVER_TURN = 1e-10  # force on a motion that nothing resists at all angles, over the largest stiffness
+_ANGLES = 7  # number of angles of a turn for means over it
+_TURNS = 12  # largest number of turns of the slowest carrier until all stand as at first
+_WHOLE = 1e-6  # distance from a whole number below which a ratio of rates is whole
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,11 @@ class HarmonicLoad:
     follows: Literal["time", "turning", "unbalance"] = "time"
     mechanism: Literal["unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "load"] = "load"
     circling: float | None = None
+
+    @property
+    def stands_in_a_frame(self) -> bool:
+        """Whether it is a constant load that acts on coordinates of another frame."""
+        return self.follows == "turning" and self.mechanism == "load"
 
 
 @dataclass(frozen=True)
@@ -216,6 +225,55 @@ class CoupledSystem:
     def turns(self) -> bool:
         """Whether directions of connectors turn, as of planets against a housing that stands still."""
         return any(connector.turning for connector in self.linear) or any(contact.turning for contact in self.contacts)
+
+    @cached_property
+    def turn_times(self) -> FloatArray:
+        """Nominal times over a common turn of the directions for means over it [s], shape (t,); 0 where none turn.
+
+        The mean over them is exact for what changes by up to six waves in the slowest turn. Rates without a common turn
+        of at most `_TURNS` slowest ones have the mean over so many.
+        """
+        if not self.turns:
+            return np.zeros(1)
+        rates = np.abs(self.turning_rates)
+        ratios = rates / rates.min()
+        common = (n for n in range(1, _TURNS) if np.all(np.abs(n * ratios - np.rint(n * ratios)) < _WHOLE * n))
+        turns = next(common, _TURNS)
+        return np.asarray(2.0 * np.pi * turns / rates.min() * np.arange(_ANGLES * turns) / (_ANGLES * turns))
+
+    @cached_property
+    def over_turn(self) -> tuple["CoupledSystem", ...]:
+        """The system as it stands at each of `turn_times`, see `standing`."""
+        return tuple(map(self.standing, self.turn_times.tolist())) if self.turns else (self,)
+
+    @cached_property
+    def free_over_turn(self) -> tuple[FloatArray, ...]:
+        """Rigid-body motions of each system of `over_turn`, mostly the same, see `rigid_body_motions`."""
+        rigid, stiffest = self.rigid_body_motions
+        largest = _FREE_OVER_TURN * stiffest
+        return tuple(
+            rigid if np.abs(one.mean_stiffness @ rigid).max(initial=0.0) <= largest else one.rigid_body_motions[0]
+            for one in self.over_turn
+        )
+
+    def standing(self, time: float) -> "CoupledSystem":
+        """Return the system as it stands at a nominal time [s], with the loads that are constant in any frame.
+
+        A load that stands still, such as weight, is a harmonic one on coordinates that turn; where the carriers stand
+        it is constant.
+        """
+        circling = [load for load in self.harmonic_loads if load.stands_in_a_frame]
+        if not circling and not self.turns:
+            return self
+        load = sum(((one.amplitude * np.exp(1j * one.frequency * time)).real for one in circling), self.load)
+        return replace(
+            self,
+            load=load,
+            harmonic_loads=tuple(one for one in self.harmonic_loads if not one.stands_in_a_frame),
+            linear=tuple(standing(one, time) for one in self.linear),
+            contacts=tuple(one.standing(time) for one in self.contacts),
+            nonlinear=tuple(standing(one, time) for one in self.nonlinear),
+        )
 
     @property
     def is_smooth(self) -> bool:

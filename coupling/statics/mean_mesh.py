@@ -3,7 +3,8 @@
 Over a mesh period the number of loaded teeth changes, while the mean force of a contact stays that of the torques. So a
 contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the
 period, and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the
-torques alone give F; where meshes share a torque, their stiffness and deviations divide it.
+torques alone give F; where meshes share a torque, their stiffness and deviations divide it. On carriers that turn the
+sharing changes over a turn, by weight, other meshes and a housing that is not alike all round: F is the mean over it.
 
 Linear analyses take the tooth contacts as mesh stiffness and damping about the mean load, or at an instant
 (`ContactState`).
@@ -17,7 +18,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import GearError, ToothContact, loaded_transmission_error
 from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-from gearwhine.coupling.statics.static_equilibrium import load_balances, static_equilibrium, tangent_offset
+from gearwhine.coupling.statics.static_equilibrium import drives, load_balances, static_equilibrium, tangent_offset
 from gearwhine.numerics.arrays import FloatArray
 
 _POINTS = 200  # number of phases of a mesh period, in addition to its events
@@ -85,32 +86,53 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
 def mean_equilibrium(system: CoupledSystem) -> tuple[list[MeanMesh | None], FloatArray]:
     """Mean mesh of each contact, as of `mean_meshes`, and the mean motion under the constant load, shape (n,).
 
+    See `equilibrium_over_turn`.
+    """
+    means, motions = equilibrium_over_turn(system)
+    return means, motions.mean(axis=0)
+
+
+def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None], FloatArray]:
+    """Mean mesh of each contact, and the motion at each of `CoupledSystem.turn_times` under the constant load, (t, n).
+
     Newton's method is applied to the contacts' mean curves, starting with their stiffness without load. A contact that
     the mean load opens while others carry the load has no force and no stiffness. Nonlinear bearings act as their
     tangents about their mean loads. The motion is zero where the load cannot balance.
+
+    Where directions turn, the machine rests at several angles of its carriers, with all that stands still, such as
+    weight, in its place. A contact has its tangent under its mean force over the turn at each of them.
     """
     without_force: list[MeanMesh | None] = [None] * len(system.contacts)
     driving = [number for number, contact in enumerate(system.contacts) if contact.loaded]
-    if not driving or not np.any(system.load) or not load_balances(system):
-        return without_force, np.zeros(system.size)
-    rigid, stiffest = system.rigid_body_motions
-    stiffness_held = system.stiffness + stiffest * rigid @ rigid.T
-    directions = system.contact_directions[:, driving]
-    load = system.load + tangent_offset(system)
+    stands = system.over_turn
+    at_rest = np.zeros((len(stands), system.size))
+    if not driving or not any(np.any(one.load) for one in stands) or not load_balances(system):
+        return without_force, at_rest
+    stiffest = system.rigid_body_motions[1]
+    rigid = np.array([stiffest * free @ free.T for free in system.free_over_turn])
+    stiffness_held = np.array([one.stiffness for one in stands]) + rigid
+    directions = np.array([one.contact_directions[:, driving] for one in stands])
+    load = np.array([one.load + tangent_offset(one) for one in stands])
     laws = [system.contacts[number].contact for number in driving]
+    clearance = np.array([system.contacts[number].clearance for number in driving])
     stiffness = np.array([law.unloaded_mean_mesh_stiffness for law in laws])
-    offset = np.array([system.contacts[number].clearance for number in driving])
+    offset = clearance.copy()
     before = np.full(len(driving), np.nan)
     loaded = np.ones(len(driving), dtype=bool)
     meshes: list[MeanMesh | None] = [None] * len(driving)
     for _ in range(_ITERATIONS):
-        matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.T
-        if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _ZERO_STIFFNESS_SHARE * stiffest:
-            # The mean load opens flanks, and nothing else holds the train.
-            return without_force, np.zeros(system.size)
-        q = np.linalg.solve(matrix, load + directions @ (stiffness * loaded * offset))
-        force = stiffness * (directions.T @ q - offset)
-        rounding = _FORCE_ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
+        matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.mT
+        pressed = load + directions @ (stiffness * loaded * offset)
+        if not np.all(loaded):
+            loose = [_loose_motions(one, stiffest) for one in matrix]
+            if any(drives(force, free) for force, free in zip(pressed, loose, strict=True)):
+                # The mean load opens flanks, and nothing else holds the train.
+                return without_force, at_rest
+            matrix += stiffest * np.array([free @ free.T for free in loose])
+        q = np.linalg.solve(matrix, pressed[..., None])[..., 0]
+        compression = np.einsum("tnc,tn->tc", directions, q)
+        force = stiffness * (compression.mean(axis=0) - offset)
+        rounding = _FORCE_ROUNDING * stiffness * np.einsum("tnc,tn->tc", np.abs(directions), np.abs(q)).mean(axis=0)
         converged = np.abs(force - before) <= _CONVERGED_FORCE_CHANGE * np.abs(force * loaded).max() + rounding
         parted = force < -rounding
         if np.all(converged | parted) and np.array_equal(parted, ~loaded):
@@ -127,11 +149,16 @@ def mean_equilibrium(system: CoupledSystem) -> tuple[list[MeanMesh | None], Floa
                 continue
             meshes[number] = mean
             stiffness[number] = mean.secant
-            clearance = system.contacts[driving[number]].clearance
-            offset[number] = clearance + mean.deflection - mean.force / mean.secant
+            offset[number] = clearance[number] + mean.deflection - mean.force / mean.secant
     for number, mesh in zip(driving, meshes, strict=True):
         without_force[number] = mesh
     return without_force, np.asarray(q)
+
+
+def _loose_motions(stiffness: FloatArray, stiffest: float) -> FloatArray:
+    """Orthonormal motions that a stiffness does not resist, as columns: a planet that has lost contact may turn."""
+    values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+    return np.asarray(vectors[:, np.abs(values) < _ZERO_STIFFNESS_SHARE * stiffest])
 
 
 @dataclass(frozen=True)
@@ -192,7 +219,7 @@ def contact_at(system: CoupledSystem, time: float) -> ContactState:
 
     q = static_equilibrium(system, time)
     tangents = []
-    for contact in system.contacts:
+    for contact in system.standing(time).contacts:
         compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
         law = contact.contact.kernel_arguments
         force, *tangent = tooth_force(contact.phase_after(time), compression, 0.0, *law)[:3]

@@ -7,7 +7,7 @@ The sign of the mean mesh force decides which flanks are loaded: the drive flank
 coasts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,7 +25,7 @@ _HALVINGS = 12  # largest number of halvings of a Newton step that increases the
 
 
 def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
-    """Coordinates in static equilibrium under the constant load, at the mesh phases and cage angles of a time.
+    """Coordinates in static equilibrium under the constant load, at mesh phases, cage and carrier angles of a time.
 
     Newton's method solves K q + Σ d f(dᵀ q) = F, with the friction of the sliding teeth. Rigid-body motions, such as
     gears that roll together, must carry no load; they stay at zero.
@@ -41,6 +41,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     TransientError
         Where teeth or bearings find no equilibrium.
     """
+    system = system.standing(time)
     rigid, stiffest = system.rigid_body_motions
     if not load_balances(system):
         raise CouplingError(
@@ -106,12 +107,16 @@ def tangent_offset(system: CoupledSystem, time: float = 0.0) -> FloatArray:
 
 
 def load_balances(system: CoupledSystem) -> bool:
-    """Whether the constant load does no work in any rigid-body motion."""
-    rigid, _ = system.rigid_body_motions
-    driven = rigid.T @ system.load
+    """Whether the constant load does no work in any rigid-body motion, over a turn of directions that turn."""
+    rows = zip(system.over_turn, system.free_over_turn, strict=True)
+    return not any(drives(one.load, free) for one, free in rows)
+
+
+def drives(load: FloatArray, motions: FloatArray) -> bool:
+    """Whether a load (n,) does work in one of motions, columns of (n, m)."""
     # Relative to the load's entries, and beside the rounding of the motions themselves.
-    scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _LOAD_ROUNDING * np.linalg.norm(system.load)
-    return not np.any(np.abs(driven) > scale)
+    scale = 1e-6 * np.abs(motions.T) @ np.abs(load) + _LOAD_ROUNDING * np.linalg.norm(load)
+    return bool(np.any(np.abs(motions.T @ load) > scale))
 
 
 def _out_of_balance(
@@ -195,27 +200,30 @@ _NO_FORCE = 1e-9  # part of the contact force by each coordinate below which a f
 def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
     """Mean mesh force of each drive flank, at its mean stiffness, under the constant load [N], shape (c,).
 
-    Negative where the load pulls the flanks apart. In a train of gears one after the other it follows from the torques
-    alone. All 0 where the load cannot be balanced.
+    It is the mean over a turn of directions that turn. Negative where the load pulls the flanks apart. In a train of
+    gears one after the other it follows from the torques alone. All 0 where the load cannot be balanced.
     """
-    forces = np.zeros(len(system.contacts))
-    if not system.contacts or not np.any(system.load) or not load_balances(system):
+    forces, rounding = np.zeros((2, len(system.contacts)))
+    if not system.contacts or not any(np.any(one.load) for one in system.over_turn) or not load_balances(system):
         return forces
-    rigid, stiffest = system.rigid_body_motions
-    q = np.linalg.solve(system.mean_stiffness + stiffest * rigid @ rigid.T, system.load)
-    stiffness = system.loaded_flank_stiffness
-    forces = stiffness * (system.contact_directions.T @ q)
-    rounding = _NO_FORCE * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
-    return np.where(np.abs(forces) > rounding, forces, 0.0)
+    stiffest, stiffness = system.rigid_body_motions[1], system.loaded_flank_stiffness
+    for one, free in zip(system.over_turn, system.free_over_turn, strict=True):
+        q = np.linalg.solve(one.mean_stiffness + stiffest * free @ free.T, one.load)
+        forces += stiffness * (one.contact_directions.T @ q)
+        rounding += _NO_FORCE * stiffness * (np.abs(one.contact_directions.T) @ np.abs(q))
+    return np.where(np.abs(forces) > rounding, forces, 0.0) / len(system.over_turn)
 
 
-def with_loaded_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> CoupledSystem:
+def with_loaded_flanks(
+    system: CoupledSystem, backs: Sequence[int | None], turning: Callable[[CoupledSystem], CoupledSystem]
+) -> CoupledSystem:
     """Exchange drive and back flanks where the mean torque pulls the drive flanks apart.
 
-    ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet.
+    ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet;
+    ``turning`` turns the directions of the system with its carriers.
     """
     meeting = [(number, back) for number, back in enumerate(backs) if back is not None]
-    forces = mean_mesh_forces(system) if meeting else np.zeros(0)
+    forces = mean_mesh_forces(turning(system)) if meeting else np.zeros(0)
     exchanged = [(number, back) for number, back in meeting if forces[number] < 0.0]
     if not exchanged:
         return system

@@ -9,6 +9,7 @@ from gearwhine.case.gears import ReliefAim as GivenAim
 from gearwhine.coupling.analyses.gear_pairs import (
     PairAnalysis,
     analyse_pair,
+    force_origins,
     level_at_sensors,
     sensor_model,
     weights_below,
@@ -32,7 +33,11 @@ def analyse_pairs(
     """
     analysed = []
     rows = zip(
-        case.gear_pair, solved, misalignments_of_case(case.parts, point), case.parts.train.force_origins, strict=True
+        case.gear_pair,
+        solved,
+        misalignments_of_case(case.parts, point),
+        force_origins(case.parts.train, point),
+        strict=True,
     )
     for entry, pair, misalignment, origin in rows:
         driver, driven = (case.gear_named(name).face_width is not None for name in (entry.driver, entry.driven))

@@ -8,21 +8,31 @@ import pytest
 
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.description.planetary import PlanetarySet
-from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load, turned_carrier
-from tests.machines.plane_planetary_set import STEEL, equal_angles, plane_set
+from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings
+from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load
+from gearwhine.coupling.load_analysis.solved_load import solve_load
+from gearwhine.coupling.machine.loads import ShaftForce
+from gearwhine.coupling.statics.mean_mesh import mean_contact, mean_meshes
+from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.rotors import ShaftMaterial
+from tests.machines.plane_planetary_set import MESH_STIFFNESS, STEEL, equal_angles, plane_set
 
 ERROR = 20e-6  # m, of the first pin, along the circle
+STIFF = ShaftMaterial(2e14, 8e13, 7850.0)  # shafts that do not tilt the flanks
 SUN_BEARINGS_OF_A_FLOATING_SUN = 1e-4  # over those of a held one
 
 
 @cache
-def _machine(count: int, *, floating: bool = False, error: float = ERROR, gravity: bool = False) -> Machine:
+def _machine(
+    count: int, *, floating: bool = False, error: float = ERROR, gravity: bool = False, shafts: ShaftMaterial = STEEL
+) -> Machine:
     parts = plane_set(
         equal_angles(count),
         pressure_angle=np.radians(20.0),
         with_ring=True,
         damping=1e-5,
-        material=STEEL,
+        material=shafts,
         diameter=0.05,
     )
     parts["shafts"] = [
@@ -100,7 +110,7 @@ def test_weight_turns_through_the_planets_over_a_turn_of_the_carrier() -> None:
     for angle in (1, 2):
         # A third of a turn takes each planet to the place of the next one.
         assert shares[angle] == pytest.approx(np.roll(shares[0], -angle), abs=1e-9)
-    axis = turned_carrier(machine, "carrier", np.radians(120.0)).shaft("planet 1").axis
+    axis = machine.turned(np.radians(120.0)).shaft("planet 1").axis
     assert axis == pytest.approx(machine.shaft("planet 2").axis, abs=1e-12)
 
 
@@ -123,6 +133,64 @@ def test_an_acceleration_leaves_no_load_on_the_set_as_a_whole() -> None:
         distance = np.hypot(*machine.shaft(planet).axis)
         inertia += machine.rotor(planet).mass * distance**2 * ratios["carrier"] ** 2
     assert machine.assembled.train_inertia == pytest.approx(inertia, rel=1e-9)
+
+
+def test_laws_of_equal_planets_are_those_of_the_torques() -> None:
+    machine = _machine(3, error=0.0)
+    laws = machine.linearised(machine.operating_point()).loaded_pairs()
+    assert [pair.torque for pair in laws[:3]] == [pytest.approx(200.0 / 3.0, rel=1e-12)] * 3
+
+
+def test_a_planet_that_loses_contact_leaves_its_load_to_the_others() -> None:
+    """Its pin is far behind: by a constant stiffness of the meshes it would pull. It turns loosely on its pin."""
+    machine = replace(_machine(3, error=400e-6, shafts=STIFF), torque=40.0)
+    solved = solve_load(machine)
+    forces = np.array([pair.force for pair in solved.point.pairs])
+    radius = machine.pair_geometries[0].driver.base_radius
+    assert forces[[0, 3]] == pytest.approx([0.0, 0.0])
+    assert forces[[1, 2, 4, 5]] == pytest.approx(np.full(4, 20.0 / radius), rel=1e-6)
+    lost = [entry["driver"] for entry in load_warnings(solved) if entry["name"] == "lost contact"]
+    assert lost == ["sun gear", "planet gear 1"]
+    system = machine.linearised(solved.point).assemble().system
+    contact = mean_contact(system)
+    # Deflections circle with the carrier, against the bearings' dashpots.
+    assert contact.force == pytest.approx(forces, rel=5e-4)
+    assert (contact.stiffness == 0.0).tolist() == (forces == 0.0).tolist()
+    # The train rolls, and the planet by itself; all else is held.
+    assert np.count_nonzero(coupled_modes(system).frequencies_hz < 1e-3) == 2
+
+
+def _under_a_force() -> Machine:
+    """A slow set whose carrier is pulled down; bearings of carrier and sun are stiffer across than along the pull."""
+    base, softer = _machine(3, shafts=STIFF), np.diag([1.0, 0.3, 1.0, 1.0, 1.0])
+    bearings = [
+        replace(one, bearing=replace(one.bearing, stiffness=softer * one.bearing.stiffness))
+        if one.rotor in ("carrier", "sun")
+        else one
+        for one in base.bearings
+    ]
+    return replace(base, bearings=bearings, forces=[ShaftForce("carrier", 0.05, (0.0, -6000.0, 0.0))], speed=10.0)
+
+
+def test_mean_forces_are_the_means_of_statics_over_a_turn_of_the_carrier() -> None:
+    """The force stands still, and every planet passes by it: static equilibria at 24 angles have the same mean."""
+    machine = _under_a_force()
+    system = machine.assembled.system
+    assert system.turns
+    turn = np.array([[pair.force for pair in point.pairs] for point in over_carrier_turn(machine, "carrier").points])
+    assert np.ptp(turn[:, 0]) > 0.2 * turn.mean()
+    assert [mean.force for mean in mean_meshes(system) if mean] == pytest.approx(turn.mean(axis=0), rel=2e-5)
+    # The laws are made at these forces, which carry the torque of the sun.
+    pairs = machine.linearised(machine.operating_point()).loaded_pairs()
+    assert [pair.static.force for pair in pairs] == pytest.approx(turn.mean(axis=0), rel=2e-5)
+    assert sum(pair.torque for pair in pairs[:3]) == pytest.approx(machine.torque, rel=1e-9)
+    # Where the carrier stands, its sets share as the operating point there; so does the start of a motion.
+    for part in (0, 5):
+        place = 2.0 * np.pi * part / 24 / machine.speeds["carrier"]
+        stands = system.standing(place)
+        assert [mean.force for mean in mean_meshes(stands) if mean] == pytest.approx(turn[part], rel=2e-5)
+        compression = stands.contact_directions.T @ static_equilibrium(system, place)
+        assert MESH_STIFFNESS * compression == pytest.approx(turn[part], rel=2e-5)
 
 
 @pytest.mark.slow

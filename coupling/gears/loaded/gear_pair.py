@@ -113,6 +113,9 @@ class GearPair:
         :func:`gearwhine.coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
     corner_contact : bool, optional
         Whether teeth touch beyond their path of contact; None: with a stiffness model of pairs of teeth.
+    mean_force : float, optional
+        Mean mesh force [N]; None: that of the torques. Of a pair that shares a torque with others it is that of the
+        machine's operating point, see :meth:`gearwhine.coupling.Machine.at_operating_point`.
     """
 
     driver: str
@@ -125,6 +128,7 @@ class GearPair:
     misalignment: float | None = None
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
+    mean_force: float | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
@@ -138,6 +142,7 @@ class GearPair:
             "friction": Number(at_least=0.0, at_most=0.5),
             "misalignment": Number(at_least=-0.1, at_most=0.1, optional=True, unit="rad"),
             "face_gap": Numbers(),
+            "mean_force": Number(at_least=0.0, optional=True, unit="N"),
         }
         part = ("gear pair", f"{self.driver} -> {self.driven}")
         findings = list(attribute_findings(part, self, **rules))
@@ -405,7 +410,8 @@ def load_gear_pair(
     pair : GearPair
     geometry : GearPairGeometry
     torque : float
-        Mean torque that the pair takes from its driver [N m], of either sign.
+        Mean torque that the pair takes from its driver [N m], of either sign; its amount is that of the pair's
+        ``mean_force`` where it has one.
     inertias : tuple of float
         Polar inertias that rotate with the driver and with the driven gear [kg m²], for the damping ratio.
     speed : float, optional
@@ -416,7 +422,7 @@ def load_gear_pair(
     GearError
         Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
     """
-    force = abs(torque / geometry.driver.base_radius)
+    force = abs(torque / geometry.driver.base_radius) if pair.mean_force is None else pair.mean_force
     stiffness = pair.stiffness
     model = stiffness_under_load(stiffness, geometry, force) if isinstance(stiffness, str) else stiffness
     contact = tooth_contact(

@@ -1,11 +1,13 @@
 """Mean forces that torques alone do not fix, in a loop of pairs as of a power split: `check` says what they assume."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 import gearwhine as gw
 from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
+from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.results.check import sections
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
@@ -60,6 +62,13 @@ def test_check_says_what_shares_of_a_power_split_assume(split: gw.CaseStudy) -> 
     found = [pair["force_n"] for pair in split.operating_point().document["gear_pairs"]]
     assert sum(found) == pytest.approx(sum(forces), rel=1e-6)
     assert abs(found[0] - found[1]) > 0.03 * sum(found)
+    # Gear pairs in a machine have the law of their own share, and so have its linear analyses, in which the tangent of
+    # the tilted face stands for the face.
+    pairs = split.gears(without=("harris-map", "relief", "pictures")).document["pairs"]
+    assert [pair["mean_force_from"] for pair in pairs] == ["operating point"] * 2
+    assert [pair["mean_force_n"] for pair in pairs] == pytest.approx(found, rel=1e-9)
+    tilted = replace(split.machine, gear_pairs=[replace(one, misalignment=None) for one in split.machine.gear_pairs])
+    assert [mean.force for mean in mean_meshes(tilted.assembled.system) if mean] == pytest.approx(found, rel=3e-3)
     lines = [text for section in sections(document) for text in (section.note or "", *section.sentences)]
     told = "if the meshes of its loop of pairs are equally stiff; `gearwhine load` finds the shares"
     assert sum(told in line for line in lines) == 2
