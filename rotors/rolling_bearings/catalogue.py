@@ -189,7 +189,8 @@ def catalogue_bearing(
     ----------
     carries : {"+z", "-z"}
         Sense of the thrust of the shaft that a row in angular contact carries. "+z" at the left end and "-z" at the
-        right one are back to back (O), the other way round face to face (X). Two opposed rows carry both.
+        right one are back to back (O), the other way round face to face (X), where the inner rings turn. Two opposed
+        rows carry both.
     """
     require(carries in ("+z", "-z"), "carries", carries, "'+z' or '-z'")
     row = catalogue_row(
