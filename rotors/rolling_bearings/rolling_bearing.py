@@ -48,8 +48,9 @@ class RollingBearing:
     Raises
     ------
     RotorError
-        No rows, a preload that is not finite, or one on rollers without flanges, which have no axial stiffness. A
-        floating bearing with a preload, an axial offset of a single row, or rows that carry thrust one way only.
+        No rows, rows that turn with different rings, a preload that is not finite, or one on rollers without flanges,
+        which have no axial stiffness. A floating bearing with a preload, an axial offset of a single row, or rows that
+        carry thrust one way only.
     """
 
     rows: Sequence[Row]
@@ -66,6 +67,10 @@ class RollingBearing:
         require_finite(f"axial preload of {self.name}", self.axial_preload)
         if self.catalogue_rating is not None:
             require_finite(f"dynamic rating of {self.name}", self.catalogue_rating, positive=True)
+        turning = {"outer" if row.outer_turns else "inner" for row in self.rows}
+        require(
+            len(turning) == 1, f"rings of {self.name} that turn", sorted(turning), "one: its rows share their rings"
+        )
         self._require_rows_apart()
         if self.floating:
             self._require_floats()

@@ -111,6 +111,12 @@ def test_rows_of_whole_bearings_stand_on_a_pin_as_on_a_shaft() -> None:
     assert paired(row, "tandem", 20e-3).thrust_senses == {1}
 
 
+def test_rows_that_turn_with_different_rings_are_refused() -> None:
+    rows = [replace(BALLS, position=0.0), replace(BALLS, position=20e-3, outer_turns=True)]
+    with pytest.raises(gw.RotorError, match=r"rings of rolling bearing that turn is .*; expected one"):
+        RollingBearing(rows)
+
+
 @pytest.mark.parametrize(("outer_turns", "quarter"), [(False, 1.0), (True, -1.0)])
 def test_the_most_loaded_element_stands_where_the_rings_approach(outer_turns: bool, quarter: float) -> None:
     """A shaft pressed along y presses the ball there; a planet's bore the one on the other side of its pin."""
