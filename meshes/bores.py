@@ -3,6 +3,10 @@
 Circles are fitted to the corners of facets; facets and their neighbours propose the candidates. The corners of a bore's
 facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the outside of a boss looks
 away from it. A fillet along the axis is no bore, for it covers a quarter of the circle only.
+
+The corners of a recess with cut corners lie on a circle as well. An edge over the angle θ is off the circle by its
+sagitta R (1 − cos θ/2). Below the tolerance of a circle it proves itself; above, it is a chord of a bore where the
+edges divide the circle evenly, as meshes and tessellations do, and a wall where wide ones alternate with narrow ones.
 """
 
 from collections.abc import Sequence
@@ -17,7 +21,7 @@ from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
 LARGEST_COSINE_TO_AXIS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
 CIRCLE_TOLERANCE = 0.01  # corners of a bore may be off its circle by this part of its diameter
-_LEAST_FACET_TURN_COSINE = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
+_WIDEST_EDGE = np.radians(75.0)  # edges of a bore of five or more sectors cover less of it, and its facets turn by less
 _LOCAL_FIT = 0.02  # corners of neighbours may be off their circle by this part of its radius
 _MOST_CIRCLES = 500
 _FEWEST_FACETS = 3  # facets that must propose a circle before it is tried
@@ -49,7 +53,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
         np.einsum("pi,pi->p", normals[first_facet], step), -np.einsum("pi,pi->p", normals[second_facet], step)
     )
     turn = np.einsum("pi,pi->p", normals[first_facet], normals[second_facet])
-    linked = sideways[first_facet] & sideways[second_facet] & (turn > _LEAST_FACET_TURN_COSINE)
+    linked = sideways[first_facet] & sideways[second_facet] & (turn > np.cos(_WIDEST_EDGE))
     linked &= hollow > -1e-6 * np.linalg.norm(step, axis=1)
     pairs = np.concatenate([pairs[linked], pairs[linked][:, ::-1]])
     if len(pairs) == 0:
@@ -139,6 +143,11 @@ def plane_axes(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
 _LEAST_INWARD_COSINE = 0.5  # least cosine between a facet's normal and the direction to the axis
 _ARC_STEPS = 720
 _WHOLE_BORE_ROUNDNESS = 0.9  # part of the full circle above which a bore is whole
+_HALF_BORE_ROUNDNESS = 0.55  # part of the full circle below which a wall between the ends of its arc stands on its axis
+_FEWEST_SECTORS = 4.99  # sectors of the full circle, of one quadrangle or two triangles each, less rounding
+_LEVEL = 0.1  # largest sine between an edge that runs round a bore and the plane of its circle
+_EVEN_SPANS = 1.6  # angle of the usual coarse edge over that of the narrowest that is its like
+_EVEN_SHARE = 0.85  # part of the edges round a bore that are alike, at least
 _LEAST_SMOOTH_COSINE = 0.8  # cosine between a cylinder's normal and the next facet's above which the surface runs on
 
 
@@ -182,7 +191,8 @@ def find_bores(
     -----
     Each facet proposes the circle through its own corners and its neighbours'. The circles with the most proposals are
     tried first. Facets that lie on one circle all around are a bore. The round end of a slot, or a fillet, is no bore:
-    its sides run on along its tangents, where the sides of a split bore end at the parting plane.
+    its sides run on along its tangents, where the sides of a split bore end at the parting plane. Nor is a half round
+    recess behind a wall through its axis, nor one of flat walls whose corners lie on a circle.
     """
     direction = unit_vector(axis)
     bores: list[CylindricalBore] = []
@@ -191,10 +201,11 @@ def find_bores(
         on = fits_circle(mesh, center, radius, direction, 2 * CIRCLE_TOLERANCE * radius) & ~assigned
         if not on.any():
             continue
-        for bore in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
+        for found in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
+            bore = _without_walls(mesh, found, direction)
             if bore.roundness < least_round or any(_same(bore, other, direction) for other in bores):
                 continue
-            if not _runs_on(mesh, bore, direction):
+            if _is_divided_as_a_circle(mesh, bore, direction) and not _runs_on(mesh, bore, direction):
                 bores.append(bore)
         assigned |= on
     return tuple(sorted(bores, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
@@ -204,26 +215,57 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
     """Whether the surface goes on along its tangents beyond the ends of the arc of a bore that is not round.
 
     At an end the neighbouring facet then looks towards the axis, as the cylinder itself does there; where a bore is
-    split it looks along the arc.
+    split it looks along the arc. A wall that closes a half bore has corners between the ends of its arc.
     """
     if bore.roundness >= _WHOLE_BORE_ROUNDNESS:
         return False
     normals = facet_normals(mesh.points, mesh.boundary)
     inside = np.zeros(len(mesh.points), dtype=bool)
     inside[facet_corners(bore.facets)] = True
+    own = {tuple(corners) for block in bore.facets for corners in block.corners.tolist()}
     smooth, start = list[bool](), 0
     for block in mesh.boundary:
         on = inside[block.corners]
         block_normals = normals[start : start + len(block)]
         start += len(block)
-        # Neighbours share an edge with the bore; a facet with all its corners there belongs to it.
-        for facet in np.flatnonzero(
-            (on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(block_normals @ axis) < LARGEST_COSINE_TO_AXIS)
-        ):
-            edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
-            inward = -across(edge[None] - np.asarray(bore.center), axis)[0]
-            smooth.append(bool(block_normals[facet] @ inward > _LEAST_SMOOTH_COSINE * np.linalg.norm(inward)))
+        # Neighbours share an edge with the bore.
+        sideways = np.abs(block_normals @ axis) < LARGEST_COSINE_TO_AXIS
+        for facet in np.flatnonzero((on.sum(axis=1) >= 2) & sideways):
+            if tuple(block.corners[facet].tolist()) in own:
+                continue
+            arms = across(mesh.points[block.corners[facet]] - np.asarray(bore.center), axis)
+            shared = arms[on[facet]]
+            inward = -(shared / np.linalg.norm(shared, axis=1)[:, None]).mean(axis=0)
+            within = float(np.linalg.norm(arms.mean(axis=0))) < (0.5 - CIRCLE_TOLERANCE) * bore.diameter
+            is_wall = within and bore.roundness < _HALF_BORE_ROUNDNESS
+            smooth.append(is_wall or bool(block_normals[facet] @ inward > _LEAST_SMOOTH_COSINE))
     return bool(smooth) and 2 * sum(smooth) > len(smooth)
+
+
+def _without_walls(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> CylindricalBore:
+    """Leave out facets with edges so wide that they are walls, unless the others are a whole bore by themselves."""
+    spans = _level_spans(mesh, bore.facets, bore.center, axis).max(axis=1)
+    narrow = pick_facets(bore.facets, spans < _WIDEST_EDGE)
+    if not narrow or _roundness(mesh, narrow, np.asarray(bore.center), axis) >= _WHOLE_BORE_ROUNDNESS:
+        return bore
+    return _bore(mesh, narrow, np.asarray(bore.center), axis)
+
+
+def _is_divided_as_a_circle(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
+    """Whether a bore's facets are enough for a circle, and divide it evenly where they are so coarse as to be walls."""
+    sectors = sum(len(block) * (0.5 if block.corners.shape[1] == 3 else 1.0) for block in bore.facets)
+    if sectors < _FEWEST_SECTORS * bore.roundness:
+        return False
+    spans = np.sort(_level_spans(mesh, bore.facets, bore.center, axis), axis=None)
+    spans = spans[spans < _WIDEST_EDGE]
+    total = float(spans.sum())
+    if total == 0.0:
+        return True
+    # Half of the edges' angles together are of narrower ones.
+    usual = float(spans[np.searchsorted(np.cumsum(spans), 0.5 * total)])
+    if 1.0 - np.cos(0.5 * usual) <= 2.0 * CIRCLE_TOLERANCE:
+        return True
+    return float(spans[spans > usual / _EVEN_SPANS].sum()) >= _EVEN_SHARE * total
 
 
 def fits_circle(
@@ -321,31 +363,44 @@ def _bore(mesh: Mesh, facets: Facets, center: FloatArray, axis: FloatArray) -> C
         center=(x, y, z),
         diameter=2 * radius,
         length=float(np.ptp(heights)),
-        roundness=_roundness(mesh, facets, middle, first, second),
+        roundness=_roundness(mesh, facets, middle, axis),
         facets=facets,
     )
 
 
-def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray, second: FloatArray) -> float:
-    """Part of the circle that the facets cover, each from its first to its last corner."""
-    arms = mesh.points - center
+def _corner_angles(mesh: Mesh, facets: Facets, center: Sequence[float] | FloatArray, axis: FloatArray) -> FloatArray:
+    """Azimuths of four corners of each facet about an axis, the last of a triangle twice, (n_facets, 4) [rad]."""
+    first, second = plane_axes(axis)
+    arms = mesh.points - np.asarray(center)
     angles = np.arctan2(arms @ second, arms @ first)
+    return np.concatenate([np.zeros((0, 4)), *(angles[block.corners[:, [0, 1, 2, -1]]] for block in facets)])
+
+
+def _short_way(angles: FloatArray) -> FloatArray:
+    """Angles from -π to below π [rad]."""
+    return np.asarray(np.mod(angles + np.pi, 2 * np.pi) - np.pi)
+
+
+def _level_spans(mesh: Mesh, facets: Facets, center: Sequence[float] | FloatArray, axis: FloatArray) -> FloatArray:
+    """Angles of the circle under those edges of each facet that run round it, others 0, (n_facets, 4) [rad]."""
+    angles = _corner_angles(mesh, facets, center, axis)
+    points = np.concatenate([np.zeros((0, 4, 3)), *(mesh.points[block.corners[:, [0, 1, 2, -1]]] for block in facets)])
+    edges = np.roll(points, -1, axis=1) - points
+    is_level = np.abs(edges @ axis) <= _LEVEL * np.linalg.norm(edges, axis=2)
+    return np.asarray(np.where(is_level, np.abs(_short_way(np.roll(angles, -1, axis=1) - angles)), 0.0))
+
+
+def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, axis: FloatArray) -> float:
+    """Part of the circle that the facets cover, each from its first to its last corner."""
     covered = np.zeros(_ARC_STEPS, dtype=bool)
     steps = np.arange(_ARC_STEPS)
-    for block in facets:
-        corner_angles = angles[block.corners]
-        turned = (
-            np.mod(corner_angles - corner_angles[:, :1] + np.pi, 2 * np.pi) - np.pi
-        )  # angles from the first corner, the short way
-        ends = (
-            (corner_angles[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
-            * _ARC_STEPS
-            / (2 * np.pi)
-        )
-        begin = np.floor(ends[:, 0] + 1e-6).astype(np.int64)
-        width = np.ceil(ends[:, 1] - 1e-6).astype(np.int64) - begin
-        for start, length in set(zip(begin.tolist(), width.tolist(), strict=True)):
-            covered[(start + steps[:length]) % _ARC_STEPS] = True
+    angles = _corner_angles(mesh, facets, center, axis)
+    turned = _short_way(angles - angles[:, :1])
+    ends = (angles[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1)) * _ARC_STEPS / (2 * np.pi)
+    begin = np.floor(ends[:, 0] + 1e-6).astype(np.int64)
+    width = np.ceil(ends[:, 1] - 1e-6).astype(np.int64) - begin
+    for start, length in set(zip(begin.tolist(), width.tolist(), strict=True)):
+        covered[(start + steps[:length]) % _ARC_STEPS] = True
     return float(covered.mean())
 
 

@@ -2,7 +2,8 @@
 
 A single row with a contact angle carries thrust in one sense alone. Two such rows locate a shaft if they carry opposite
 senses: back to back (O) where the left one carries the shaft's force towards +z and the right one that towards -z, so
-that the contact lines run apart towards the axis; face to face (X) the other way round (ISO 5593). An axial offset of
+that the contact lines run apart towards the axis; face to face (X) the other way round (ISO 5593). Where their outer
+rings turn with the shaft, as in a planet, it is X that carries so, and O the other way round. An axial offset of
 their rings at assembly presses them against each other, a rigid preload. A spring's force on the shaft presses only the
 row that carries it. A floating bearing carries no thrust; where two ball bearings carry it both ways, how they share it
 depends on the place of their rings at assembly.
@@ -45,12 +46,18 @@ class AxialSupport:
         return len(self.senses) == 1
 
     @property
+    def inner_senses(self) -> frozenset[int]:
+        """Senses of the inner ring's force that it carries: the opposite ones where the outer ring turns."""
+        turned = self.rolling is not None and self.rolling.rows[0].outer_turns
+        return frozenset(-sense if turned else sense for sense in self.senses)
+
+    @property
     def arrangement(self) -> Literal["O", "X"] | None:
         """Arrangement of two rows within the bearing, one for each sense; None for other bearings."""
         rows = () if self.rolling is None else sorted(self.rolling.rows, key=lambda row: row.position)
         if len(rows) != 2 or rows[0].position == rows[1].position or _spherical(rows[0]):
             return None
-        return {(1, -1): "O", (-1, 1): "X"}.get((rows[0].direction, rows[1].direction))  # type: ignore[return-value]
+        return {(1, -1): "O", (-1, 1): "X"}.get((rows[0].inner_direction, rows[1].inner_direction))  # type: ignore[return-value]
 
     @property
     def has_balls(self) -> bool:
@@ -110,7 +117,7 @@ class AxialLocation:
         carried = [bearing for bearing in self.bearings if bearing.senses]
         if not self.is_located or not all(bearing.is_single for bearing in carried):
             return None
-        plus, minus = ([bearing.at for bearing in carried if sense in bearing.senses] for sense in (1, -1))
+        plus, minus = ([bearing.at for bearing in carried if sense in bearing.inner_senses] for sense in (1, -1))
         if max(plus) < min(minus):
             return "O"
         return "X" if max(minus) < min(plus) else None

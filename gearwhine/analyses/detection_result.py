@@ -14,7 +14,7 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.variation_result import in_solved_housing, sampled_points
 from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, require
-from gearwhine.case.bearings import Bearing, BearingFault
+from gearwhine.case.bearings import Bearing, BearingFault, CageSlip
 from gearwhine.case.detection import MOST_GEARBOXES, Detection
 from gearwhine.case.errors import UNSAID, key_of, look_up
 from gearwhine.case.model import lacking
@@ -68,6 +68,8 @@ class PlannedDetection:
     monitor : Monitor
     spall : (str, BearingDamage) or None
         Name of the bearing, and its spall, where that is the fault.
+    slips : tuple of (str, int)
+        Key and value of the seed of each slip that scatters: it differs from record to record.
     """
 
     case: Case
@@ -80,6 +82,25 @@ class PlannedDetection:
     gear: str
     monitor: Monitor
     spall: tuple[str, BearingDamage] | None = None
+    slips: tuple[tuple[str, int], ...] = ()
+
+    @property
+    def is_varied(self) -> bool:
+        """Whether records differ by more than noise."""
+        return bool(self.inputs or self.slips)
+
+    @property
+    def written(self) -> dict[float, str]:
+        """Sizes of the fault as the case writes them, by their value in SI."""
+        return {size: _text(text) for size, text in zip(self.settings.sizes, self.settings.severities, strict=True)}
+
+    def study(self, varied: VariedCase) -> DetectionCase:
+        """Return the gearboxes of a case with its varied inputs."""
+        averaged = any(not INDICATORS[name].of_time for name in self.monitor.indicators)
+        fault = self.settings.fault
+        return DetectionCase(
+            varied, fault, self.without, self.written, self.gear, self.spall, self.slips, is_averaged=averaged
+        )
 
 
 def plan_detection(source: CaseSource) -> PlannedDetection:
@@ -104,7 +125,8 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     variation = case.variation or Variation()
     inputs = varied_inputs(source, variation)
     correlation_matrix(inputs, variation)
-    if not inputs and settings.sensor_noise == 0.0:
+    slips = _slips(source.document)
+    if not (inputs or slips) and settings.sensor_noise == 0.0:
         expected = "noise above 0, or distributions under [variation.vary]: without scatter there is no threshold"
         raise CaseError([Problem("detection.sensor_noise", 0.0, expected)])
     table = case.housing or case.reduced_housing
@@ -131,7 +153,7 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     )
     between = _between(source, variation, settings, inputs)
     struck = None if bearing is None or spall is None else (bearing.name, spall)
-    return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor, struck)
+    return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor, struck, slips)
 
 
 def _indicators(settings: Detection, *, of_bearing: bool) -> tuple[str, ...]:
@@ -164,11 +186,9 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
     case, settings, monitor = planned.case, planned.settings, planned.monitor
     varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
     varied, housing = in_solved_housing(varied, folder, "detect")
-    written = {size: _text(value) for size, value in zip(settings.sizes, settings.severities, strict=True)}
-    averaged = any(not INDICATORS[name].of_time for name in monitor.indicators)
-    study = DetectionCase(varied, settings.fault, planned.without, written, planned.gear, planned.spall, averaged)
+    written, study = planned.written, planned.study(varied)
     # Gearboxes that are all alike have one record, and as many noises.
-    is_varied = bool(planned.inputs)
+    is_varied = planned.is_varied
     healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
     cube = _cube(planned, healthy + faulty * len(written))
     between = planned.between if is_varied and monitor.has_own_baseline else None
@@ -294,6 +314,16 @@ def _spall(
     fault = faults if isinstance(faults, Mapping) else faults[int(steps[3]) if steps[3].isdecimal() else 0]
     spall = BearingFault.model_validate({key: value for key, value in fault.items() if key != "planet"}).build()
     return next(one for one in bearings if one.name in (written["name"], f"{written['name']} 1")), spall
+
+
+def _slips(document: Mapping[str, Any]) -> tuple[tuple[str, int], ...]:
+    """Return key and value of the seed of each cage's slip that scatters."""
+    found = list[tuple[str, int]]()
+    for place in matching_places(document, ("bearing", "*", "slip")):
+        slip = CageSlip.model_validate(look_up(document, place))
+        if slip.scatter > 0.0:
+            found.append((".".join(map(str, (*place, "seed"))), slip.seed))
+    return tuple(found)
 
 
 def _healthy_change(documents: Sequence[Mapping[str, Any]], settings: Detection) -> str:

@@ -281,9 +281,9 @@ class _Mounted(Table):
         gearwhine.rotors.RotorError
             Where there is no such bearing.
         """
-        from gearwhine.rotors.rolling_bearings import RollerRow, RollingBearing, preload_offset
+        from gearwhine.rotors.rolling_bearings import RollerRow, bearing_of_row
 
-        row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
+        row = self.build_row()
         outer_turns = on_pin if self.turning_ring is None else self.turning_ring == "outer"
         changes: dict[str, Any] = {}
         if self.mounting is not None:
@@ -292,25 +292,19 @@ class _Mounted(Table):
         if isinstance(row, RollerRow) and self.flange_stiffness is not None:
             changes["flanges"], changes["flange_stiffness"] = self.flanges, self.flange_stiffness
             changes["axial_clearance"] = self.axial_clearance
-        row = replace(row, **changes, outer_turns=outer_turns)
-        rows, spring, pressed = self._rows(row), sense * self.preload, 0.0
-        if len({one.direction for one in rows}) == 2:
-            # Opposed rows hold their preload between them, by equal offsets.
-            spring, pressed = 0.0, preload_offset(row, self.preload) if self.preload > 0.0 else 0.0
-        else:
-            rows = tuple(one.facing(sense) for one in rows)
-        # The inner ring carries all rows along: its displacement is an offset towards some and away from others.
-        moved = sense * self.axial_offset
-        rows = tuple(replace(one, axial_offset=pressed + one.direction * moved) for one in rows)
-        return RollingBearing(rows, spring, label, self.floating, self.dynamic_rating)
-
-    def _rows(self, row: Row) -> tuple[Row, ...]:
-        """All rows in their places, from one of them."""
-        from gearwhine.rotors.rolling_bearings import paired, standing_rows
-
-        if self.arrangement == "single" or self.spacing is None:
-            return standing_rows(self.kind, row, self.width)
-        return tuple(paired(row, self.arrangement, self.spacing).rows)
+        return bearing_of_row(
+            self.kind,
+            replace(row, **changes, outer_turns=outer_turns),
+            self.width,
+            carries=self.carries,
+            preload=self.preload,
+            axial_offset=self.axial_offset,
+            arrangement=self.arrangement,
+            spacing=self.spacing,
+            floating=self.floating,
+            dynamic=self.dynamic_rating,
+            name=f"bearing {name!r}",
+        )
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:
         """Bore and outer diameter of the bearing [m]."""
@@ -450,21 +444,11 @@ class Catalogue(Table):
             raise wrong(f"more than the bore of {self.bore:g} m", "outer_diameter")
         if self.contact_angle is not None and self.type in ("deep-groove", "cylindrical-roller"):
             raise wrong(f"nothing: a {self.type} bearing has none", "contact_angle")
-        if self.axial_factor is not None and self.type not in _AXIAL_FACTORS:
+        if self.axial_factor is not None and self.type not in ("tapered-roller", "spherical-roller"):
             raise wrong("nothing: only tapered and spherical rollers have their angle from it", "axial_factor")
         if self.axial_factor is not None and self.contact_angle is not None:
             raise wrong("nothing beside contact_angle", "axial_factor")
         return self
-
-    @property
-    def angle(self) -> float | None:
-        """Contact angle, where it is given or follows from a factor: cot α = Y/0.4 or Y1/0.45 by ISO 281 [rad]."""
-        if self.axial_factor is None:
-            return self.contact_angle
-        return math.atan(_AXIAL_FACTORS[self.type] / self.axial_factor)
-
-
-_AXIAL_FACTORS = {"tapered-roller": 0.4, "spherical-roller": 0.45}
 
 
 class RollingCatalogue(_Mounted):
@@ -502,7 +486,8 @@ class RollingCatalogue(_Mounted):
             size.bore,
             size.outer_diameter,
             size.width,
-            contact_angle=size.angle,
+            contact_angle=size.contact_angle,
+            axial_factor=size.axial_factor,
             clearance=self.clearance,
             # Without C0 it is for the lives alone.
             dynamic=self.dynamic_rating if self.static_rating is not None else None,

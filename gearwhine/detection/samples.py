@@ -1,7 +1,8 @@
 """Gearboxes with and without a fault: the case of each, and the record of its sensors' condition.
 
-A sample's point is a point of the unit cube with two numbers before it: its kind and the size of its fault. The samples
-of a size do not depend on the other sizes of a study, so that a study with a further one solves that alone.
+A sample's point is a point of the unit cube with three numbers before it: its kind, the size of its fault, and the
+number of its record, by which each record has another course of its cages' slip. The samples of a size do not depend on
+the other sizes of a study, so that a study with a further one solves that alone.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ record of one of these without the fault."""
 SIGNAL, AVERAGE = "signal of ", "average of "
 """Beginnings of the names of a sample's curves, before that of the sensor."""
 _DIGITS = 9
+_SEEDS = 2**31
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,8 @@ class DetectionCase:
         Gear by whose shaft signals are averaged.
     spall : (str, BearingDamage) or None
         Name of the bearing, and its spall, where that is the fault.
+    slips : tuple of (str, int)
+        Key and value of the seed of each slip that scatters.
     is_averaged : bool
         Whether an indicator takes the average over the turns of the gear's shaft, which those of planetary sets have
         not.
@@ -62,18 +66,20 @@ class DetectionCase:
     written: dict[float, str]
     gear: str
     spall: tuple[str, BearingDamage] | None = None
+    slips: tuple[tuple[str, int], ...] = ()
     is_averaged: bool = True
 
     def case(self, point: FloatArray) -> Case:
-        """Return the case of a sample at a point (2 + d,).
+        """Return the case of a sample at a point (3 + d,).
 
         Raises
         ------
         CaseError
             Where its values make no machine.
         """
-        kind, size = point[:2].tolist()
-        changes = [] if kind == REFERENCE else self.varied.overrides(point[2:])
+        kind, size, record = point[:3].tolist()
+        changes = [] if kind == REFERENCE else self.varied.overrides(point[3:])
+        changes += [f"{key}={(seed + round(record)) % _SEEDS}" for key, seed in self.slips]
         if kind == FAULTY:
             changes.append(f"{self.fault}={self.written[size]}")
         elif self.without:
@@ -124,7 +130,7 @@ class DetectionCase:
     def key(self) -> str:
         """Key of all that the samples depend on but their points."""
         return content_key(
-            {"varied": self.varied.key, "fault": [self.fault, self.without, self.gear, self.is_averaged]}
+            {"varied": self.varied.key, "fault": [self.fault, self.without, self.gear, self.is_averaged, *self.slips]}
         )
 
 
@@ -142,7 +148,7 @@ class Design:
 
     Attributes
     ----------
-    points : ndarray, shape (n, 2 + d)
+    points : ndarray, shape (n, 3 + d)
     sizes : ndarray, shape (g,)
         Size of the fault of each gearbox; 0 of a healthy one.
     has_baselines : bool
@@ -180,11 +186,12 @@ def detection_design(
     of_each = np.array([0.0] * healthy + [size for size in sizes for _ in range(faulty)])
     count, dimensions = len(of_each), cube.shape[1]
     kinds = np.where(of_each > 0.0, FAULTY, HEALTHY)
-    reference = np.concatenate([[REFERENCE, 0.0], np.full(dimensions, 0.5)])
-    rows = [reference[None], np.column_stack([kinds, of_each, cube[:count]])]
+    reference = np.concatenate([[REFERENCE, 0.0, 0.0], np.full(dimensions, 0.5)])
+    records = 1.0 + 2.0 * np.arange(count)  # beside each the earlier one
+    rows = [reference[None], np.column_stack([kinds, of_each, records, cube[:count]])]
     if between is not None:
         earlier = cube[:count].copy()
         # Those of the gearbox before it: of the same distribution, and of another record.
         earlier[:, list(between)] = np.roll(cube[:count], 1, axis=0)[:, list(between)]
-        rows.append(np.column_stack([np.full(count, BASELINE), np.zeros(count), earlier]))
+        rows.append(np.column_stack([np.full(count, BASELINE), np.zeros(count), records + 1.0, earlier]))
     return Design(np.vstack(rows), of_each, between is not None)

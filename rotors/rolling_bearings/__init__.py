@@ -11,7 +11,7 @@ tangent, for the equilibrium of a whole machine; `rolling_state` is the state at
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
-from gearwhine.rotors.rolling_bearings.catalogue import catalogue_bearing, catalogue_row, standing_rows
+from gearwhine.rotors.rolling_bearings.catalogue import bearing_of_row, catalogue_bearing, catalogue_row, standing_rows
 from gearwhine.rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads
 from gearwhine.rotors.rolling_bearings.equilibrium import (
@@ -68,6 +68,7 @@ __all__ = [
     "SpallContact",
     "SphericalRollerRow",
     "TaperedRollerRow",
+    "bearing_of_row",
     "catalogue_bearing",
     "catalogue_row",
     "characteristic_frequencies",

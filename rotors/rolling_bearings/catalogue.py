@@ -21,7 +21,7 @@ too many of nine moves it by 7 %.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from scipy.optimize import brentq
@@ -29,7 +29,7 @@ from scipy.optimize import brentq
 from gearwhine.rotors.errors import RotorError, require, require_finite
 from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
 from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
-from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing, paired
+from gearwhine.rotors.rolling_bearings.rolling_bearing import Arrangement, RollingBearing, paired, preload_offset
 from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 CatalogueType = Literal[
@@ -65,6 +65,8 @@ _INSIDES: dict[str, _Inside] = {
     "tapered-roller": _Inside(0.26, 1.12, 0.58, angle=14.0),
     "spherical-roller": _Inside(0.25, 1.1, 0.33, rows=2, angle=10.5),
 }
+AXIAL_FACTORS = {"tapered-roller": 0.4, "spherical-roller": 0.45}
+"""Product of tan α and the factor Y of tapered or Y₁ of spherical rollers (ISO 281)."""
 _LARGEST = 5.0
 """Outer diameter that no bearing of a catalogue has [m]; slewing rings, which are larger, are not among its types."""
 _CONRAD = math.radians(186.0)
@@ -81,6 +83,7 @@ def catalogue_row(
     width: float,
     *,
     contact_angle: float | None = None,
+    axial_factor: float | None = None,
     clearance: float = 0.0,
     dynamic: float | None = None,
     static: float | None = None,
@@ -96,7 +99,9 @@ def catalogue_row(
         Main dimensions [m]; for tapered rollers the whole width T.
     contact_angle : float, optional
         Contact angle of types that have one [rad]; a usual one where none is given. For tapered and spherical rollers
-        and self-aligning balls tan α = e/1.5, and of tapered rollers cot α = Y/0.4, with the catalogue's e and Y.
+        and self-aligning balls tan α = e/1.5 with the catalogue's e.
+    axial_factor : float, optional
+        Factor Y of tapered or Y₁ of spherical rollers in place of the angle: cot α = Y/0.4 or Y₁/0.45 (ISO 281).
     clearance : float
         Diametral clearance in operation [m]; catalogues print the larger value before mounting.
     dynamic, static : float, optional
@@ -126,6 +131,11 @@ def catalogue_row(
     angled = contact_angle is None or contact_angle == 0.0 or inside.angle is not None
     require(angled, f"contact angle of a {kind} bearing", contact_angle, "none: its contacts are radial")
     angle = math.radians(inside.angle or 0.0) if contact_angle is None else contact_angle
+    if axial_factor is not None:
+        require(kind in AXIAL_FACTORS, f"axial factor of a {kind} bearing", axial_factor, "none: rollers have one")
+        require(contact_angle is None, "axial factor", axial_factor, "none beside a contact angle")
+        require_finite("axial factor", axial_factor, positive=True)
+        angle = math.atan(AXIAL_FACTORS[kind] / axial_factor)
     pitch, diameter = 0.5 * (bore + outer_diameter), inside.diameter * height
     if not inside.length:
         fits = diameter * min(inside.rows, 1.5) <= width
@@ -175,37 +185,129 @@ def catalogue_bearing(
     width: float,
     *,
     contact_angle: float | None = None,
+    axial_factor: float | None = None,
     clearance: float = 0.0,
     dynamic: float | None = None,
     static: float | None = None,
     carries: Literal["+z", "-z"] = "+z",
+    preload: float = 0.0,
+    axial_offset: float = 0.0,
+    arrangement: Literal["single"] | Arrangement = "single",
+    spacing: float | None = None,
+    floating: bool = False,
+    outer_turns: bool = False,
     name: str = "rolling bearing",
 ) -> RollingBearing:
-    """Estimate a whole bearing, its two rows in their places if it has two; parameters as of `catalogue_row`.
+    """Estimate a whole bearing, its rows in their places; parameters as of `catalogue_row` and `bearing_of_row`.
 
-    Its lives are by ``dynamic``, the catalogue's C, where it is given, and not by C of the estimated inside.
+    Its lives are by ``dynamic``, the catalogue's C, where it is given, and not by C of the estimated inside, which it
+    improves beside ``static`` only. Ratings are of both bearings of an arrangement.
 
     Parameters
     ----------
-    carries : {"+z", "-z"}
-        Sense of the thrust of the shaft that a row in angular contact carries. "+z" at the left end and "-z" at the
-        right one are back to back (O), the other way round face to face (X). Two opposed rows carry both.
+    outer_turns : bool
+        Whether the outer ring turns with the shaft, as in a planet on its pin.
     """
-    require(carries in ("+z", "-z"), "carries", carries, "'+z' or '-z'")
     row = catalogue_row(
         kind,
         bore,
         outer_diameter,
         width,
         contact_angle=contact_angle,
+        axial_factor=axial_factor,
         clearance=clearance,
-        dynamic=dynamic,
+        dynamic=None if static is None else dynamic,
         static=static,
+        bearings=1 if arrangement == "single" else 2,
     )
-    rows = standing_rows(kind, row, width)
-    if len({one.direction for one in rows}) == 1:
-        rows = tuple(one.facing(1 if carries == "+z" else -1) for one in rows)
-    return RollingBearing(rows, name=name, catalogue_rating=dynamic)
+    return bearing_of_row(
+        kind,
+        replace(row, outer_turns=outer_turns),
+        width,
+        carries=carries,
+        preload=preload,
+        axial_offset=axial_offset,
+        arrangement=arrangement,
+        spacing=spacing,
+        floating=floating,
+        dynamic=dynamic,
+        name=name,
+    )
+
+
+def bearing_of_row(
+    kind: CatalogueType,
+    row: Row,
+    width: float = 0.0,
+    *,
+    carries: Literal["+z", "-z"] = "+z",
+    preload: float = 0.0,
+    axial_offset: float = 0.0,
+    arrangement: Literal["single"] | Arrangement = "single",
+    spacing: float | None = None,
+    floating: bool = False,
+    dynamic: float | None = None,
+    name: str = "rolling bearing",
+) -> RollingBearing:
+    """Make a whole bearing of one of its rows, with its preload.
+
+    Parameters
+    ----------
+    kind : CatalogueType
+        Type, which says how many rows there are.
+    row : Row
+        One row.
+    width : float
+        Width of the bearing [m], by which two rows on common rings stand apart.
+    carries : {"+z", "-z"}
+        Sense of the thrust of the shaft that a row in angular contact carries. "+z" at the left end and "-z" at the
+        right one are back to back (O), the other way round face to face (X), where the inner rings turn. Two opposed
+        rows carry both.
+    preload : float
+        Force of a spring on the shaft along ``carries``, of two opposed rows the force between them [N].
+    axial_offset : float
+        Displacement of the ring on the shaft along ``carries`` at assembly: a preload against another bearing [m].
+    arrangement : {"single", "back to back", "face to face", "tandem"}
+        One such bearing, or two.
+    spacing : float, optional
+        Distance of the centres of two bearings' rows [m].
+    floating : bool
+        Whether the other ring slides in its seat.
+    dynamic : float, optional
+        Rating C of the whole bearing, of both in an arrangement [N].
+    name : str
+        Name in messages.
+
+    Raises
+    ------
+    RotorError
+        What does not fit the type or each other.
+    """
+    require(carries in ("+z", "-z"), "carries", carries, "'+z' or '-z'")
+    require_finite("preload", preload, minimum=0.0)
+    require_finite("axial offset", axial_offset)
+    held = axial_offset == 0.0 or row.has_axial_stiffness
+    require(held, "axial offset", axial_offset, "none: cylindrical rollers carry no axial load without flanges")
+    sense = 1 if carries == "+z" else -1
+    if arrangement == "single":
+        require(spacing is None, "spacing", spacing, "none of a single bearing")
+        rows = standing_rows(kind, row, width)
+    else:
+        by_itself = len(standing_rows(kind, row, width)) == 2 or kind in ("four-point", "cylindrical-roller")
+        require(not by_itself, "arrangement", arrangement, f"'single' of a {kind} bearing")
+        require(axial_offset == 0.0, "axial offset", axial_offset, "none: two rows have the preload between them")
+        require(spacing is not None, "spacing", spacing, "the distance of the two rows")
+        rows = tuple(paired(row, arrangement, spacing or 0.0).rows)
+    spring, pressed = sense * preload, 0.0
+    if len({one.direction for one in rows}) == 2:
+        # Opposed rows hold their preload between them, by equal offsets.
+        spring, pressed = 0.0, preload_offset(row, preload) if preload > 0.0 else 0.0
+    else:
+        rows = tuple(one.facing(sense) for one in rows)
+    # The ring on the shaft carries all rows along: its displacement is an offset towards some and away from others.
+    moved = sense * axial_offset
+    rows = tuple(replace(one, axial_offset=pressed + one.direction * moved) for one in rows)
+    return RollingBearing(rows, spring, name, floating, dynamic)
 
 
 def standing_rows(kind: CatalogueType, row: Row, width: float) -> tuple[Row, ...]:

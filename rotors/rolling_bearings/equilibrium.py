@@ -215,7 +215,11 @@ class RollingElements:
     def loads(self, displacement: FloatArray) -> tuple[ElementLoads, ...]:
         """Element loads of each row with the inner ring displaced, (5,)."""
         q = self.seated(displacement)
-        return tuple(row.loads(q) for row in self.contacts)
+        found = [contacts.loads(q) for contacts in self.contacts]
+        return tuple(
+            replace(loads, azimuths=loads.azimuths - pressed_azimuth(row, 0.0))
+            for row, loads in zip(self.bearing.rows, found, strict=True)
+        )
 
     @cached_property
     def contacts(self) -> tuple[RowContacts, ...]:

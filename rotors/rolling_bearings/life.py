@@ -25,6 +25,9 @@ Rollers, slice by slice with q_c = Q_c n^{−7/9} and the stresses at their ends
     L₁₀ᵣ = [Σ_k (q_ci/q_ei)^{−9/2} + (q_co/q_eo)^{−9/2}]^{−8/9}
     f_k = 1 − 0.01 / ln(1.985 |2k − n − 1| / (2n − 2))
 
+Where the outer ring turns against the load and the inner one stands, as on a planet's pin, the powers 3 and 10/3, and 4
+and 9/2, are of the other ring each.
+
 The life of rollers goes as the fourth power of the load here and as 10/3 there; both agree near P = C. The f_k stand
 for the logarithmic profile, medium loads and tilts up to 4'. ISO/TS 16281 covers single rows; more add as theirs do.
 """
@@ -165,15 +168,16 @@ def reference_revolutions(state: RollingState, dynamic: float | None = None) -> 
     for row, loads in zip(rows, state.rows, strict=True):
         rating = dynamic_rating(row, len(rows)) if dynamic is None else dynamic
         ratings = contact_ratings(row, rating, len(rows))
-        damage += _line_damage(row, loads, ratings) if isinstance(row, LineContactRow) else _damage(loads, ratings)
+        damage += _line_damage(row, loads, ratings) if isinstance(row, LineContactRow) else _damage(row, loads, ratings)
     return math.inf if damage == 0.0 else _MILLION * damage ** (-8.0 / 9.0 if line else -0.9)
 
 
-def _damage(loads: ElementLoads, ratings: tuple[float, float]) -> float:
+def _damage(row: Row, loads: ElementLoads, ratings: tuple[float, float]) -> float:
     """Sum Σ (Q_c/Q_e)^{−10/3} over both rings, and over both diagonals of four-point balls."""
     diagonals = 1 if np.unique(loads.azimuths).size == loads.azimuths.size else 2
     total = 0.0
-    for load, rating, power in zip((loads.inner_load, loads.outer_load), ratings, (3.0, 10.0 / 3.0), strict=True):
+    powers = _of_rings(row, 3.0, 10.0 / 3.0)
+    for load, rating, power in zip((loads.inner_load, loads.outer_load), ratings, powers, strict=True):
         mean = (load.reshape(diagonals, -1) ** power).mean(axis=1) ** (1.0 / power)
         total += float(((mean / rating) ** (10.0 / 3.0)).sum())
     return total
@@ -184,10 +188,15 @@ def _line_damage(row: LineContactRow, loads: ElementLoads, ratings: tuple[float,
     assert loads.slice_loads is not None
     inner, total = loads.slice_loads, 0.0
     outer = inner + ((loads.outer_load - loads.inner_load) / row.slices)[:, None]
-    for load, rating, power in zip((inner, outer), ratings, (4.0, 4.5), strict=True):
+    for load, rating, power in zip((inner, outer), ratings, _of_rings(row, 4.0, 4.5), strict=True):
         mean = ((_end_stresses(row.slices) * load) ** power).mean(axis=0) ** (1.0 / power)
         total += float(((mean / (rating * row.slices ** (-7.0 / 9.0))) ** 4.5).sum())
     return total
+
+
+def _of_rings(row: Row, turning: float, still: float) -> tuple[float, float]:
+    """Powers of the mean load of the inner and of the outer ring: one turns against the load, one stands still."""
+    return (still, turning) if row.outer_turns else (turning, still)
 
 
 def _end_stresses(slices: int) -> FloatArray:

@@ -100,6 +100,11 @@ class LineContactRow:
         return 0.0
 
     @property
+    def inner_direction(self) -> int:
+        """See :attr:`gearwhine.rotors.rolling_bearings.rows.BallRow.inner_direction`."""
+        return -self.direction if self.outer_turns else self.direction
+
+    @property
     def tilt_arms(self) -> FloatArray:
         """l_k: arm of each slice's contact normal about the bearing's centre, (slices,) [m]."""
         return np.asarray(self.position + self.slice_places)
@@ -312,10 +317,10 @@ class TaperedRollerRow(LineContactRow):
 
     @property
     def tilt_arms(self) -> FloatArray:
-        """l_k = z_m cos α − σ (½ D_pw sin α + ½ D sin β + x_k), (slices,) [m]."""
+        """l_k = z_m cos α − σ (½ D_pw sin α + ½ D sin β + x_k), σ of the inner ring, (slices,) [m]."""
         foot = 0.5 * self.pitch_diameter * math.sin(self.angle)
         foot += 0.5 * self.roller_diameter * math.sin(self.roller_angle)
-        return np.asarray(self.position * math.cos(self.angle) - self.direction * (foot + self.slice_places))
+        return np.asarray(self.position * math.cos(self.angle) - self.inner_direction * (foot + self.slice_places))
 
     @property
     def slice_drops(self) -> FloatArray:

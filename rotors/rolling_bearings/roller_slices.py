@@ -166,7 +166,8 @@ class RollerSlices:
 
     def _flange(self, q: FloatArray, side: int) -> tuple[FloatArray, FloatArray]:
         """Slopes (rollers, 5) by q of the flanges' approach at each roller towards one side, and the approach."""
-        row, radius = self.row, 0.5 * self.row.pitch_diameter
+        row = self.row
+        radius = (-0.5 if row.outer_turns else 0.5) * row.pitch_diameter
         play = 0.5 * row.axial_clearance if isinstance(row, RollerRow) else 0.0
         zero = np.zeros(row.count)
         axial = np.column_stack(

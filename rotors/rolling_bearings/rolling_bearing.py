@@ -2,6 +2,10 @@
 
 The inner ring moves by q = (x, y, z, rotation about x, rotation about y) against the outer, taken at the bearing's
 centre. A row's own direction is +1 where pushing the inner ring towards +z loads its contacts, −1 where −z does.
+Where the outer ring turns with the shaft, as of a planet on its pin, q and the direction are the outer ring's. Against
+it the inner ring moves by −q: elements are pressed opposite to the shaft's motion, and mirrored along z a pressed
+element sees z − R (θ_x sin ψ − θ_y cos ψ), ψ the azimuth opposite to it. The pressure centre of a row lies on the side
+of its inner ring's push, so that rows of the directions (1, −1) are face to face.
 Double-row and paired bearings stand back to back, face to face or in tandem. A floating bearing has an outer ring that
 slides in its seat along z, without friction: it takes the place at which the elements have no axial force.
 
@@ -44,8 +48,9 @@ class RollingBearing:
     Raises
     ------
     RotorError
-        No rows, a preload that is not finite, or one on rollers without flanges, which have no axial stiffness. A
-        floating bearing with a preload, an axial offset of a single row, or rows that carry thrust one way only.
+        No rows, rows that turn with different rings, a preload that is not finite, or one on rollers without flanges,
+        which have no axial stiffness. A floating bearing with a preload, an axial offset of a single row, or rows that
+        carry thrust one way only.
     """
 
     rows: Sequence[Row]
@@ -62,6 +67,10 @@ class RollingBearing:
         require_finite(f"axial preload of {self.name}", self.axial_preload)
         if self.catalogue_rating is not None:
             require_finite(f"dynamic rating of {self.name}", self.catalogue_rating, positive=True)
+        turning = {"outer" if row.outer_turns else "inner" for row in self.rows}
+        require(
+            len(turning) == 1, f"rings of {self.name} that turn", sorted(turning), "one: its rows share their rings"
+        )
         self._require_rows_apart()
         if self.floating:
             self._require_floats()
@@ -154,7 +163,8 @@ class RollingBearing:
 
 Arrangement = Literal["back to back", "face to face", "tandem"]
 
-# Directions of the left and the right row. Contact lines of (1, −1) run apart towards the axis: stiff against tilting.
+# Directions in which the left and the right row carry a push of the inner ring. Contact lines of (1, −1) run apart
+# towards the axis: stiff against tilting.
 _DIRECTIONS: dict[str, tuple[int, int]] = {"back to back": (1, -1), "face to face": (-1, 1), "tandem": (1, 1)}
 
 
@@ -188,6 +198,8 @@ def paired(
     left, right = _DIRECTIONS[arrangement]
     opposed = preload == 0.0 or left != right
     require(opposed, "preload of rows in tandem", preload, "none: give the bearing an axial_preload")
+    if left != right and row.outer_turns:
+        left, right = right, left
     offset = row.axial_offset if preload == 0.0 else preload_offset(row, preload)
     rows = (
         replace(row, position=-0.5 * spacing, direction=left, axial_offset=offset),

@@ -136,11 +136,20 @@ class BallRow:
         return radial + 2.0 * distance * offset * math.sin(angle) + offset**2
 
     @property
+    def inner_direction(self) -> int:
+        """Direction in which a push of the inner ring along z loads the row: opposite where the outer ring turns."""
+        return -self.direction if self.outer_turns else self.direction
+
+    @property
     def inner_groove_centre(self) -> tuple[float, float]:
-        """Radius of the inner groove's centres of curvature, and their place along z [m]."""
+        """Radius of the inner groove's centres of curvature, and their place along z [m].
+
+        The radius is negative where the outer ring turns: it tilts the grooves opposite to what it presses.
+        """
         arm = (self.inner_groove - 0.5) * self.ball_diameter
         radius = 0.5 * self.pitch_diameter + arm * math.cos(self.contact_angle)
-        return radius, self.position + self.direction * arm * math.sin(self.contact_angle)
+        place = self.position + self.inner_direction * arm * math.sin(self.contact_angle)
+        return -radius if self.outer_turns else radius, place
 
     @property
     def has_axial_stiffness(self) -> bool:

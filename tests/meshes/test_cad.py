@@ -71,6 +71,24 @@ def _recess(gmsh: Any) -> None:
     occ.addBox(40, 30, 10, 20, 20, 20)
 
 
+def _rounded(gmsh: Any) -> None:
+    """A box with a cavity whose edges are rounded by 60 mm, and bores of 60 and 52 mm through both end walls."""
+    occ = gmsh.model.occ
+    cavity = occ.addBox(10, 10, 10, 280, 180, 180)
+    occ.synchronize()
+    faces = gmsh.model.getBoundary([(3, cavity)], oriented=False)
+    edges = {edge for _, edge in gmsh.model.getBoundary(faces, combined=False, oriented=False)}
+    rounded = occ.fillet([cavity], sorted(edges), [60.0])
+    holes = [(3, occ.addCylinder(x, 100, -10, 0, 0, 300, radius)) for x, radius in ((100, 30), (200, 26))]
+    occ.cut([(3, occ.addBox(0, 0, 0, 300, 200, 200))], [*rounded, *holes])
+
+
+def test_few_facets_of_coarse_fillets_are_no_bores(drawn: Any) -> None:
+    mesh = mesh_cad(drawn("rounded.step", _rounded), 0.04, order=1).mesh
+    assert [bore.diameter for bore in find_bores(mesh)] == pytest.approx([0.06, 0.06, 0.052, 0.052])
+    assert find_bores(mesh, axis=(1.0, 0.0, 0.0)) == find_bores(mesh, axis=(0.0, 1.0, 0.0)) == ()
+
+
 def _void_in_a_void(gmsh: Any) -> None:
     """A hollow box, in it a loose block with a void of its own."""
     occ = gmsh.model.occ

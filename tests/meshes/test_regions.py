@@ -149,6 +149,45 @@ def test_half_a_bore_is_one_and_a_third_is_none() -> None:
         cylinder_facets(third, (0.0, 0.0, 0.0), 0.06)
 
 
+def _recess(profile: list[complex]) -> Mesh:
+    """One brick behind each side of a polygon in the plane, 50 mm deep."""
+    inside = np.array(profile)
+    flat = np.concatenate([inside, inside.mean() + 1.5 * (inside - inside.mean())])
+    heights = np.zeros(len(flat)), np.full(len(flat), 0.05)
+    points = np.concatenate([np.column_stack([flat.real, flat.imag, z]) for z in heights])
+    first = np.arange(len(profile))
+    side = np.column_stack([first, first + len(first), np.roll(first, -1) + len(first), np.roll(first, -1)])
+    return Mesh(points, (ElementBlock("hexahedron", np.column_stack([side, side + len(flat)])),))
+
+
+def _arc(begin: float, end: float, sides: int, radius: float = 0.03) -> list[complex]:
+    return list(radius * np.exp(1j * np.linspace(begin, end, sides + 1)))
+
+
+@pytest.mark.parametrize("cut", [3e-3, 6e-3, 10e-3, 14e-3])
+def test_a_square_recess_with_cut_corners_is_no_bore(cut: float) -> None:
+    """Its eight corners lie on one circle."""
+    corner = [0.03 + 1j * (0.03 - cut), 0.03 - cut + 0.03j]
+    assert find_bores(_recess([1j**quarter * one for quarter in range(4) for one in corner])) == ()
+
+
+@pytest.mark.parametrize("sides", [2, 3, 5])
+def test_the_round_ends_of_a_slot_are_no_bores(sides: int) -> None:
+    right, left = _arc(-0.5 * math.pi, 0.5 * math.pi, sides), _arc(0.5 * math.pi, 1.5 * math.pi, sides)
+    for length in (1e-3, 5e-3):
+        assert find_bores(_recess([one + length for one in right] + [one - length for one in left])) == ()
+
+
+@pytest.mark.parametrize("sides", [5, 8])
+def test_a_flat_is_no_part_of_its_bore_and_closes_a_half_one(sides: int) -> None:
+    """A chord at 2/3 of the radius leaves 1 - arccos(2/3)/π of the circle."""
+    begin = math.acos(2.0 / 3.0)
+    (bore,) = find_bores(_recess(_arc(begin, math.tau - begin, sides)))
+    assert bore.roundness == pytest.approx(1.0 - begin / math.pi, abs=0.004)
+    assert bore.diameter == pytest.approx(0.06)
+    assert find_bores(_recess(_arc(0.5 * math.pi, 1.5 * math.pi, sides))) == ()
+
+
 def test_of_two_bores_on_one_axis_the_nearest_is_taken() -> None:
     near, far = _ring(9), _ring(9)
     points = np.concatenate([near.points, far.points + [0.0, 0.0, 0.2]])

@@ -146,6 +146,31 @@ def test_half_a_loaded_circle_of_balls_has_the_life_of_iso_281() -> None:
     assert reference_revolutions(state) == pytest.approx(reference_revolutions(state, own))
 
 
+def test_a_turning_outer_ring_has_the_mean_load_of_the_ring_that_turns() -> None:
+    """Sjövall's means of the rings change places: J_2/J_1 = 0.407/0.389 of balls, 0.378/0.364 of rollers.
+
+    With the parts 1/(1 + T) and T/(1 + T) of the rings in the sum of ISO/TS 16281, j = J_2/J_1 and the powers p of Q_c
+    and r of the sum, the life is [(j^p + T j^-p)/(1 + T)]^-r of that with a turning inner ring.
+    """
+    balls = 1.044 * (59.5 / 60.5) ** 1.72 * (0.52 / 0.53 * 0.06 / 0.04) ** 0.41
+    rollers = 1.038 * (57.0 / 63.0) ** (143.0 / 108.0)
+    rows: list[tuple[BallRow | RollerRow, float, float, float, float]] = [
+        (BallRow(200, 0.5e-3, 60e-3), balls, 0.407 / 0.389, 10.0 / 3.0, 0.9),
+        (RollerRow(60, 3e-3, 7e-3, 60e-3), rollers, 0.378 / 0.364, 4.5, 8.0 / 9.0),
+    ]
+    for row, ratio, j, power, root in rows:
+        lives = [
+            reference_revolutions(
+                rolling_equilibrium(RollingBearing([one]), [300.0, 0, 0, 0, 0], held={"rx": 0.0, "ry": 0.0}), 3000.0
+            )
+            for one in (row, replace(row, outer_turns=True))
+        ]
+        t = ratio**power
+        expected = ((j**power + t * j**-power) / (1.0 + t)) ** -root
+        assert abs(expected - 1.0) > 0.02
+        assert lives[1] / lives[0] == pytest.approx(expected, rel=3e-3)
+
+
 def test_clearance_and_preload_cost_life() -> None:
     row = BallRow(**BALLS)
     exact = reference_revolutions(under(row, 3000.0), 35100.0)

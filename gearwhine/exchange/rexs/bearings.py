@@ -17,18 +17,24 @@ from gearwhine.exchange.rexs.placement import along
 from gearwhine.exchange.rexs.quantities import deg, mm, of, plain, um
 from gearwhine.exchange.rexs.shafts import RIGID_RADIAL, RIGID_TILT, Bodies, Body
 
+DOUBLE_ROW = "double-row-angular-contact"
 TYPES = {
     "radial_grooved_ball_bearing": "deep-groove",
     "angular_contact_ball_bearing": "angular-contact",
     "four_point_contact_ball_bearing": "four-point",
     "radial_self_aligning_ball_bearing": "self-aligning-ball",
+    "radial_self-aligning_ball_bearing": "self-aligning-ball",
     "radial_roller_bearing": "cylindrical-roller",
     "radial_needle_roller_bearing": "cylindrical-roller",
     "radial_tapered_roller_bearing": "tapered-roller",
     "radial_self_aligning_roller_bearing": "spherical-roller",
     "radial_spherical_roller_bearing": "spherical-roller",
+    "double_row_angular_contact_bearing": DOUBLE_ROW,
 }
-"""Type of a catalogue bearing by `bearing_type`; a later one of a type is its name in other versions."""
+"""Type of a catalogue bearing by `bearing_type`; a later one of a type is its name in other versions.
+
+The schema's balls in angular contact are :data:`DOUBLE_ROW` where they have two rows on common rings.
+"""
 ELEMENTS = {
     "deep-groove": "ball",
     "angular-contact": "ball",
@@ -39,8 +45,12 @@ ELEMENTS = {
     "spherical-roller": "spherical-roller",
 }
 """Rolling element of each type."""
-_ANGLED = ("angular-contact", "four-point", "tapered-roller", "self-aligning-ball", "spherical-roller")
+_ANGLED = ("angular-contact", DOUBLE_ROW, "four-point", "tapered-roller", "self-aligning-ball", "spherical-roller")
 ONE_WAY = ("angular-contact", "tapered-roller")
+SPRUNG_BOTH_WAYS = ("deep-groove", "four-point")
+"""Types of one row that carries thrust both ways: the sign of a preload says which way a spring presses it."""
+SENSES = {"back to back": ("positive", "negative"), "face to face": ("negative", "positive")}
+"""Sense in which each of two opposed rows carries thrust, by their arrangement."""
 CLEARANCES = (
     "operating_radial_bearing_clearance",
     "mounted_radial_bearing_clearance",
@@ -222,6 +232,9 @@ def _rolling(unit: GearUnit, mounted: Mounted, z: float, place: int) -> dict[str
         unit.notes.changed(component.label, f"{shown}: springs in its place", "bearing", place, "stiffness")
         return None
     rows = unit.model.parts_of(component.number, "rolling_bearing_row")
+    is_apart = component.positive("distance_between_bearing_rows", "m") is not None
+    if kind == "angular-contact" and _row_count(component, rows) == 2 and not is_apart:
+        kind = kind if _sense(component, rows) in ("positive", "negative") else DOUBLE_ROW
     geometry = _geometry(unit, component, kind, rows)
     rolling = geometry if geometry is not None else _by_catalogue(unit, mounted, kind, rows, z, place)
     rolling |= _mounting(unit, mounted, kind, rows, place)
@@ -230,7 +243,7 @@ def _rolling(unit: GearUnit, mounted: Mounted, z: float, place: int) -> dict[str
 
 def _geometry(unit: GearUnit, component: Component, kind: str, rows: list[Component]) -> dict[str, Any] | None:
     """Return the inside of a bearing by its first row and the elements in it; None where the file has it not."""
-    if not rows:
+    if not rows or kind not in ELEMENTS:
         return None
     row = rows[0]
     elements = unit.model.parts_of(row.number, "rolling_element")
@@ -317,8 +330,10 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
     component, notes = mounted.component, unit.notes
     at = ("bearing", place, "stiffness")
     table: dict[str, Any] = {}
-    clearance = next((name for name in CLEARANCES if component.has(name)), None)
-    if clearance is not None and kind not in ONE_WAY:
+    # The clearance of one row before mounting is not that in which it is set against another one.
+    clearances = CLEARANCES[:2] if kind in ONE_WAY else CLEARANCES
+    clearance = next((name for name in clearances if component.has(name)), None)
+    if clearance is not None:
         value = component.number_of(clearance, "m") or 0.0
         if abs(value) > _NO_VALUE:
             table["clearance"] = um(value)
@@ -328,12 +343,11 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
     static = component.positive(("radial_static_load_rating", "static_capacity"), "N")
     if dynamic is not None:
         table["dynamic_rating"] = of(dynamic / 1e3, "kN")
-    if static is not None and dynamic is not None and not _geometry_is_given(unit, component, kind, rows):
+    if static is not None and not _geometry_is_given(unit, component, kind, rows):
         table["static_rating"] = of(static / 1e3, "kN")
-    sense = component.text("axial_force_absorption")
-    if not sense and rows:
-        sense = rows[0].text("axial_force_absorption_of_row")
-    if kind in ONE_WAY:
+    sense = _sense(component, rows)
+    is_pair = kind == "deep-groove" and _row_count(component, rows) == 2
+    if kind in ONE_WAY or (is_pair and component.positive("distance_between_bearing_rows", "m") is not None):
         table |= _thrust(unit, mounted, sense, rows, place)
     elif sense == "no_direction" and kind != "cylindrical-roller":
         table["floating"] = True
@@ -341,13 +355,16 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
         notes.changed(component.label, "it locates its shaft in both senses, not in one", *at)
     elif sense in ("positive", "negative", "both_directions") and kind == "cylindrical-roller":
         notes.changed(component.label, "rollers without flanges, which take no thrust", *at)
-    force = component.positive(("preload_force", "initial_load"), "N")
+    force = component.number_of(("preload_force", "initial_load"), "N") or 0.0
+    is_backward = force < 0.0 and kind in SPRUNG_BOTH_WAYS and "arrangement" not in table
+    if is_backward:
+        force, table["carries"] = -force, "-z"
     distance = component.number_of(("preload_distance", "initial_load_shift"), "m") or 0.0
     if kind != "cylindrical-roller" and not table.get("floating"):
-        if force is not None:
+        if force > 0.0:
             table["preload"] = of(force, "N")
         if abs(distance) > _NO_VALUE and "arrangement" not in table:
-            table["axial_offset"] = um(distance)
+            table["axial_offset"] = um(-distance if is_backward else distance)
     for name in ("misalignment_in_v_direction", "misalignment_in_w_direction"):
         if abs(component.number_of(name, "m") or 0.0) > _NO_VALUE:
             notes.left_out(f"{component.label}: {name}", "seats of a case on the ground have no offset")
@@ -361,16 +378,31 @@ def _geometry_is_given(unit: GearUnit, component: Component, kind: str, rows: li
 def _thrust(unit: GearUnit, mounted: Mounted, sense: str, rows: list[Component], place: int) -> dict[str, Any]:
     """Return the sense in which a bearing of angled elements carries thrust, or the arrangement of its two rows."""
     component = mounted.component
-    count = component.whole("number_of_bearing_rows") or len(rows) or 1
     spacing = component.positive("distance_between_bearing_rows", "m")
-    if count == 2 and spacing is not None:
-        text = "its two rows stand back to back"
-        unit.notes.assumed(component.label, text, "bearing", place, "stiffness")
-        return {"arrangement": "back to back", "spacing": mm(spacing)}
     # A component on a shaft may have an axis of its own, which may point the other way.
     ahead = along(unit.placement(component if component.has("u_axis_vector") else mounted.shaft)) > 0
+    forward = "positive" if ahead else "negative"
+    if _row_count(component, rows) == 2 and spacing is not None:
+        senses = tuple(row.text("axial_force_absorption_of_row") for row in rows)
+        table: dict[str, Any] = {"spacing": mm(spacing)}
+        if senses in (("positive", "positive"), ("negative", "negative")):
+            return table | {"arrangement": "tandem", "carries": "+z" if senses[0] == forward else "-z"}
+        opposed = next((name for name, pair in SENSES.items() if pair == senses), None)
+        if opposed is None:
+            unit.notes.assumed(component.label, "its two rows stand back to back", "bearing", place, "stiffness")
+        return table | {"arrangement": opposed or "back to back"}
     if sense in ("positive", "negative"):
-        return {"carries": "+z" if (sense == "positive") == ahead else "-z"}
+        return {"carries": "+z" if sense == forward else "-z"}
     text = "no sense of its thrust: it carries +z, away from the left end"
     unit.notes.assumed(component.label, text, "bearing", place, "stiffness")
     return {"carries": "+z"}
+
+
+def _row_count(component: Component, rows: list[Component]) -> int:
+    return component.whole("number_of_bearing_rows") or len(rows) or 1
+
+
+def _sense(component: Component, rows: list[Component]) -> str:
+    """Return the sense in which a bearing carries thrust, as the file names it."""
+    sense = component.text("axial_force_absorption")
+    return sense or (rows[0].text("axial_force_absorption_of_row") if rows else "")

@@ -6,12 +6,21 @@ import numpy as np
 
 from gearwhine.case import Case
 from gearwhine.case.bearings import Bearing, RollingCatalogue, RollingGeometry, RollingStiffness, StopStiffness
-from gearwhine.exchange.rexs.bearings import CLEARANCES, ELEMENTS, ONE_WAY, TYPES
+from gearwhine.exchange.rexs.bearings import (
+    CLEARANCES,
+    DOUBLE_ROW,
+    ELEMENTS,
+    ONE_WAY,
+    SENSES,
+    SPRUNG_BOTH_WAYS,
+    TYPES,
+)
 from gearwhine.exchange.rexs.model import Attribute
 from gearwhine.from_case.rexs.shafts import Shafts
 from gearwhine.from_case.rexs.sheet import Sheet, plain, quantities, quantity
 
 _NAMED = {kind: name for name, kind in reversed(TYPES.items())}
+_NAMED[DOUBLE_ROW] = _NAMED["angular-contact"]
 """`bearing_type` of each type of the case, the first of the import's names for it."""
 _KIND_OF = {element: kind for kind, element in reversed(ELEMENTS.items())}
 _SAME = 1e-9  # part by which stiffness may differ and is one number
@@ -128,12 +137,15 @@ def _add_rolling(
         sheet.left_out(about, rolling, ("catalogue", "static_rating", *_MOUNTED), "rolling.")
     if angle:
         row["pressure_angle"] = quantity(angle, "rad")
-    attributes["bearing_type"] = plain(_NAMED.get(kind, f"{kind.replace('-', '_')}_bearing"))
-    attributes |= _mounting(rolling, kind, static, sheet, about)
+    attributes["bearing_type"] = plain(_NAMED[kind])
+    attributes |= _mounting(rolling, kind, static)
     number = sheet.add(detail, name, attributes)
-    if row:
-        of_row = sheet.add("rolling_bearing_row", attributes=row)
-        sheet.relate_in_order("ordered_assembly", 1, assembly=number, part=of_row)
+    along = "positive" if rolling.carries == "+z" else "negative"
+    senses = () if rolling.arrangement == "single" else SENSES.get(rolling.arrangement, (along, along))
+    rows = [row | {"axial_force_absorption_of_row": plain(sense)} for sense in senses] or [row]
+    for place, one in enumerate(filter(None, rows), start=1):
+        of_row = sheet.add("rolling_bearing_row", attributes=one)
+        sheet.relate_in_order("ordered_assembly", place, assembly=number, part=of_row)
         if element:
             of_element = sheet.add("rolling_element", attributes=element)
             sheet.relate_in_order("ordered_assembly", 1, assembly=of_row, part=of_element)
@@ -147,22 +159,24 @@ def _radius(groove: float | None, rolling: RollingGeometry) -> float | None:
 _MOUNTED = ("clearance", "preload", "axial_offset", "floating", "carries", "arrangement", "spacing", "dynamic_rating")
 
 
-def _mounting(
-    rolling: RollingGeometry | RollingCatalogue, kind: str, static: float | None, sheet: Sheet, about: str
-) -> dict[str, Attribute]:
+def _mounting(rolling: RollingGeometry | RollingCatalogue, kind: str, static: float | None) -> dict[str, Attribute]:
     """Return clearance, preload, sense of thrust and ratings of a rolling bearing."""
+    sense = 1.0 if rolling.carries == "+z" else -1.0
     attributes = quantities({CLEARANCES[0]: rolling.clearance or None}, "m", "mum")
     ratings = {"radial_dynamic_load_rating": rolling.dynamic_rating, "radial_static_load_rating": static}
     attributes |= quantities(ratings, "N", "kN")
-    attributes |= quantities({"preload_force": rolling.preload or None}, "N")
-    attributes |= quantities({"preload_distance": rolling.axial_offset or None}, "m", "mum")
-    absorbed = "no_direction" if rolling.floating or kind == "cylindrical-roller" else "both_directions"
-    if rolling.arrangement == "single" and kind in ONE_WAY:
-        absorbed = "positive" if rolling.carries == "+z" else "negative"
+    is_single = rolling.arrangement == "single"
+    spring = sense * rolling.preload if is_single and kind in SPRUNG_BOTH_WAYS else rolling.preload
+    attributes |= quantities({"preload_force": spring or None}, "N")
+    # Of one row that carries one way the distance is along its own sense.
+    moved = rolling.axial_offset if kind in ONE_WAY else sense * rolling.axial_offset
+    attributes |= quantities({"preload_distance": moved or None}, "m", "mum")
+    flanged = kind != "cylindrical-roller" or rolling.flanges == "both"
+    absorbed = "both_directions" if flanged and not rolling.floating else "no_direction"
+    if (is_single and kind in ONE_WAY) or rolling.flanges == "one":
+        absorbed = "positive" if sense > 0.0 else "negative"
     attributes["axial_force_absorption"] = plain(absorbed)
-    if rolling.arrangement != "single":
+    if kind == DOUBLE_ROW or not is_single:
         attributes["number_of_bearing_rows"] = plain(2)
         attributes |= quantities({"distance_between_bearing_rows": rolling.spacing}, "m")
-        if rolling.arrangement != "back to back":
-            sheet.notes.left_out(about, f"that its rows stand {rolling.arrangement}")
     return attributes

@@ -12,6 +12,9 @@ from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
 from gearwhine.coupling.analyses.gear_condition import INDICATORS
+from gearwhine.detection.samples import detection_design
+from gearwhine.variation.quantities import Wanted
+from gearwhine.variation.samples import VariedCase
 
 CRACK = 'gear.pinion.fault={ kind = "crack", tooth = 3, depth = "1 mm" }'
 SHORT = [
@@ -124,6 +127,45 @@ def test_the_bearing_of_a_planet_that_is_written_once_has_the_fault() -> None:
     assert all(INDICATORS[name].of_time for name in planned.monitor.indicators)
     healthy = planned.source.changed_case([planned.without])
     assert [len(one.fault) for one in healthy.bearing if one.rotor.startswith("planet")] == [0] * 6
+
+
+SLIPPING = {
+    "bearing.input-back.stiffness": {
+        "rolling": {"element": "ball", "count": 11, "element_diameter": "7 mm", "pitch_diameter": "41 mm"}
+        | {"clearance": "5 um", "law": "nonlinear"}
+    },
+    "bearing.input-back.fault": {"on": "outer", "length": "1 mm", "depth": "0.1 mm", "azimuth": "-60 deg"},
+    "transient.revolutions": 12,
+    "transient.discard": 6,
+}
+
+
+def test_every_record_has_a_course_of_the_cage_of_its_own() -> None:
+    """Slip alone scatters the records, healthy ones too; the seed that is written is that of the reference."""
+    from gearwhine.analyses.detection_result import plan_detection
+
+    detection = {"fault": "bearing.input-back.fault.length", "severities": ["0.5 mm", "1 mm"]}
+    for scatter, seed in ((0.0, 7), (0.02, 7), (0.02, 2**31 - 1)):
+        slip = {"mean": 0.01, "scatter": scatter, "seed": seed}
+        changes = SLIPPING | {"bearing.input-back.slip": slip, "detection": detection}
+        source = gw.load("small-gearbox", changes)._source
+        if scatter == 0.0:
+            with pytest.raises(CaseError, match="without scatter"):
+                plan_detection(source)
+            continue
+        planned = plan_detection(source)
+        assert planned.is_varied
+        assert [one for _, one in planned.slips] == [seed]
+        study = planned.study(VariedCase(planned.source, planned.inputs, Wanted(("motion",))))
+        points = detection_design(np.empty((14, 0)), planned.settings.sizes, 10, 2, ()).points
+        slips = {number: study.case(point).bearing for number, point in enumerate(points)}
+        found = [next(one.slip.build() for one in held if one.slip is not None) for held in slips.values()]
+        assert found[0].seed == seed
+        assert all((one.mean, one.scatter) == (0.01, scatter) for one in found)
+        # Angles of the cage after some passes, as different as independent walks: none is another's.
+        walks = np.array([one.deviations("input-back", 0)[1:200] for one in found])
+        steps = np.corrcoef(np.diff(walks, axis=1)) - np.eye(len(points))
+        assert np.abs(steps).max() < 0.35
 
 
 @pytest.mark.slow

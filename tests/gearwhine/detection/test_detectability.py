@@ -121,10 +121,17 @@ def test_the_samples_of_a_study_are_other_gearboxes_with_earlier_records() -> No
     assert kinds.tolist() == [REFERENCE] + [HEALTHY] * 5 + [FAULTY] * 4 + [BASELINE] * 9
     assert design.points[6:10, 1].tolist() == [1e-3, 1e-3, 2e-3, 2e-3]
     for number in range(9):
-        own, earlier = design.points[design.gearbox(number), 2:], design.points[design.baseline(number), 2:]
+        own, earlier = design.points[design.gearbox(number), 3:], design.points[design.baseline(number), 3:]
         assert own.tolist() == cube[number].tolist()
         assert earlier[:2].tolist() == own[:2].tolist()
         assert earlier[2] != own[2]
+    # Every record has a number of its own, which a further size leaves as it is.
+    assert len(set(design.points[:, 2])) == len(design.points)
+    less = detection_design(cube[:7], [1e-3], 5, 2, [2])
+    for number in range(7):
+        for place in ("gearbox", "baseline"):
+            same = [one.points[getattr(one, place)(number), 2] for one in (less, design)]
+            assert same[0] == same[1]
     fleet = detection_design(cube, [1e-3, 2e-3], 5, 2)
     assert len(fleet.points) == 10
     assert {fleet.baseline(number) for number in range(9)} == {0}

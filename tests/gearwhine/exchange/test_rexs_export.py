@@ -3,17 +3,23 @@
 import fnmatch
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, get_args
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from rexs_files import helical_stage
 
 from gearwhine.case import Case, CaseError, load_case, parse_case
+from gearwhine.case.bearings import Element, RollingStiffness
 from gearwhine.case.load import imported_case
 from gearwhine.case.rotors import RoundDisc
 from gearwhine.exchange.rexs import read_content
 from gearwhine.exchange.rexs.model import Component, RexsModel
 from gearwhine.from_case.rexs import ExportedUnit, rexs_of
+from gearwhine.rotors.rolling_bearings import RollingElements
+from gearwhine.rotors.rolling_bearings.catalogue import CatalogueType
 
 BUNDLED = (
     *("spur-pair", "helical-pair", "small-gearbox", "three-stage", "two-stage-reducer", "nasa-gear-noise-rig"),
@@ -323,6 +329,78 @@ def test_what_the_bundled_cases_do_not_have_comes_back_too() -> None:
         sorted(torque.value for torque in case.parts.torques), rel=1e-12
     )
     assert {note.text for note in exported.notes} == set()
+
+
+ANGLES = {"four-point": 35, "four-point-ball": 30, "self-aligning-ball": 10, "tapered-roller": 14}
+
+
+@st.composite
+def rolling_bearings(draw: st.DrawFn) -> dict[str, Any]:
+    """A rolling bearing of any type, by its main dimensions or its elements, with what such a one may have."""
+    by_catalogue = draw(st.booleans())
+    kind = str(draw(st.sampled_from(get_args(CatalogueType if by_catalogue else Element))))
+    angle = {"contact_angle": f"{ANGLES.get(kind, 25)} deg"}
+    if by_catalogue:
+        catalogue: dict[str, Any] = {"type": kind, "bore": "30 mm", "outer_diameter": "62 mm", "width": "24 mm"}
+        is_angled = kind not in ("deep-groove", "cylindrical-roller") and draw(st.booleans())
+        rolling: dict[str, Any] = {"catalogue": catalogue | (angle if is_angled else {})}
+    else:
+        size = {"count": 11, "element_diameter": "9 mm", "pitch_diameter": "46 mm"}
+        rolling = {"element": kind, **size} | ({"element_length": "9.5 mm"} if kind.endswith("roller") else {})
+        is_angled = kind in ANGLES or (kind == "ball" and draw(st.booleans()))
+        rolling |= angle if is_angled else {}
+    one_way = kind in ("angular-contact", "tapered-roller") or (kind == "ball" and is_angled)
+    cylinders = kind in ("cylindrical-roller", "roller")
+    more = {"clearance": "-4 um", "carries": "-z", "dynamic_rating": "31 kN"}
+    if (one_way or kind in ("deep-groove", "ball")) and draw(st.booleans()):
+        arrangement = draw(st.sampled_from(["back to back", "face to face", "tandem"]))
+        rolling |= {"arrangement": arrangement, "spacing": "27 mm"}
+        more |= {"preload": "80 N"}
+    elif not cylinders:
+        more |= {"preload": "80 N", "axial_offset": "-3 um"}
+    if not (one_way or cylinders or "arrangement" in rolling) and draw(st.booleans()):
+        rolling |= {"floating": True}
+        more = {"clearance": "-4 um", "dynamic_rating": "31 kN"}
+    return rolling | {key: more[key] for key in draw(st.sets(st.sampled_from(sorted(more))))}
+
+
+@settings(max_examples=60, deadline=None)
+@given(rolling_bearings())
+def test_every_rolling_bearing_comes_back_with_its_forces(rolling: dict[str, Any]) -> None:
+    """The inner ring displaced, elements, preload, clearance and arrangement have the same forces; C is the same."""
+    document = everything()
+    document["bearing"][0]["stiffness"] = {"rolling": rolling}
+    case = parse_case(document)
+    exported, back = returned(case)
+    assert exported.notes == ()
+    before, after = (one.bearing[0].stiffness for one in (case, back))
+    assert isinstance(before, RollingStiffness)
+    assert isinstance(after, RollingStiffness)
+    assert after.rolling.kind == before.rolling.kind
+    assert after.rolling.dynamic_rating == before.rolling.dynamic_rating
+    built = [one.rolling.build("balls") for one in (before, after)]
+    assert built[0].floating == built[1].floating
+    moved = np.array([7e-6, -4e-6, 9e-6, 1e-4, -2e-4])
+    forces, returned_forces = (RollingElements(one).at(moved).gradient for one in built)
+    np.testing.assert_allclose(returned_forces, forces, rtol=1e-9, atol=1e-9 * np.abs(forces).max())
+
+
+@pytest.mark.parametrize(
+    ("ours", "written", "kind"),
+    [
+        ("angular_contact_ball_bearing", "double_row_angular_contact_bearing", "double-row-angular-contact"),
+        ("radial_self_aligning_ball_bearing", "radial_self-aligning_ball_bearing", "self-aligning-ball"),
+    ],
+)
+def test_names_of_types_in_other_files_are_read(ours: str, written: str, kind: str) -> None:
+    """That of earlier exports, and that of the schema 1.0."""
+    document = everything()
+    size = {"type": kind, "bore": "30 mm", "outer_diameter": "62 mm", "width": "24 mm"}
+    document["bearing"][0]["stiffness"] = {"rolling": {"catalogue": size}}
+    xml = rexs_of(parse_case(document)).xml
+    back = parse_case(imported_case("unit.rexs", xml.replace(ours, written, 1).encode()).document)
+    assert isinstance(back.bearing[0].stiffness, RollingStiffness)
+    assert back.bearing[0].stiffness.rolling.kind == kind
 
 
 def numbers(model: RexsModel, kind: str, name: str, unit: str) -> list[float | None]:
