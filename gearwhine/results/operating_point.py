@@ -937,9 +937,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
     rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]
     yield from table_of(_ROLLING_COLUMNS, rolling, "Rolling bearings: elements, life, tangent stiffness along x, y, z")
-    yield from table_of(
-        _PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period; misaligned as unmodified flanks"
-    )
+    caption = "Gear pairs, means over the mesh period, with the misalignment found (as of unmodified flanks)"
+    yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], caption)
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _misalignments(document)
     yield from _planetary(document)
