@@ -800,8 +800,14 @@ _PICTURES = (
     Picture("load-pattern", "Contact pattern over the face and the path of contact: loaded edges shorten life."),
     Picture("load-shaft", "Deflected shaft in both planes, enlarged; arrows: forces on it."),
     Picture("load-housing", "Housing under the mean load, enlarged; colour: displacement."),
-    Picture("load-sensitivity-line", "Material added on blue places lowers the sensor's line, on red ones raises it."),
-    Picture("load-sensitivity-sound", "Material added on blue places lowers the sound power, on red ones raises it."),
+    Picture(
+        "load-sensitivity-line",
+        "Material added on blue places lowers the sensor's line, on red ones raises it; the shape is its motion.",
+    ),
+    Picture(
+        "load-sensitivity-sound",
+        "Material added on blue places lowers the sound power, on red ones raises it; shape: the loudest line.",
+    ),
     Picture(
         "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
     ),
