@@ -52,6 +52,7 @@ from gearwhine.coupling.description.parts import (
     gear_inertia_on_shaft,
     inertia_with_discs,
     name_findings,
+    rim_findings,
     rotor_with_gears,
     station_findings,
 )
@@ -285,11 +286,14 @@ class Machine:
 
     def _findings(self) -> Iterator[Finding]:
         meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
+        motions = {} if self.housing_component is None else self.housing_component.ring_motions
+        rings = {name: (motion.shape[-1] - 2) // 4 for name, motion in motions.items()}
         yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
         yield from self._doubted_materials()
         for shaft in self.shafts:
             tips = [mounted.gear.outer_radius for mounted in self._gears_on(shaft.name)]
             yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
+            yield from rim_findings(shaft, self._gears_on(shaft.name), rings, meshing)
         for place, force in enumerate(self.forces):
             yield from force_findings(force, self.shaft(force.rotor).rotor, place)
         if self.gravity is not None:

@@ -533,9 +533,8 @@ class CaseStudy(Study):
         ----------
         aims : sequence of ReliefAim, optional
             Objective of the best relief of each pair, in place of those of the case.
-        without : sequence of {"harris-map", "relief", "pictures"}
-            What to leave out: the Harris maps, the search for the best tip relief, which takes most of the time, or the
-            pictures.
+        without : sequence of {"harris-map", "relief"}
+            What to leave out: the Harris maps, or the search for the best tip relief, which takes most of the time.
 
         Raises
         ------

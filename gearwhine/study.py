@@ -97,9 +97,8 @@ class Study(StudiedMachine):
         aims : sequence of ReliefAim, optional
             Objective of the best relief of each pair; by default those of
             :func:`gearwhine.coupling.analyses.gear_pairs.default_aims`.
-        without : sequence of {"harris-map", "relief", "pictures"}
-            What to leave out: the Harris maps, the search for the best tip relief, which takes most of the time, or the
-            pictures.
+        without : sequence of {"harris-map", "relief"}
+            What to leave out: the Harris maps, or the search for the best tip relief, which takes most of the time.
 
         Raises
         ------

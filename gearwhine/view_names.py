@@ -20,5 +20,5 @@ View = Literal[
 ]
 """Directions of view, see :mod:`gearwhine.housing.pictures.views`."""
 
-GearPart = Literal["harris-map", "relief", "pictures"]
-"""What the analysis of gear pairs may be without: Harris maps, the search for the best tip relief, its pictures."""
+GearPart = Literal["harris-map", "relief"]
+"""What the analysis of gear pairs may be without: Harris maps, the search for the best tip relief."""

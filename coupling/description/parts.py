@@ -651,23 +651,38 @@ def carrier_findings(machine: MachineParts) -> Iterator[Finding]:
                 yield Finding(("shaft", side.name), "axis", side.axis, expected)
 
 
-def rim_findings(shaft: Shaft, gears: Sequence[ShaftGear], rings: Sequence[str]) -> Iterator[Finding]:
+def rim_findings(
+    shaft: Shaft, gears: Sequence[ShaftGear], rings: Mapping[str, int], meshing: Iterable[frozenset[str]]
+) -> Iterator[Finding]:
     """Yield a seat for the rim of a ring gear that has no bore to follow, and rims and seats that miss each other.
+
+    The mean forces of N equal planets at equal angles add up in the orders N, 2 N, … around the ring and cancel in all
+    others, so that a bore of fewer orders does not deform under them. Harmonics of the meshes drive the others, too.
 
     Parameters
     ----------
     shaft : Shaft
     gears : sequence of ShaftGear
         Gears on it.
-    rings : sequence of str
-        Seats of the housing with ``ring_orders``.
+    rings : mapping of str to int
+        Highest order of each seat of the housing with ``ring_orders``.
+    meshing : iterable of frozenset of str
+        Both gears of each pair.
     """
     part, seat = ("shaft", shaft.name), shaft.rim_seat
+    inside = [mounted.name for mounted in gears if mounted.gear.is_internal]
+    planets = sum(not pair.isdisjoint(inside) for pair in meshing)
+    if seat is not None and rings.get(seat, planets) < planets:
+        expected = (
+            f"a seat with ring_orders of {planets} or more, such as {2 * planets}: the mean load of {planets} equal "
+            f"planets deforms a ring in {planets}, {2 * planets}, … waves, which are left out with {rings[seat]}"
+        )
+        yield Finding(part, "rim_seat", seat, expected, "warning")
     if seat is not None and seat not in rings:
         names = ", ".join(map(repr, rings)) or "none"
         expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or none for a rigid rim"
         yield Finding(part, "rim_seat", seat, expected)
-    if seat is not None and not any(mounted.gear.is_internal for mounted in gears):
+    if seat is not None and not inside:
         yield Finding(part, "rim_seat", seat, "none: no ring gear on this shaft, whose rim would follow the bore")
     for mounted in gears:
         support = mounted.gear.ring_support
@@ -696,9 +711,6 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             expected = f"a seat of the housing, one of {seat_names}, or None for the ground"
             yield Finding(("machine", ""), f"torque_supports.{number}.seat", support.seat, expected)
     shafts = {shaft.name: shaft for shaft in machine.shafts}
-    rings = () if housing is None else tuple(housing.ring_motions)
-    for shaft in machine.shafts:
-        yield from rim_findings(shaft, [gear for gear in machine.gears if gear.shaft == shaft.name], rings)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:

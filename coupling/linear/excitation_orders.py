@@ -236,9 +236,18 @@ def _bearing_lines(
 
 
 def _joined_steps(one: Sequence[_Steps], other: Sequence[_Steps], sidebands: int) -> list[_Steps]:
-    """Return the steps of two causes, and those by both that are no more than the farthest by one alone."""
+    """Return the steps of two causes, and those by both that are no more than the farthest by one alone.
+
+    Steps of one shaft by both, such as a carrier with a pinion, are those by either alone.
+    """
     farthest = max([sidebands, *map(_count, other)])
-    both = ([*first, *second] for first in one for second in other)
+    sources = [{source for source, _, _ in steps} for steps in other]
+    both = (
+        [*first, *second]
+        for first in one
+        for second, of_second in zip(other, sources, strict=True)
+        if of_second.isdisjoint(source for source, _, _ in first)
+    )
     return [*other, *one, *(steps for steps in both if _count(steps) <= farthest)]
 
 

@@ -39,6 +39,7 @@ _LENGTH_STEP = 1e-3  # step of the parameters that are lengths [m]
 _RELATIVE_STEP = 0.1  # step of the others, relative to their value
 _SOUND = "sound"  # name of the sound's lines in --line, beside the sensors
 _TWO_PI = 2.0 * np.pi
+_FAINT_FIELD = 1e-4  # product of motion and adjoint state, over the largest, up to which a harmonic is left out
 
 
 @dataclass(frozen=True)
@@ -81,10 +82,12 @@ class Ranking:
     point : OperatingPoint
     solved : SolvedLines or None
         Lines of the sensors and of the sound.
+    progress : callable
     """
 
     point: OperatingPoint
     solved: SolvedLines | None
+    progress: Progress = silent
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -105,8 +108,11 @@ class Ranking:
     @cached_property
     def adjoints(self) -> tuple[Adjoint, ...]:
         """Adjoint states of all outcomes of the gear pairs, and then of the lines."""
-        of_pairs = [state for pair in self.pair_adjoints for state in pair.values()]
-        return (*of_pairs, *(adjoint(self.point, self.model.by_static(line)) for line in self.lines))
+        found = [state for pair in self.pair_adjoints for state in pair.values()]
+        for number, line in enumerate(self.lines):
+            self.progress("adjoint states of gear pairs and lines", number / len(self.lines))
+            found.append(adjoint(self.point, self.model.by_static(line)))
+        return tuple(found)
 
     @property
     def outcomes(self) -> list[tuple[int, int]]:
@@ -139,9 +145,7 @@ class Ranking:
             [self.model.stepped_bearing_position(line, bearing, -step.size) for line in self.lines],
         )
 
-    def by_housing(
-        self, fields: StaticSensitivity, changes: Sequence[HousingChange], progress: Progress
-    ) -> list[Influence]:
+    def by_housing(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> list[Influence]:
         """Influences of parameters of the housing.
 
         Parameters
@@ -149,18 +153,17 @@ class Ranking:
         fields : StaticSensitivity
             Displacements of the housing at the operating point and in all adjoint states.
         changes : sequence of HousingChange
-        progress : callable
         """
         slopes = slopes_of(changes)
         by_equilibrium = by_changes(fields, changes)
-        report = partial(progress, "gradients of the housing's modes by its walls")
+        report = partial(self.progress, "gradients of the housing's modes by its walls")
         rates = None if self.solved is None else self.solved.rates(fields, changes, report)
         by_response = np.zeros((len(self.lines), len(changes)))
         if rates is not None:
             by_response = np.array([self.model.by_housing(line, rates) for line in self.lines]) / slopes
         influences = []
         for number, change in enumerate(changes):
-            progress("lines at a step of each wall", number / len(changes))
+            self.progress("lines at a step of each wall", number / len(changes))
             step = _Step(change.reference, change.thickness)
             # Derivatives of the housing are by the parameter's coordinate.
             in_coordinate = step.size / change.slope
@@ -262,10 +265,18 @@ class Ranking:
         return misalignments, amplitude, power
 
     def _response_density(self, fields: StaticSensitivity, line: Line) -> FloatArray:
-        """Change of a line by material added on the surface at the same equilibrium, shape (n_nodes,)."""
+        """Change of a line by material added on the surface at the same equilibrium, shape (n_nodes,).
+
+        It is the sum over the line's own harmonic and those that the stiffness that varies couples with it.
+        """
         assert self.solved is not None
-        motion, adjoint_motion = self.solved.field(line.motion), self.solved.field(line.adjoint)
-        return harmonic_surface_density(fields.mesh, fields.constants, motion, adjoint_motion, line.frequency)
+        density = np.zeros(len(fields.mesh.points))
+        sizes = [np.linalg.norm(one.motion) * np.linalg.norm(one.adjoint) for one in line.fields]
+        for one, size in zip(line.fields, sizes, strict=True):
+            if size > _FAINT_FIELD * max(sizes):
+                motion, against = self.solved.field(one.motion), self.solved.field(one.adjoint)
+                density += harmonic_surface_density(fields.mesh, fields.constants, motion, against, one.frequency)
+        return density
 
 
 def solve_load_sensitivity(
@@ -314,16 +325,17 @@ def solve_load_sensitivity(
     solved = solve_lines(machine, point, housing, acoustics, run, progress)
     sensor_line, sound_line = _chosen(line, solved)
     progress("adjoint states of gear pairs and lines")
-    ranking = Ranking(point, solved)
-    influences = []
-    for bearing in point.bearings:
+    ranking = Ranking(point, solved, progress)
+    adjoints, influences = ranking.adjoints, list[Influence]()
+    for number, bearing in enumerate(point.bearings):
+        progress("lines at a step of each bearing", number / len(point.bearings))
         influences += [ranking.by_bearing_stiffness(bearing.name), ranking.by_bearing_position(bearing.name)]
     density, line_density, sound_density = None, None, None
-    if ranking.adjoints and housing is not None and point.housing is not None:
+    if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
-        fields = housing_fields(housing, point, ranking.adjoints)
+        fields = housing_fields(housing, point, adjoints)
         density, line_density, sound_density = ranking.densities(fields, sensor_line, sound_line)
-        influences += ranking.by_housing(fields, changes, progress)
+        influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
     if housing is not None:

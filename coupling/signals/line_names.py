@@ -2,13 +2,14 @@
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a harmonic torque or motion of the base, the passing of the elements of a rolling bearing whose
-law follows them, a sideband, any other whole order. Sidebands by the turning of planet carriers are those that the
-machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`), and those of the mean load are
-orders of the carrier. Orders of a shaft and their sidebands count where something
-excites them (:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to
-the line. A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given
-apart from the cause. A line that is near no mode either, whole turns of a carrier off a harmonic of its planets'
-meshes, is one of their far sidebands, which parts that hand a motion on to each other leave.
+law follows them, a sideband, any other whole order. One that is much nearer to the line goes before a simpler one;
+causes that are about as near and as simple are named together. Sidebands by the turning of planet carriers are those
+that the machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`), and those of the mean
+load are orders of the carrier. Orders of a shaft and their sidebands count where something excites them
+(:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to the line. A
+line at none of these is free vibration, named after its mode. Either may be near a mode, which is given apart from the
+cause. A line that is near no mode either, whole turns of a carrier off a harmonic of its planets' meshes, is one of
+their far sidebands, which parts that hand a motion on to each other leave.
 """
 
 from collections.abc import Mapping, Sequence
@@ -38,7 +39,9 @@ _SIDEBANDS = 4  # by gears and loads; those by turning carriers are as many as t
 _ELEMENT_PASSES = 4
 _LOAD_MULTIPLES = 4
 _HALF_WIDTHS = 3.0  # reach of a line that slip makes wide: four fifths of its power
-_MUCH_NEARER = 0.25  # part of the distance from a sideband within which a whole order of a shaft is the cause
+_MUCH_NEARER = 0.25  # part of the distance from a cause within which another one is the cause
+_SAME_FREQUENCY = 1e-9  # relative difference of frequencies that are one
+_NONE = np.zeros(0, dtype=np.int64)
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
 
 
@@ -121,6 +124,7 @@ def line_names(
     )
     at = shaft_frequency * np.array([line.order for line in lines])
     widths = _HALF_WIDTHS * shaft_frequency * np.array([line.half_width for line in lines])
+    kinds = np.array([line.kind for line in lines])
     named = []
     for frequency, within in zip(frequencies, tolerances.tolist(), strict=True):
         order = frequency / shaft_frequency
@@ -132,28 +136,28 @@ def line_names(
         if modes is not None and mode is not None:
             # Excited or not, an order of a shaft that is further off than the mode is not the line's cause.
             of_shafts = min(within, abs(float(modes.eigenvalues[mode].imag) / (2.0 * np.pi) - frequency))
-        reach = {"mesh": within, "shaft": of_shafts, "load": within, "bearing": within, "sideband": of_shafts}
-        near_it = [lines[place] for place in np.flatnonzero(np.abs(at - frequency) <= within + widths).tolist()]
-        causes = {
-            kind: [
-                line
-                for line in near_it
-                if line.kind == kind
-                and abs(line.order * shaft_frequency - frequency)
-                <= distance + _HALF_WIDTHS * line.half_width * shaft_frequency
-            ]
-            for kind, distance in reach.items()
+        reach: dict[LineKind, float] = {
+            "mesh": within,
+            "shaft": of_shafts,
+            "load": within,
+            "bearing": within,
+            "sideband": of_shafts,
         }
-        kind = next((kind for kind in causes if causes[kind]), None)
+        distances = np.abs(at - frequency)
+        # What slip makes wide is near wherever it reaches.
+        beyond = np.maximum(distances - widths, 0.0)
+        found = {kind: np.flatnonzero((kinds == kind) & (beyond <= distance)) for kind, distance in reach.items()}
+        # Of causes that the tolerance holds, those far beyond the nearest are none.
+        nearest = min((distances[n] for numbers in found.values() for n in numbers if widths[n] == 0.0), default=np.inf)
+        near_it = beyond <= nearest / _MUCH_NEARER + _SAME_FREQUENCY * frequency
+        left = ((kind, numbers[near_it[numbers]]) for kind, numbers in found.items())
+        kind, causes = next((one for one in left if one[1].size), (None, _NONE))
         whole, away = _whole_order(machine, excited, frequency, of_shafts)
-        if kind == "sideband":
-            # A line that is no sideband but for the tolerance may be a whole order of another shaft.
-            beside = min(abs(line.order * shaft_frequency - frequency) for line in causes[kind])
-            kind = None if whole and away < _MUCH_NEARER * beside else kind
-        if kind is not None:
-            fewest = min(line.steps for line in causes[kind])
-            text = joined_causes(machine, [line.name for line in causes[kind] if line.steps == fewest])
-            named.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
+        # A line that is no sideband but for the tolerance may be a whole order of another shaft.
+        if kind is not None and not (kind == "sideband" and whole and away < _MUCH_NEARER * distances[causes].min()):
+            fewest = min(lines[n].steps for n in causes)
+            text = joined_causes(machine, [lines[n].name for n in causes if lines[n].steps == fewest])
+            named.append(LineName(kind, text, order, mode))
         elif whole:
             named.append(LineName("shaft", whole, order, mode))
         elif modes is not None and mode is not None:

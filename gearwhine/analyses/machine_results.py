@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from gearwhine.analyses.origin import Origin
-from gearwhine.analyses.result import Result, no_figures
+from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling import stability as coupled_stability
@@ -182,7 +182,7 @@ def gears_result(
     pairs : tuple of PairAnalysis
     aims : sequence of ReliefAim
         Objective of the best relief of each pair.
-    without : sequence of {"harris-map", "relief", "pictures"}
+    without : sequence of {"harris-map", "relief"}
         Parts that are left out.
     origin : Origin
     seats : str or None
@@ -210,9 +210,7 @@ def gears_result(
 
         return draw_gear_pairs(pairs, progress)
 
-    return origin.result(
-        "gears", pairs, document, (GEARS, pairs), figures=no_figures if "pictures" in without else figures
-    )
+    return origin.result("gears", pairs, document, (GEARS, pairs), figures=figures)
 
 
 def load_result(solved: SolvedLoad, origin: Origin, progress: Progress = silent) -> Result[SolvedLoad]:

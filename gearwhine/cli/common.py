@@ -109,9 +109,11 @@ def on_case(
     return document
 
 
-def written(result: "Result[Any]", folder: Path | None, progress: "Progress") -> dict[str, Any]:
+def written(
+    result: "Result[Any]", folder: Path | None, progress: "Progress", *, pictures: bool = True
+) -> dict[str, Any]:
     """Write a result where a folder is given, and return its document."""
-    return (result if folder is None else result.stored(folder, progress=progress)).document
+    return (result if folder is None else result.stored(folder, pictures=pictures, progress=progress)).document
 
 
 def results_folder(case: str, common: Common) -> Path:

@@ -62,6 +62,8 @@ class StudyCommand:
         Help of ``--fresh``; empty where there is no such option.
     timed : bool
         Whether the terminal shows the time.
+    draws : bool
+        Whether pictures are written beside the data, and may be left out.
     """
 
     name: str
@@ -75,6 +77,7 @@ class StudyCommand:
     without: Sequence[str] = ()
     fresh: str = ""
     timed: bool = False
+    draws: bool = True
 
     @property
     def function(self) -> Callable[..., Any]:
@@ -96,8 +99,8 @@ STUDY_COMMANDS = (
         fresh=_FRESH_RUN,
         timed=True,
     ),
-    StudyCommand("check", "check.summary", longer=("verbose", "check.sections")),
-    StudyCommand("mesh", "mesh.sections", always_writes=True, names={"suffix": "format"}),
+    StudyCommand("check", "check.summary", longer=("verbose", "check.sections"), draws=False),
+    StudyCommand("mesh", "mesh.sections", always_writes=True, names={"suffix": "format"}, draws=False),
     StudyCommand("modes", "modes.sections", longer=("detail", "modes.detailed_sections"), fresh=_FRESH_MODES),
     StudyCommand("rotors", "rotors.sections", writes_with="write_ross"),
     StudyCommand("gears", "gears.sections", without=("aims",)),
@@ -111,8 +114,8 @@ STUDY_COMMANDS = (
     StudyCommand("optimise", "optimisation.sections", names={"evaluations": "n"}, fresh=_FRESH_DESIGNS, **_OF_MANY),
     StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
     StudyCommand("survey", "survey.sections", always_writes=True, fresh=_FRESH_MODES),
-    StudyCommand("update", "update.sections", always_writes=True),
-    StudyCommand("render", always_writes=True, names={"mode_format": "format"}, fresh=_FRESH_MODES),
+    StudyCommand("update", "update.sections", always_writes=True, draws=False),
+    StudyCommand("render", always_writes=True, names={"mode_format": "format"}, fresh=_FRESH_MODES, draws=False),
 )
 """Commands on a case, in the order of the help."""
 
@@ -123,7 +126,7 @@ _SHOWN = {"verbose": ("-v", "Show every part, with the origin of its values.")}
 def made_command(entry: StudyCommand) -> Callable[..., None]:
     """Return the function of a command, with the signature and the help that its method gives."""
     shown = [] if entry.longer[0] not in _SHOWN else [_shown_option(entry.longer[0])]
-    options = [*_method_options(entry), *shown, *_fresh_option(entry)]
+    options = [*_method_options(entry), *_pictures_option(entry), *shown, *_fresh_option(entry)]
 
     def command(case: str, *, common: Common = NONE_GIVEN, **given: Any) -> None:
         _perform(entry, case, common, given)
@@ -218,12 +221,20 @@ def _fresh_option(entry: StudyCommand) -> Iterator[inspect.Parameter]:
         )
 
 
+def _pictures_option(entry: StudyCommand) -> Iterator[inspect.Parameter]:
+    """Yield the option of the method that stores its own results, for the others that draw."""
+    if entry.draws and not entry.stores:
+        (stores,) = (one for one in STUDY_COMMANDS if one.stores)
+        yield from (one for one in _method_options(stores) if one.name == "pictures")
+
+
 def _perform(entry: StudyCommand, case: str, common: Common, given: dict[str, Any]) -> None:
     """Make a study of the case, call its method, and show the result."""
     from gearwhine.output.terminal import shown_by
 
     fresh = given.pop("fresh", False)
     shows_more = given.pop(entry.longer[0], False) if entry.longer[0] in _SHOWN else given.get(entry.longer[0], False)
+    drawn = {} if entry.stores else {"pictures": given.pop("pictures", True)}
     writes = entry.always_writes or bool(given.get(entry.writes_with, False))
 
     def work(loaded: "LoadedCase", progress: "Progress") -> dict[str, Any]:
@@ -231,7 +242,7 @@ def _perform(entry: StudyCommand, case: str, common: Common, given: dict[str, An
         study = CaseStudy(loaded, progress, folder=folder, fresh=fresh)
         to_folder = {"folder": folder} if "folder" in entry.without else {}
         result = entry.function(study, **given, **to_folder)
-        document: dict[str, Any] = result.document if entry.stores else written(result, folder, progress)
+        document: dict[str, Any] = result.document if entry.stores else written(result, folder, progress, **drawn)
         return document
 
     composed_by = entry.longer[1] if shows_more else entry.sections

@@ -4,6 +4,7 @@ They read the document by its keys alone, so that the report can be made of the 
 folder.
 """
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -263,6 +264,13 @@ def arrowed(text: str) -> str:
 def counted(number: int, noun: str) -> str:
     """Return a number of things in words, such as ``1 mode`` and ``2 modes``."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def rms_of_band(limits: Iterable[float | None]) -> str:
+    """Name rms values by their band, above 0 Hz and up to the limit that all have [Hz], such as ``rms 0–2000 Hz``."""
+    different = set(limits)
+    limit = different.pop() if len(different) == 1 else None
+    return "rms" if limit is None or not math.isfinite(limit) else f"rms 0–{limit:.5g} Hz"
 
 
 def percent(part: float) -> str:

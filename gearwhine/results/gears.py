@@ -523,6 +523,8 @@ def _mesh(pair: Document) -> list[str]:
         misalignment = pair.get("misalignment_rad")
         words = misalignment_words(misalignment, origin, misalignment if origin == "operating point" else None)
         seats = _SEATS.get(pair.get("misalignment_seats", ""), "") if origin == "operating point" else ""
+        if origin == "case":
+            words += "; `gearwhine load` has the loaded teeth with the one that it finds, by the tilt of the shafts"
         lines.append(words[0].upper() + words[1:] + seats)
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     over = ", over the hunting period" if stiffness.get("over_hunting_period") else ""

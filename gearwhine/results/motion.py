@@ -1,10 +1,11 @@
 """Motion of a machine, integrated in time or periodic: how its mesh forces and the lines of its sensors are shown."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.output.quantity import Quantity
-from gearwhine.output.sections import NOTHING, Column, Document, Table, percent, table_of
+from gearwhine.output.sections import NOTHING, Column, Document, Table, percent, rms_of_band, table_of
 from gearwhine.results.housing import shape_places
 from gearwhine.results.line_columns import LINE_NAME, MECHANISMS, line_frequency
 
@@ -69,6 +70,7 @@ BEARING = (
 )
 """Loads of a bearing: forces along x, y, z and moments about x and y; a row is a :class:`NamedParts`."""
 
+
 SENSOR_COLUMNS = (
     Column("sensor", "name"),
     Column("rms [m/s²]", "rms_m_per_s2", ".3g"),
@@ -83,6 +85,12 @@ SENSOR_COLUMNS = (
         ),
     ),
 )
+
+
+def sensor_columns(document: Document) -> tuple[Column, ...]:
+    """Return columns of the sensors of a motion: name, rms over the band of the document, highest lines."""
+    name, rms, lines = SENSOR_COLUMNS
+    return (name, replace(rms, heading=f"{rms_of_band([document.get('trusted_below_hz')])} [m/s²]"), lines)
 
 
 def path_place(sensor: str, frequency_hz: float) -> str:

@@ -800,8 +800,14 @@ _PICTURES = (
     Picture("load-pattern", "Contact pattern over the face and the path of contact: loaded edges shorten life."),
     Picture("load-shaft", "Deflected shaft in both planes, enlarged; arrows: forces on it."),
     Picture("load-housing", "Housing under the mean load, enlarged; colour: displacement."),
-    Picture("load-sensitivity-line", "Material added on blue places lowers the sensor's line, on red ones raises it."),
-    Picture("load-sensitivity-sound", "Material added on blue places lowers the sound power, on red ones raises it."),
+    Picture(
+        "load-sensitivity-line",
+        "Material added on blue places lowers the sensor's line, on red ones raises it; the shape is its motion.",
+    ),
+    Picture(
+        "load-sensitivity-sound",
+        "Material added on blue places lowers the sound power, on red ones raises it; shape: the loudest line.",
+    ),
     Picture(
         "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
     ),
@@ -937,9 +943,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
     rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]
     yield from table_of(_ROLLING_COLUMNS, rolling, "Rolling bearings: elements, life, tangent stiffness along x, y, z")
-    yield from table_of(
-        _PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period; misaligned as unmodified flanks"
-    )
+    caption = "Gear pairs, means over the mesh period, with the misalignment found (as of unmodified flanks)"
+    yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], caption)
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _misalignments(document)
     yield from _planetary(document)

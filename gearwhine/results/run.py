@@ -31,6 +31,7 @@ from gearwhine.results.motion import (
     line_table,
     mesh_sentence,
     path_place,
+    sensor_columns,
     shape_column,
 )
 
@@ -927,7 +928,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     run = document.get("run_signature")
     # Over a run whose speed varies a spectrum of the whole record has no lines.
     means = run is None and document.get("run") is not None
-    columns = SENSOR_COLUMNS if run is None and not means else SENSOR_COLUMNS[:-1]
+    columns = sensor_columns(document)
+    columns = columns if run is None and not means else columns[:-1]
     yield from table_of((*columns, _MEAN_COLUMN) if means else columns, document.get("sensors", ()))
     if means and document.get("sensors"):
         yield _MEANS

@@ -2,19 +2,30 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
 from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of, in_file
-from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
+from gearwhine.output.sections import (
+    Column,
+    Document,
+    Picture,
+    Section,
+    Table,
+    columns_of,
+    counted,
+    percent,
+    rms_of_band,
+    table_of,
+)
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.motion import (
     BEARING,
     CAUSE_COLUMNS,
     MESH,
-    SENSOR_COLUMNS,
     MeshFigures,
     NamedParts,
     closing,
@@ -22,6 +33,7 @@ from gearwhine.results.motion import (
     leading_lines,
     line_table,
     mesh_sentence,
+    sensor_columns,
 )
 from gearwhine.results.operating_point import brief
 
@@ -498,13 +510,13 @@ def _content(document: Document) -> Iterator[str | Table]:
         f"{counted(len(motions), noun)} at {document['speed_rpm']:.0f} rpm; {document['coordinates']} modal coordinates"
     )
     for number, motion in enumerate(motions, start=1):
-        yield from _motion(motion, f"Motion {number}: " if len(motions) > 1 else "")
+        yield from _motion(motion, f"Motion {number}: " if len(motions) > 1 else "", sensor_columns(document))
     if curve := document.get("curve"):
-        yield from curve_sentences(curve)
+        yield from curve_sentences(curve, document.get("trusted_below_hz"))
     yield from kept_sentence(document, STEADY_OPTIONS, "case")
 
 
-def _motion(motion: Document, name: str) -> Iterator[str | Table]:
+def _motion(motion: Document, name: str, columns: tuple[Column, ...]) -> Iterator[str | Table]:
     if "excitations" in motion:
         yield (
             "The excitations have no short common period: each has its own motion, other meshes linear about their "
@@ -527,7 +539,7 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
     else:
         yield _proof(motion, name)
     yield from map(mesh_sentence, motion["gear_pairs"])
-    yield from table_of(SENSOR_COLUMNS, motion["sensors"])
+    yield from table_of(columns, motion["sensors"])
     yield from table_of(CAUSE_COLUMNS, leading_lines(motion["sensors"], "lines", _LINES_SHOWN))
 
 
@@ -554,8 +566,11 @@ def _decay(multiplier: float, period: float) -> str:
     return f"the slowest disturbance falls to a tenth in {periods * period:.3g} s"
 
 
-def curve_sentences(curve: Document) -> Iterator[str | Table]:
-    """Yield sentences on a branch over speed: its range, largest forces, loudest points of sensors, bifurcations."""
+def curve_sentences(curve: Document, limit: float | None = None) -> Iterator[str | Table]:
+    """Yield sentences on a branch over speed: its range, largest forces, loudest points of sensors, bifurcations.
+
+    The rms values of sensors are up to a limit [Hz].
+    """
     speeds = curve["speed_rpm"]
     undecided = curve.get("stability", []).count("not decided")
     unstable = sum(not stable for stable in curve["stable"]) - undecided
@@ -576,6 +591,8 @@ def curve_sentences(curve: Document) -> Iterator[str | Table]:
             f"Mesh damping of {', '.join(assumed)} is the default, a ratio of 0.05, as the case gives none; the "
             "literature has 0.03 to 0.17, and folds and jumps come and go with it"
         )
-    yield from table_of(columns_of(LOUDEST), curve.get("loudest", ()))
+    rms = f"{rms_of_band([limit])} [m/s²]"
+    columns = (replace(one, heading=rms) if one.of == "rms_m_per_s2" else one for one in columns_of(LOUDEST))
+    yield from table_of(tuple(columns), curve.get("loudest", ()))
     for event in curve["bifurcations"]:
         yield f"{event['speed_rpm']:9.1f} rpm: {event['kind']}; {_EVENTS.get(event['kind'], 'stability changes')}"

@@ -17,6 +17,7 @@ from gearwhine.output.sections import (
     columns_of,
     counted,
     percent,
+    rms_of_band,
     table_of,
 )
 from gearwhine.results.sound import SWEPT_LINE
@@ -159,8 +160,11 @@ def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
     """Return columns of the swept keys, some sensor levels, some mesh forces, and the energy balance."""
     first = done[0]
     columns = _axes(document)
+    rms = rms_of_band(point.get("trusted_below_hz") for point in done)
     columns += [
-        Column(f"{sensor['name']}\nrms [m/s²]", f"sensors.{place}.rms_m_per_s2", shown=partial(_level, sensor["name"]))
+        Column(
+            f"{sensor['name']}\n{rms} [m/s²]", f"sensors.{place}.rms_m_per_s2", shown=partial(_level, sensor["name"])
+        )
         for place, sensor in enumerate(first["sensors"][:_MOST_SENSORS])
     ]
     for place, pair in enumerate(first["gear_pairs"][:_MOST_MESHES]):

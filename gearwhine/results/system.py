@@ -311,8 +311,13 @@ _PARTS = (
     ("by_varying_stiffness", "varying_stiffness", "by the mesh stiffness that varies alone"),
     ("by_load_shuttling", "load_shuttling", "by load shuttling alone"),
     ("by_friction", "friction", "by tooth friction alone"),
-    ("together", None, "by all of these together"),
+    ("together", None, "by all of these mechanisms of its meshes together, without what else excites there"),
 )
+_LINE_CONVENTIONS = {
+    "together": "with by_...: what the meshes that drive a line make of it, teeth alike, summed with phase",
+    "parts_together_m_per_s2": "with parts: all that excites at the frequency, pitch deviations, runout, unbalance, "
+    "ripple and base too, summed with phase",
+}
 
 
 class _Line(NamedTuple):
@@ -533,6 +538,7 @@ SYSTEM = (
         LINE,
         "system_line",
     ),
+    Quantity("conventions", lambda solved: _LINE_CONVENTIONS if solved.lines else ABSENT),
     LINE_LIMITS,
     Quantity("superposition_error"),
     Quantity("trusted_below_hz", _trusted_below),

@@ -36,3 +36,13 @@ def test_a_whole_order_of_another_shaft_beside_a_sideband_has_its_own_name(
     machine = coupled(load_case(str(place), [f"gear.{key}.errors.pitch={one}" for key, one in listed.items()]).case)
     (found,) = line_names(machine, [50.0 * order], 4.0)
     assert found.name == name
+
+
+def test_of_two_meshes_the_much_nearer_one_is_named_and_both_where_neither_is(tmp_path: Path) -> None:
+    """Five times the first mesh frequency, 105 a turn, is near 19 times the second one; 19 and 72 times are equal."""
+    place = tmp_path / "reducer.toml"
+    place.write_text(reducer(), encoding="utf-8")
+    machine = coupled(load_case(str(place)).case)
+    orders = [105.01, 19.0 * STAGE - 0.01, 0.5 * (105.0 + 19.0 * STAGE), 19.0 * 21.0]
+    names = [one.name for one in line_names(machine, [50.0 * order for order in orders], 15.0)]
+    assert names == ["5× a -> b", "19× c -> d", "5× a -> b, 19× c -> d", "19× a -> b, 72× c -> d"]

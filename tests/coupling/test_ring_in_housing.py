@@ -85,12 +85,26 @@ def _ring_housing() -> HousingComponent:
     )
 
 
-def _machine(speed: float = 300.0) -> CoupledMachine:
+def _described(speed: float = 300.0, planets: int = 3) -> Machine:
+    angle = np.radians(20.0)
     parts = plane_set(
-        equal_angles(3), pressure_angle=np.radians(20.0), with_ring=True, damping=1e-5, material=STEEL, diameter=0.05
+        equal_angles(planets), pressure_angle=angle, with_ring=True, damping=1e-5, material=STEEL, diameter=0.05
     )
     parts["shafts"] = [replace(shaft, rim_seat="bore") if shaft.name == "ring" else shaft for shaft in parts["shafts"]]
-    return Machine(**parts, housing=_ring_housing(), speed=speed, torque=200.0).assembled
+    return Machine(**parts, housing=_ring_housing(), speed=speed, torque=200.0)
+
+
+def _machine(speed: float = 300.0) -> CoupledMachine:
+    return _described(speed).assembled
+
+
+@pytest.mark.parametrize("planets", [2, 3, 4])
+def test_a_bore_of_fewer_orders_than_planets_is_warned_of(planets: int) -> None:
+    """The mean forces of N equal planets add up in the orders N, 2 N, … alone, and this bore has three."""
+    circle = np.exp(1j * 2.0 * np.pi / planets * np.outer(np.arange(4), np.arange(planets))).sum(axis=1)
+    is_excited = np.abs(circle[1:]).max() > 1e-9
+    warnings = [text for text in _described(planets=planets).warnings if "ring_orders" in text]
+    assert bool(warnings) != is_excited
 
 
 @pytest.mark.parametrize("turns", [None, 4.05, 4.0])

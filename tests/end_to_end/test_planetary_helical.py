@@ -150,10 +150,12 @@ def test_lines_of_both_stages_have_their_names() -> None:
     machine = load_case(NAME).case.parts.machine
     assert machine is not None
     assembled = machine.at_operating_point().assembled
-    turns = (PINION, 2 * PINION, RING, RING + 1, RING - 1)
+    turns = (PINION, 2 * PINION, RING, RING + 1, RING - 1, 8 * PINION + 2)
     names = [one.name for one in line_names(assembled, [turn * CARRIER_TURN for turn in turns], 0.01)]
     assert names[0] == "1× pinion -> wheel"
     assert names[1] == "2× pinion -> wheel"
     assert names[2].startswith("1× planets' meshes")
-    for name, side in zip(names[3:], ("+ 1×", "- 1×"), strict=True):
+    for name, side in zip(names[3:5], ("+ 1×", "- 1×"), strict=True):
         assert f"1× planets' meshes {side} carrier" in name
+    # The pinion turns with the carrier: what both modulate twice has one name.
+    assert names[5] == "2× planets' meshes - 2× carrier, 8× pinion -> wheel + 2× carrier"

@@ -82,6 +82,7 @@ def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Pa
     outcome = gearwhine("system", "small-gearbox", *HELICAL, "-o", "out", "-q", "--json")
     assert outcome.code == 0, outcome.err
     lines = outcome.document["mesh_lines"]
+    assert outcome.document["conventions"].keys() <= lines[0].keys() | lines[0]["sensor_acceleration_m_per_s2"].keys()
     first = 28 * 1500.0 / 60.0
     assert [line["frequency_hz"] for line in lines] == pytest.approx([first, 2.0 * first])
     assert [line["cause"] for line in lines] == ["1× pinion -> wheel", "2× pinion -> wheel"]

@@ -241,9 +241,9 @@ def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFindi
     for shaft, rotor in zip(shafts, parts.rotors, strict=True):
         tip = max((mounted.gear.outer_radius for mounted in parts.gears_on(shaft.name)), default=0.0)
         yield from unbalance_findings(shaft, rotor, tip)
-    rings = [] if housing is None else [seat.name for seat in housing.seat if seat.ring_orders]
+    rings = {} if housing is None else {seat.name: seat.ring_orders for seat in housing.seat if seat.ring_orders}
     for shaft in shafts:
-        yield from rim_findings(shaft, parts.gears_on(shaft.name), rings)
+        yield from rim_findings(shaft, parts.gears_on(shaft.name), rings, meshing)
     by_name = {shaft.name: shaft.rotor for shaft in shafts}
     for place, force in enumerate(() if parts.operation is None else parts.operation.force):
         yield from force_findings(force.build(), by_name[force.rotor], place)

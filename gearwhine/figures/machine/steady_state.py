@@ -34,7 +34,7 @@ from gearwhine.figures.style import (
     stretches,
 )
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.output.sections import arrowed
+from gearwhine.output.sections import arrowed, rms_of_band
 
 _HEIGHT, _BETWEEN = 46.0, 6.0  # height of a branch's panels, and gap between them [mm]
 _ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # height of a motion's rows, gaps between them and above the first [mm]
@@ -75,7 +75,7 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
                 ("teeth apart [%]", {name: 100.0 * curve.contact_loss[:, i] for name, i in table.items()})
             )
     if solved.branch_rms:
-        quantities.append(("acceleration, rms [m/s²]", solved.branch_rms))
+        quantities.append((f"acceleration, {rms_of_band([solved.motions[0].trusted_limit])} [m/s²]", solved.branch_rms))
     speeds = RPM * np.abs(curve.speeds)
     operation = RPM * abs(solved.motions[0].speed)
     remarks.append(f"{speeds.min():.0f} to {speeds.max():.0f} rpm")

@@ -34,7 +34,7 @@ from gearwhine.figures.style import (
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
-from gearwhine.output.sections import arrowed
+from gearwhine.output.sections import arrowed, rms_of_band
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -83,6 +83,8 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
     circles = _CIRCLES if any(len(speeds) for speeds, _ in missed.values()) else ""
     heading, note = f"Acceleration over {_key(dataset, along)}", f"{title}{circles}"
     figure, panels = stacked(len(sensors), _LEVELS, _LEVELS_GAP, heading, note, first=_FIRST, foot=foot)
+    limits = dataset["trusted_limit"].values.ravel().tolist() if "trusted_limit" in dataset else []
+    rms = rms_of_band(limit for limit in limits if not np.isnan(limit))
     for sensor, axes in zip(sensors, panels, strict=True):
         _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
         speeds, peaks = missed.get(sensor, (np.empty(0), np.empty(0)))
@@ -92,7 +94,7 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
         if levels.size:
             log_axis(axes, 0.8 * float(levels.min()), 1.25 * float(levels.max()))
-        axes.set_ylabel("acceleration [m/s², rms]")
+        axes.set_ylabel(f"acceleration, {rms} [m/s²]")
         panel_title(axes, sensor)
     _name_values(panels[-1].xaxis, dataset, along)
     name_lowest(panels, _axis_label(dataset, along))

@@ -57,7 +57,7 @@ def test_a_machine_of_python_has_the_same_options() -> None:
 def test_what_cannot_be_left_out_is_refused(made: str) -> None:
     case = gw.load("spur-pair")
     study: gw.Study = case if made == "case" else gw.Study(case.machine)
-    with pytest.raises(CouplingError, match=r"without 'maps'; expected any of 'harris-map', 'relief', 'pictures'"):
+    with pytest.raises(CouplingError, match=r"without 'maps'; expected any of 'harris-map', 'relief'"):
         study.gears(without=("maps",))  # type: ignore[arg-type]
     with pytest.raises(CouplingError, match="got both"):
         study.gears([PeakToPeak()], without=("relief",))
@@ -81,7 +81,7 @@ def test_the_command_writes_no_pictures_where_they_are_left_out(
 ) -> None:
     few = ("gears", "spur-pair", "-q", "--without", "relief", "--without", "harris-map")
     assert run_command([*few, "-o", str(tmp_path / "drawn")]) == 0
-    assert run_command([*few, "--without", "pictures", "-o", str(tmp_path / "plain")]) == 0
+    assert run_command([*few, "--no-pictures", "-o", str(tmp_path / "plain")]) == 0
     assert "relief: " not in capsys.readouterr().out
     assert list((tmp_path / "drawn").glob("gears-*.png"))
     assert not list((tmp_path / "plain").glob("*.png"))

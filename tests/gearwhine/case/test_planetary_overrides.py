@@ -75,6 +75,9 @@ def test_a_rim_follows_a_bore_that_has_orders_and_a_ring_in_it() -> None:
     ):
         with pytest.raises(CaseError, match=expected):
             load_case(NAME, [change])
+    for orders, count in ((2, 1), (3, 0), (6, 0)):  # three planets bend the ring in three waves
+        loaded = load_case(NAME, [f"housing.seat.ring bore.ring_orders={orders}"])
+        assert sum("ring_orders of 3 or more, such as 6" in one for one in loaded.warnings) == count
     assert not [one for one in load_case(NAME).warnings if "rim_seat" in one]
     (told,) = [one for one in load_case(NAME, ["rotor.ring.rim_seat="]).warnings if "rim_seat" in one]
     assert 'gear[2].ring_support (gear "r")' in told

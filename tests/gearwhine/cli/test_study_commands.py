@@ -91,6 +91,17 @@ def test_every_parameter_of_a_method_is_an_option_with_a_text(entry: StudyComman
         assert marker.help, name
 
 
+def test_pictures_may_be_left_out_where_there_are_any() -> None:
+    options = {entry.name: inspect.signature(made_command(entry)).parameters for entry in STUDY_COMMANDS}
+    assert options.keys() - {name for name in options if "pictures" in options[name]} == {
+        "check",
+        "mesh",
+        "render",
+        "update",
+    }
+    assert "no renderer" in options["load"]["pictures"].annotation.__metadata__[0].help
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [(["--sidebands", "21"], "--sidebands"), (["--mesh-harmonics", "0"], "--mesh-harmonics")],

@@ -101,7 +101,7 @@ def test_names_stand_once_and_marks_whole_on_a_branch_of_two_pairs() -> None:
             loaded_contacts=[0, 1],
         ),
         branch_rms={"top": np.arange(5.0), "end": np.arange(5.0)},
-        motions=[SimpleNamespace(speed=150.0)],
+        motions=[SimpleNamespace(speed=150.0, trusted_limit=1500.0)],
     )
     figure = draw_response_curve("Branch", solved, curve)
     assert figure.texts[1].get_text() == "955 to 1910 rpm; dash-dotted: speed of operation"
@@ -109,7 +109,10 @@ def test_names_stand_once_and_marks_whole_on_a_branch_of_two_pairs() -> None:
     assert draw_response_curve("Branch", solved, curve).texts[1].get_text() == "955 to 1910 rpm"
     named = {axes.get_ylabel(): axes.get_legend() for axes in figure.axes}
     texts = {name: [text.get_text() for text in one.get_texts()] for name, one in named.items() if one is not None}
-    assert texts == {"compression, a.c. rms [µm]": ["a → b", "b → c"], "acceleration, rms [m/s²]": ["top", "end"]}
+    assert texts == {
+        "compression, a.c. rms [µm]": ["a → b", "b → c"],
+        "acceleration, rms 0–1500 Hz [m/s²]": ["top", "end"],
+    }
     # The second pair never parts: its fold lies on the axis, and is not cut there.
     (apart,) = [axes for axes in figure.axes if axes.get_ylabel() == "teeth apart [%]"]
     marks = [line for line in apart.lines if line.get_marker() == "o"]

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 )
 from gearwhine.coupling.linear import line_sensitivity
 from gearwhine.coupling.linear.housing_rates import HousingRates
-from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.linear.line_sensitivity import Line, LineField, LineModel
 from gearwhine.coupling.load_analysis import ranking
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
@@ -424,6 +425,13 @@ def test_the_density_of_even_strains(case: Case, solved: Solved) -> None:
     for phase, part in ((1.0, 1.0), (1.0j, -2.0)):
         found = harmonic_surface_density(mesh, constants, phase * motion + 0j, (1.0 + 2.0j) * against, 5e3)
         np.testing.assert_allclose(found, part * expected, rtol=1e-9)
+    # Of a line it is the sum over all harmonics that are coupled with it.
+    solved_lines = cast(Any, SimpleNamespace(field=lambda coordinates: coordinates))
+    both = (LineField(5e3, motion + 0j, against + 0j), LineField(-1e4, 0.5j * motion, 1j * against))
+    fields, line = SimpleNamespace(mesh=mesh, constants=constants), SimpleNamespace(fields=both)
+    density = ranking.Ranking(cast(Any, None), solved_lines)._response_density(cast(Any, fields), cast(Any, line))
+    further = 1e8 * rho * np.sum(motion * against, axis=1) - np.sum(stress * twin)
+    np.testing.assert_allclose(density, expected - 0.5 * further, rtol=1e-9)
 
 
 @pytest.mark.slow
