@@ -250,12 +250,12 @@ class Scene:
         if view == self._aimed:
             return
         self._aimed = view
-        # Each of these would draw the scene anew.
-        towards = viewing_direction(view, self._housing.up)
-        self._plotter.view_vector(towards, viewup=self._housing.up, render=False)
+        # The plotter's own functions of these names draw the scene anew, whatever is said of that.
+        towards, renderer = viewing_direction(view, self._housing.up), self._plotter.renderer
+        renderer.view_vector(towards, viewup=self._housing.up, render=False)
         camera = self._plotter.camera
         camera.parallel_projection = True
-        self._plotter.reset_camera(bounds=_frame(self._bounds), render=False)
+        renderer.reset_camera(bounds=_frame(self._bounds), render=False)
         camera.zoom(1.2)
         camera.SetWindowCenter(0.0, _LOWER)
         corners = np.stack(np.meshgrid(*np.reshape(self._bounds, (3, 2))), axis=-1).reshape(-1, 3)
