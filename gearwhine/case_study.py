@@ -884,26 +884,39 @@ class CaseStudy(Study):
 
         return solve_rotors(self.case, self.progress, **settings) if self.case.rotor else ()
 
-    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
+    def solved_housing(
+        self, folder: Path | None = None, *, with_sound: bool = False, before: Callable[[], object] | None = None
+    ) -> "HousingModes | None":
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound=with_sound)
+        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound, before)
 
     def _required_housing(
-        self, command: str, folder: Path | None = None, *, with_sound: bool = False
+        self,
+        command: str,
+        folder: Path | None = None,
+        with_sound: bool = False,
+        before: Callable[[], object] | None = None,
     ) -> "HousingModes":
         """Return the solved housing; a case without one is refused in the name of a command."""
         from gearwhine.solve.acoustics import check_before_modes
         from gearwhine.solve.housing_modes import solve_housing
 
         refuse = check_before_modes(self.case.acoustics, self.case.housing) if with_sound else None
+
+        def check(mesh: "Mesh") -> None:
+            if before is not None:
+                before()
+            if refuse is not None:
+                refuse(mesh)
+
         with self._kept.lock:
             if self._kept.solved is None:
                 place = folder or self.folder
                 self._kept.solved = solve_housing(
-                    self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=refuse
+                    self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=check
                 )
-            elif refuse is not None:
-                refuse(self._kept.solved.mesh)
+            else:
+                check(self._kept.solved.mesh)
             return self._kept.solved
 
     def compared_modes(self, housing: "HousingModes") -> "ComparedTest | None":

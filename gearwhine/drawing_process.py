@@ -72,7 +72,7 @@ def draw_in_process(
     """Draw shapes into a folder, and with a name for it also the ``sheet`` of all; the files' names.
 
     With a view ``beside`` each picture shows both sides, see :func:`gearwhine.housing.pictures.images.render_shapes`.
-    Of shapes whose names are among those ``drawn`` already only the sheet has a picture.
+    Shapes whose names are among those ``drawn`` have their picture in the folder already.
 
     Raises
     ------
@@ -342,10 +342,20 @@ def _draw(desk: Path) -> list[str]:
         files = render_shapes(housing, new, folder, view=view, beside=task["beside"], progress=progress) if new else []
         if task["sheet"] is not None:
             progress("drawing all on one sheet")
-            files.append(render_sheet(housing, shapes, folder / task["sheet"], view=view))
+            files.append(render_sheet([folder / f"{shape.name}.png" for shape in shapes], folder / task["sheet"]))
     else:
         files = animate_shapes(housing, shapes, folder, task["format"], view=view, progress=progress)
     return [path.name for path in files]
+
+
+def _warm_up() -> None:
+    """Draw a few pixels: what the first picture loads takes longer than a picture."""
+    from gearwhine.housing.pictures.scene import Scene
+
+    corners = np.eye(4, 3)
+    housing = DrawnHousing(corners, np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]), np.arange(4))
+    with Scene(housing, "iso", (16, 16)) as scene:
+        scene.picture(DrawnShape("", "", "", corners))
 
 
 def _main() -> None:
@@ -353,6 +363,7 @@ def _main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with suppress(RendererUnavailableError):  # the answer to the first task says that
         load_pyvista()
+        _warm_up()
     for line in sys.stdin:
         try:
             _tell({"files": _draw(Path(json.loads(line)))})

@@ -175,10 +175,13 @@ class StudiedMachine:
 
         return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
 
-    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
+    def solved_housing(
+        self, folder: Path | None = None, *, with_sound: bool = False, before: Callable[[], object] | None = None
+    ) -> "HousingModes | None":
         """Return the housing that the machine stands in, where that is meshed and solved.
 
-        ``with_sound`` refuses acoustics that do not fit it; modes that a ``folder`` keeps are read in place of solving.
+        ``with_sound`` refuses acoustics that do not fit it; modes that a ``folder`` keeps are read in place of solving,
+        and ``before`` is called once the mesh is known, before the long work.
         """
         from gearwhine.coupling.sound.acoustics_checks import require_acoustics
         from gearwhine.housing import HousingModes

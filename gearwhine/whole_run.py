@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from contextvars import copy_context
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -91,8 +93,8 @@ class WholeRun:
             Where an analysis cannot be made as the study stands.
         """
         analyses: tuple[tuple[str, Callable[[], Document | None]], ...] = (
+            ("housing", self._solve_parts),
             ("rotors_and_gears", self._rotors),
-            ("housing", self._solve_housing),
             ("load", self._load),
             ("rotors_and_gears", self._gears),
             ("housing", self._housing),
@@ -120,17 +122,19 @@ class WholeRun:
             _started=self._started,
         )
 
-    def _rotors(self) -> Document:
-        self.solution = replace(self.solution, rotors=self.study.solved_rotors())
-        return rotors_document(self.solution.rotors) if self.solution.rotors else {}
-
-    def _solve_housing(self) -> Document:
+    def _solve_parts(self) -> Document:
+        """Solve the housing, and the rotors while that is meshed: where one of these fails, no modes are sought."""
         if self._early is not None:
             self._early.load_figures()
-        self.solution = replace(
-            self.solution, housing=self.study.solved_housing(self.folder, with_sound=self._has_sound)
-        )
+        study = self.study
+        with ThreadPoolExecutor(1) as beside:
+            rotors = beside.submit(copy_context().run, study.solved_rotors)
+            housing = study.solved_housing(self.folder, with_sound=self._has_sound, before=rotors.result)
+            self.solution = replace(self.solution, rotors=rotors.result(), housing=housing)
         return {}
+
+    def _rotors(self) -> Document:
+        return rotors_document(self.solution.rotors) if self.solution.rotors else {}
 
     def _load(self) -> Document:
         if self.study.has_machine:
@@ -184,6 +188,8 @@ class WholeRun:
             return None
         system, document = modes_of_run(self.machine, self.study.progress)
         self.solution = replace(self.solution, system=system)
+        if self._early is not None and self._has_early_figures:
+            self._early.draw_figures(partial(self.solution.figures_of_system, silent))
         return document
 
     def _motion(self) -> Document | None:

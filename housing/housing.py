@@ -7,7 +7,7 @@ seats and sensors, damping), what a measurement is compared with, and what sound
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -469,31 +469,35 @@ class Housing:
         free = self.free_matrices()
         whole = self.matrices(free)
         assembled = time.perf_counter() - begin
-        try:
-            modes = solve_modes(
-                whole,
-                frequency_limit=None if below_hz is None else _TWO_PI * below_hz,
-                count=count,
-                ports=sparse.vstack(loaded, format="csr") if loaded else None,
-                port_orders=RESPONSE_ORDERS,
-                solver=solver,
-                progress=progress,
-            )
-        except SlepcUnavailableError as error:
-            refuse([Finding(_PART, "solver", solver, f"one that can be started; {error}")], SlepcUnavailableError)
-            raise
-        except HousingError as error:
-            attribute = "count" if below_hz is None else "below_hz"
-            finding = Finding(_PART, attribute, None, f"what this model has; {error}")
-            refuse([finding], HousingError)
-            raise
-        damping = modal_damping(modes, whole) if whole.damping.nnz else None
-        progress("checking the housing against its geometry, and estimating the error by the mesh")
-        begin = time.perf_counter()
+        estimates: list[Future[FloatArray]] = []
+        # The estimate needs no residual modes, which leave a thread idle for a good part of their time.
         with ThreadPoolExecutor(1) as beside:
-            estimate = beside.submit(self.with_discretisation_errors, free, whole, modes)
+            try:
+                modes = solve_modes(
+                    whole,
+                    frequency_limit=None if below_hz is None else _TWO_PI * below_hz,
+                    count=count,
+                    ports=sparse.vstack(loaded, format="csr") if loaded else None,
+                    port_orders=RESPONSE_ORDERS,
+                    solver=solver,
+                    progress=progress,
+                    found=lambda *modes: estimates.append(
+                        beside.submit(self.discretisation_errors, free, whole, *modes)
+                    ),
+                )
+            except SlepcUnavailableError as error:
+                refuse([Finding(_PART, "solver", solver, f"one that can be started; {error}")], SlepcUnavailableError)
+                raise
+            except HousingError as error:
+                attribute = "count" if below_hz is None else "below_hz"
+                finding = Finding(_PART, attribute, None, f"what this model has; {error}")
+                refuse([finding], HousingError)
+                raise
+            damping = modal_damping(modes, whole) if whole.damping.nnz else None
+            progress("checking the housing against its geometry, and estimating the error by the mesh")
+            begin = time.perf_counter()
             health, masses = self.health(free, whole, modes), effective_mass(whole, self.mesh.points, modes)
-        modes = estimate.result()
+            modes = replace(modes, discretisation_errors=estimates[0].result())
         health = health.with_discretisation(modes)
         health.require()
         checked = time.perf_counter() - begin
@@ -537,24 +541,25 @@ class Housing:
         moved = whole.mass @ rigid_motions(self.mesh.points, np.zeros(3)).reshape(-1, 6)
         return modes.project_all(sparse.csr_array(moved.T))
 
-    def with_discretisation_errors(self, free: Matrices, whole: Matrices, modes: ModeSet) -> ModeSet:
-        """Return the modes with an estimate of each frequency's error by the mesh.
+    def discretisation_errors(
+        self, free: Matrices, whole: Matrices, frequencies: FloatArray, shapes: FloatArray
+    ) -> FloatArray:
+        """Estimate each natural frequency's relative error by the mesh, shape (n_modes,).
 
         Parameters
         ----------
         free, whole : Matrices
             Results of :meth:`free_matrices` and :meth:`matrices`.
-        modes : ModeSet
-            Modes of ``whole``.
+        frequencies, shapes : ndarray, shapes (n_modes,) and (n_modes, n_nodes, 3)
+            Modes of ``whole`` [rad/s, 1/√kg].
         """
-        errors = discretisation_errors(
+        return discretisation_errors(
             self.mesh,
             element_constants(self.mesh, self.material, self.materials),
-            modes.frequencies,
-            modes.shapes,
+            frequencies,
+            shapes,
             loaded=fixture_nodes(free, whole),
         )
-        return replace(modes, discretisation_errors=errors)
 
     def health(self, free: Matrices, whole: Matrices, modes: ModeSet) -> HealthReport:
         """Check a solved housing from its geometry to its modes.

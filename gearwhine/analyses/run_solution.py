@@ -124,6 +124,7 @@ class RunSolution:
     def figures(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
         """Draw the figures of the analyses that were made, each with its name."""
         yield from self.figures_before_motion(title, progress)
+        yield from self.figures_of_system(progress)
         yield from self.figures_of_motion(title, progress)
 
     def figures_before_motion(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
@@ -138,15 +139,20 @@ class RunSolution:
             progress("drawing the comparison with measured modes")
             yield from figures.draw_comparison_figures(title, self.comparison, self.housing.modes.frequencies)
 
+    def figures_of_system(self, progress: Progress) -> Iterator[tuple[str, Figure]]:
+        """Draw those of the coupled machine."""
+        from gearwhine import figures
+
+        if self.system is not None:
+            progress("drawing the coupled system")
+            yield from figures.draw_system(self.system)
+
     def figures_of_motion(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
-        """Draw those of the coupled machine, its motion and sound."""
+        """Draw those of its motion and sound."""
         from gearwhine import figures
 
         if self.condition is not None and self.condition.envelopes:
             yield "envelope", figures.draw_envelopes(title, self.condition)
-        if self.system is not None:
-            progress("drawing the coupled system")
-            yield from figures.draw_system(self.system)
         if self.transient is not None:
             progress("drawing the motion")
             parts_of_motion = self.transient, self.signature, self.housing, self.comparison

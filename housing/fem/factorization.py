@@ -135,7 +135,7 @@ class _RslabFactor:
 
     def solve(self, right: FloatArray) -> FloatArray:
         solve = self._handle.solve if right.ndim == 1 else self._handle.solve_many
-        return np.array(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
+        return np.asarray(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
 
 
 class SuperluSolver:

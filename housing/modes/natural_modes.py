@@ -115,6 +115,7 @@ def solve_modes(
     precision: Precision | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
+    found: Callable[[FloatArray, FloatArray], None] | None = None,
 ) -> ModeSet:
     """Solve for all natural modes below a frequency, or for a number of the lowest.
 
@@ -144,6 +145,9 @@ def solve_modes(
         corrected by residuals in double, and certified in double as any others.
     progress : callable
         Called with a line of text before each step.
+    found : callable, optional
+        Called with certified frequencies [rad/s] and shapes before the residual modes are sought, which turn the shapes
+        by no more than their error.
 
     Raises
     ------
@@ -188,6 +192,9 @@ def solve_modes(
     values[np.abs(values) < 1e-6 * search.floor] = 0.0
     if values[0] < -search.floor:
         raise indefinite_stiffness_error(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
+    frequencies = np.sqrt(np.maximum(values, 0.0))
+    if found is not None:
+        found(frequencies, system.expand(vectors))
     residual_modes = None
     if ports is not None:
         start = time.perf_counter()
@@ -210,7 +217,7 @@ def solve_modes(
         )
         search.seconds["reduction"] = time.perf_counter() - start
     return ModeSet(
-        frequencies=np.sqrt(np.maximum(values, 0.0)),
+        frequencies=frequencies,
         shapes=system.expand(vectors),
         certificate=solution.certificate,
         seconds=search.seconds,

@@ -240,4 +240,7 @@ class OperatingShape:
         """Complex amplitudes of the displacement of nodes, −φ q̈ / ω² summed over the modes [m], shape (n_nodes, 3)."""
         if len(self.modal) != len(modes.shapes):
             raise HousingError(f"{len(self.modal)} modal amplitudes for {len(modes.shapes)} modes")
-        return np.asarray(np.tensordot(-self.modal / self.frequency**2, modes.shapes[:, nodes], axes=1))
+        weights = -self.modal / self.frequency**2
+        # By real products: of complex numbers they would first make the shapes twice as large.
+        real, imaginary = np.stack([weights.real, weights.imag]) @ modes.shapes[:, nodes].reshape(len(weights), -1)
+        return np.asarray(real + 1j * imaginary).reshape(-1, 3)

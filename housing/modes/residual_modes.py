@@ -455,17 +455,18 @@ def _sweep_until_settled(
     unsettled = list(searches)
     for sweep in range(1, _MOST_SWEEPS + 1):
         progress(f"sweep {sweep}")
-        steps = solve(np.hstack([search.left for search in unsettled]))
+        left = [search.left for search in unsettled]
+        steps = solve(left[0] if len(left) == 1 else np.hstack(left))
         algebra.subtract(steps, vectors, algebra.products(inertia, steps))
         products = np.asarray(stiffness @ steps)
         weighted = np.asarray(mass @ steps) if any(search.squared for search in unsettled) else steps
         remaining, first = [], 0
         for search in unsettled:
             columns = slice(first, first := first + search.left.shape[1])
-            product = products[:, columns].copy()
+            product = np.ascontiguousarray(products[:, columns])
             if search.squared:
                 product -= search.squared * weighted[:, columns]
-            if not search.take(steps[:, columns].copy(), product):
+            if not search.take(np.ascontiguousarray(steps[:, columns]), product):
                 remaining.append(search)
         unsettled = remaining
         if not unsettled:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from gearwhine.housing.errors import EncoderUnavailableError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
-from gearwhine.housing.pictures.scene import STRIP, Scene, colour_strip
+from gearwhine.housing.pictures.scene import Scene
 from gearwhine.housing.pictures.views import AUTO
 from gearwhine.housing.storage.atomic_file import atomic_file
 
@@ -23,6 +23,7 @@ FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
 
 _COLUMNS = 4  # columns of a sheet
+_TILE = 0.52  # size of a picture on a sheet, as a part of its own
 _FRAMES = 24  # frames of one period; even, so that half of them mirror the others where the motion has one phase
 _FRAME = 80  # duration of each frame [ms]
 _PAPER = 240  # a pixel with all three colours above it is background or its soft edge
@@ -66,26 +67,20 @@ def render_shapes(
     return files
 
 
-def render_sheet(
-    housing: DrawnHousing,
-    shapes: Sequence[DrawnShape],
-    path: Path,
-    *,
-    view: str = AUTO,
-    tile: tuple[int, int] = (520, 420),
-) -> Path:
-    """Draw shapes on one sheet, up to four in a row, over a colour bar; each is coloured by part of its largest."""
-    columns = min(_COLUMNS, len(shapes))
-    rows = -(-len(shapes) // columns)
-    width, height = tile
-    sheet = np.full((rows * height + STRIP, columns * width, 3), 255, dtype=np.uint8)
-    with Scene(housing, view, tile, tile=True) as scene:
-        for place, shape in enumerate(shapes):
-            scene.show(shape)
-            row, column = divmod(place, columns)
-            sheet[row * height : (row + 1) * height, column * width : (column + 1) * width] = scene.picture(shape)
-    sheet[rows * height :] = colour_strip(columns * width)
-    _save(sheet, path)
+def render_sheet(files: Sequence[Path], path: Path) -> Path:
+    """Put pictures of one size on one sheet, smaller, up to four in a row."""
+    from PIL import Image
+
+    with Image.open(files[0]) as first:
+        width, height = (round(_TILE * length) for length in first.size)
+    columns = min(_COLUMNS, len(files))
+    sheet = Image.new("RGB", (columns * width, -(-len(files) // columns) * height), "white")
+    for place, file in enumerate(files):
+        row, column = divmod(place, columns)
+        with Image.open(file) as picture:
+            smaller = picture.convert("RGB").resize((width, height), Image.Resampling.HAMMING)
+        sheet.paste(smaller, (column * width, row * height))
+    _save(np.asarray(sheet), path)
     return path
 
 

@@ -72,9 +72,6 @@ Image = npt.NDArray[np.uint8]
 
 _SHADE = 0.35, 0.75  # ambient and diffuse light
 _SIGNED_SHADE = 0.75, 0.3
-STRIP = 34
-"""Height of the colour bar's strip under a sheet [pixels]."""
-
 _COLOURS, _SIGNED_COLOURS = "viridis", "RdBu_r"
 _INK = "#202428"
 _FINER = 1.5  # pictures are drawn this many times larger than shown
@@ -97,8 +94,6 @@ class Scene:
         One of :data:`gearwhine.housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height [pixels].
-    tile : bool
-        Whether the picture is one of a sheet: smaller letters, no colour bar and no axes.
     quantity : str
         Title of the colour bar.
     """
@@ -109,7 +104,6 @@ class Scene:
         view: str,
         size: tuple[int, int],
         *,
-        tile: bool = False,
         quantity: str = MODE_QUANTITY,
     ) -> None:
         check_view(view)
@@ -131,7 +125,7 @@ class Scene:
         finer = [round(self._finer * length) for length in size]
         self._plotter = pyvista.Plotter(off_screen=True, window_size=finer)
         try:
-            self._furnish(outline, tile, quantity)
+            self._furnish(outline, quantity)
             self._bounds = rest.bounds
             self._aim(view)
         except BaseException:
@@ -187,7 +181,7 @@ class Scene:
 
         return np.array(Pillow.fromarray(drawn).resize(self._size, Pillow.Resampling.HAMMING))
 
-    def _furnish(self, outline: Any, tile: bool, quantity: str) -> None:
+    def _furnish(self, outline: Any, quantity: str) -> None:
         plotter = self._plotter
         plotter.set_background("white")
         # Drawn larger and shrunk: without a GPU VTK's own samples at each pixel take twice as long.
@@ -216,8 +210,6 @@ class Scene:
         )
         for text in (self._title, self._note):
             text.prop.justification_vertical = "top"
-        if tile:
-            return
         # The bar has its part of the width, and so must its letters.
         letter = round(max(9.0, 18.0 * self._size[0] / _FULL) * self._finer)
         plotter.add_scalar_bar(
@@ -258,12 +250,12 @@ class Scene:
         if view == self._aimed:
             return
         self._aimed = view
-        # Each of these would draw the scene anew.
-        towards = viewing_direction(view, self._housing.up)
-        self._plotter.view_vector(towards, viewup=self._housing.up, render=False)
+        # The plotter's own functions of these names draw the scene anew, whatever is said of that.
+        towards, renderer = viewing_direction(view, self._housing.up), self._plotter.renderer
+        renderer.view_vector(towards, viewup=self._housing.up, render=False)
         camera = self._plotter.camera
         camera.parallel_projection = True
-        self._plotter.reset_camera(bounds=_frame(self._bounds), render=False)
+        renderer.reset_camera(bounds=_frame(self._bounds), render=False)
         camera.zoom(1.2)
         camera.SetWindowCenter(0.0, _LOWER)
         corners = np.stack(np.meshgrid(*np.reshape(self._bounds, (3, 2))), axis=-1).reshape(-1, 3)
@@ -287,30 +279,6 @@ def _font_file() -> str:
     import matplotlib as mpl
 
     return str(Path(mpl.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
-
-
-def colour_strip(width: int) -> Image:
-    """Return a thin colour bar with its ends named, of shape (STRIP, width, 3)."""
-    pyvista = load_pyvista()
-    # One unit is the strip's height.
-    bar = pyvista.ImageData(dimensions=(256, 2, 1), spacing=(5.0 / 255, 0.3, 1.0), origin=(0.5, -0.15, 0.0))
-    bar["displacement"] = bar.points[:, 0]
-    plotter = pyvista.Plotter(off_screen=True, window_size=(width, STRIP))
-    try:
-        plotter.set_background("white")
-        plotter.add_mesh(bar, scalars="displacement", cmap=_COLOURS, lighting=False, show_scalar_bar=False)
-        for text, edge, side in (("displacement / largest   0 ", 0.5, "right"), (" 1", 5.5, "left")):
-            position = (0.5 + edge * STRIP / width, 0.5)
-            actor = plotter.add_text(text, position=position, viewport=True, font_size=9, color=_INK)
-            actor.prop.justification_horizontal = side
-            actor.prop.justification_vertical = "center"
-        plotter.view_xy()
-        plotter.enable_parallel_projection()
-        plotter.camera.focal_point, plotter.camera.position = (0.0, 0.0, 0.0), (0.0, 0.0, 10.0)
-        plotter.camera.parallel_scale = 0.5
-        return np.array(plotter.screenshot(None, return_img=True))
-    finally:
-        plotter.close()
 
 
 def _frame(bounds: Sequence[float]) -> list[float]:

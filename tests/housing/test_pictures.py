@@ -16,7 +16,7 @@ from gearwhine.housing.errors import RendererUnavailableError
 from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
 from gearwhine.housing.pictures.images import render_shapes, render_sheet
-from gearwhine.housing.pictures.scene import STRIP, find_renderer
+from gearwhine.housing.pictures.scene import find_renderer
 from gearwhine.housing.pictures.views import VIEWS
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import facet_nodes
@@ -153,12 +153,14 @@ def test_an_arrow_in_a_title_is_drawn(box: Mesh, modes: ModeSet, tmp_path: Path)
     assert dark[0] > 50
 
 
-@pytest.mark.usefixtures("renderer")
-def test_gallery_is_a_sheet_of_four_in_a_row(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
-    housing = drawn_housing(box)
-    shapes = drawn_modes(housing, modes, [1, 2, 3, 4, 7])
-    path = render_sheet(housing, shapes, tmp_path / "sheet.png", tile=(120, 100))
-    assert _pixels(path).shape == (200 + STRIP, 480, 3)
+def test_a_sheet_has_its_pictures_four_in_a_row(tmp_path: Path) -> None:
+    colours = [(40 * number, 200 - 30 * number, 90) for number in range(5)]
+    for colour in colours:
+        Image.new("RGB", (200, 100), colour).save(tmp_path / f"{colour[0]}.png")
+    sheet = _pixels(render_sheet([tmp_path / f"{colour[0]}.png" for colour in colours], tmp_path / "sheet.png"))
+    assert sheet.shape == (104, 416, 3)
+    white = (255, 255, 255)
+    assert [tuple(sheet[y, x]) for y in (26, 78) for x in (52, 156, 260, 364)] == [*colours, white, white, white]
 
 
 def test_pictures_of_modes_that_are_not_there_are_refused(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:

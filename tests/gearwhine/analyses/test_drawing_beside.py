@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
@@ -165,11 +166,12 @@ def test_a_run_that_is_written_twice_has_all_pictures_twice(tmp_path: Path) -> N
     found = gw.load("small-gearbox", changes).run_into(tmp_path / "first")
     found.stored(tmp_path / "second")
     first, second = ({path.name for path in (tmp_path / name).glob("*.png")} for name in ("first", "second"))
-    assert {"gears-pinion-wheel-stiffness.png", "load-shaft-input.png", "spectrum.png", "modes.png"} <= first
+    drawn = ("gears-pinion-wheel-stiffness", "load-shaft-input", "transmissibility-pinion-wheel", "spectrum", "modes")
+    assert {f"{name}.png" for name in drawn} <= first
     assert first == second
 
 
-def test_shapes_that_are_drawn_already_are_on_the_sheet_alone(tmp_path: Path) -> None:
+def test_shapes_that_are_drawn_already_stand_on_the_sheet_as_they_are(tmp_path: Path) -> None:
     try:
         find_renderer()
     except RendererUnavailableError as error:
@@ -178,6 +180,9 @@ def test_shapes_that_are_drawn_already_are_on_the_sheet_alone(tmp_path: Path) ->
     triangles = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     housing = DrawnHousing(corners, triangles, np.arange(4), (0.0, 1.0, 0.0))
     shapes = [DrawnShape(name, name, "", 0.1 * corners) for name in ("first", "second")]
+    Image.new("RGB", (1000, 780), "red").save(tmp_path / "first.png")
     files = draw_in_process(housing, shapes, tmp_path, "png", "iso", silent, sheet="all.png", drawn={"first"})
     assert files == ["second.png", "all.png"]
-    assert {path.name for path in tmp_path.iterdir()} == {"second.png", "all.png"}
+    with Image.open(tmp_path / "all.png") as sheet:
+        assert sheet.size == (1040, 406)
+        assert sheet.getpixel((260, 203)) == (255, 0, 0)

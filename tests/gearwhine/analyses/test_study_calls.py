@@ -11,6 +11,8 @@ import gearwhine as gw
 from gearwhine.analyses import sweep_result
 from gearwhine.analyses.result import Result
 from gearwhine.case import Material, Rotor
+from gearwhine.housing import Housing
+from gearwhine.rotors import RotorError
 
 
 def test_the_points_of_a_sweep_are_made_of_the_case_with_its_changes(
@@ -23,6 +25,19 @@ def test_the_points_of_a_sweep_are_made_of_the_case_with_its_changes(
     point = source.changed(["operation.speed=1000 rpm"]).case
     assert (point.operation.torque, point.operation.speed) == (20.0, pytest.approx(1000.0 * math.pi / 30.0))
     assert ([key.key for key in keys], folder.path) == (["operation.speed"], tmp_path)
+
+
+def test_a_run_seeks_no_modes_where_a_rotor_cannot_be_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rotors are solved while the housing is meshed; the modes of a large housing take minutes."""
+    study = gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm"})
+
+    def fail() -> None:
+        raise RotorError("no such rotor")
+
+    monkeypatch.setattr(study, "solved_rotors", fail)
+    monkeypatch.setattr(Housing, "modes", lambda *_, **__: pytest.fail("modes are sought"))
+    with pytest.raises(RotorError, match="no such rotor"):
+        study.run()
 
 
 def test_truth_values_in_changes_are_those_of_the_file() -> None:
