@@ -1,7 +1,8 @@
-"""Products of the stiffness with block vectors, from its 3 x 3 blocks themselves: no matrix is assembled.
+"""Products of stiffness and mass with block vectors, from the 3 x 3 blocks themselves: no matrix is assembled.
 
 On a large mesh the assembled matrix is a good part of the memory beside the factor. The blocks on and above the
-diagonal are read once for both triangles. Importing this module imports numba.
+diagonal are read once for both triangles, and once for both matrices, which have one pattern. Importing this module
+imports numba.
 """
 
 from functools import partial
@@ -15,68 +16,64 @@ from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
 
-_COLUMNS = 4  # columns of one pass over the blocks: of a fixed number, they stand in registers
+_COLUMNS = 8  # columns of one pass over the blocks: of a fixed number, they stand in registers
+_ROWS_AT_ONCE = 2**14  # rows moved in place
 
 
 @_compiled
-def _add_stiffness(
+def _add_products(
     pointer: npt.NDArray[np.int32],
     neighbors: npt.NDArray[np.int32],
     entries: FloatArray,
+    node_mass: FloatArray,
     motions: FloatArray,
+    begin: int,
     forces: FloatArray,
+    inertia: FloatArray,
 ) -> None:
-    """Add K u to forces; entries are those of all blocks, motions and forces of n_nodes x 3 x _COLUMNS, all flat."""
-    own = np.empty(3 * _COLUMNS)
+    """Add K u to forces, and (m ⊗ I₃) u to inertia unless that is empty, of _COLUMNS columns from ``begin`` on.
+
+    Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node.
+    """
+    own = np.empty((6, _COLUMNS))
+    massive = inertia.size > 0
     for i in range(pointer.size - 1):
         own[:] = 0.0
-        row = 3 * _COLUMNS * i
+        row = 3 * i
         for place in range(pointer[i], pointer[i + 1]):
-            j = neighbors[place]
-            other = 3 * _COLUMNS * j
+            other = 3 * neighbors[place]
             xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
             yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
             zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
-            for column in range(_COLUMNS):
-                x = motions[other + column]
-                y = motions[other + _COLUMNS + column]
-                z = motions[other + 2 * _COLUMNS + column]
-                own[column] += xx * x + xy * y + xz * z
-                own[_COLUMNS + column] += yx * x + yy * y + yz * z
-                own[2 * _COLUMNS + column] += zx * x + zy * y + zz * z
-            if j != i:
-                for column in range(_COLUMNS):
-                    x = motions[row + column]
-                    y = motions[row + _COLUMNS + column]
-                    z = motions[row + 2 * _COLUMNS + column]
-                    forces[other + column] += xx * x + yx * y + zx * z
-                    forces[other + _COLUMNS + column] += xy * x + yy * y + zy * z
-                    forces[other + 2 * _COLUMNS + column] += xz * x + yz * y + zz * z
-        for column in range(3 * _COLUMNS):
-            forces[row + column] += own[column]
-
-
-@_compiled
-def _spread(free: IntArray, columns: FloatArray, begin: int, motions: FloatArray) -> None:
-    """Write _COLUMNS columns from ``begin`` on, or those that there are, to the free degrees of freedom of motions."""
-    width = min(_COLUMNS, columns.shape[1] - begin)
-    motions[:] = 0.0
-    for k in range(free.size):
-        for column in range(width):
-            motions[_COLUMNS * free[k] + column] = columns[k, begin + column]
-
-
-@_compiled
-def _gather(free: IntArray, columns: FloatArray, begin: int, forces: FloatArray) -> None:
-    """Read these columns from the free degrees of freedom of forces."""
-    width = min(_COLUMNS, columns.shape[1] - begin)
-    for k in range(free.size):
-        for column in range(width):
-            columns[k, begin + column] = forces[_COLUMNS * free[k] + column]
+            for k in range(_COLUMNS):
+                x, y, z = motions[other, begin + k], motions[other + 1, begin + k], motions[other + 2, begin + k]
+                own[0, k] += xx * x + xy * y + xz * z
+                own[1, k] += yx * x + yy * y + yz * z
+                own[2, k] += zx * x + zy * y + zz * z
+            if other != row:
+                for k in range(_COLUMNS):
+                    x, y, z = motions[row, begin + k], motions[row + 1, begin + k], motions[row + 2, begin + k]
+                    forces[other, begin + k] += xx * x + yx * y + zx * z
+                    forces[other + 1, begin + k] += xy * x + yy * y + zy * z
+                    forces[other + 2, begin + k] += xz * x + yz * y + zz * z
+            if massive:
+                m = node_mass[place]
+                for component in range(3):
+                    for k in range(_COLUMNS):
+                        own[3 + component, k] += m * motions[other + component, begin + k]
+                    if other != row:
+                        for k in range(_COLUMNS):
+                            inertia[other + component, begin + k] += m * motions[row + component, begin + k]
+        for component in range(3):
+            for k in range(_COLUMNS):
+                forces[row + component, begin + k] += own[component, k]
+            if massive:
+                for k in range(_COLUMNS):
+                    inertia[row + component, begin + k] += own[3 + component, k]
 
 
 class BlockProduct:
-    """Symmetric matrix on the free degrees of freedom, an operator.
+    """Symmetric matrix on the free degrees of freedom, an operator; and a mass beside it on the same pattern.
 
     Parameters
     ----------
@@ -84,10 +81,12 @@ class BlockProduct:
         Pattern of the blocks, as of :class:`~gearwhine.housing.fem.matrices.Matrices`.
     blocks : ndarray, shape (n_blocks, 3, 3)
         Blocks on and above the diagonal.
+    node_mass : ndarray, shape (n_blocks,)
+        Scalar mass m.
     free : ndarray of int, shape (n,)
         Free degrees of freedom, ascending.
     threads : int
-        Number of threads; each multiplies four columns at a time.
+        Number of threads; each multiplies eight columns at a time.
     """
 
     def __init__(
@@ -95,27 +94,45 @@ class BlockProduct:
         pointer: npt.NDArray[np.int32],
         neighbors: npt.NDArray[np.int32],
         blocks: FloatArray,
+        node_mass: FloatArray,
         free: IntArray,
         threads: int = 1,
     ) -> None:
-        self._blocks = pointer, neighbors, blocks.ravel()
+        self._blocks = pointer, neighbors, blocks.ravel(), node_mass
         self._order = 3 * (len(pointer) - 1)
         self._free, self._threads = free, threads
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply by one vector or by many, shape (n, m)."""
-        columns = np.ascontiguousarray(vectors.reshape(len(vectors), -1))
-        product = np.empty_like(columns)
-        begins = range(0, columns.shape[1], _COLUMNS)
+        return self._products(vectors, massive=False)[0]
+
+    def with_inertia(self, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Products of the matrix and of m ⊗ I₃ with one vector or with many, in single or double precision."""
+        return self._products(vectors, massive=True)
+
+    def _products(self, vectors: FloatArray, *, massive: bool) -> tuple[FloatArray, FloatArray]:
+        columns = vectors.reshape(len(vectors), -1)
+        width = columns.shape[1]
+        begins = range(0, width, _COLUMNS)
+        motions = np.zeros((self._order, _COLUMNS * len(begins)))
+        for first in range(0, len(self._free), _ROWS_AT_ONCE):
+            few = slice(first, first + _ROWS_AT_ONCE)
+            motions[self._free[few], :width] = columns[few]
+        forces = np.zeros_like(motions)
+        inertia = np.zeros_like(motions) if massive else np.empty((0, 0))
 
         def multiply(begins: range) -> None:
-            motions, forces = np.empty(self._order * _COLUMNS), np.empty(self._order * _COLUMNS)
             for begin in begins:
-                _spread(self._free, columns, begin, motions)
-                forces[:] = 0.0
-                _add_stiffness(*self._blocks, motions, forces)
-                _gather(self._free, product, begin, forces)
+                _add_products(*self._blocks, motions, begin, forces, inertia)
 
         at_once([partial(multiply, begins[share :: self._threads]) for share in range(min(self._threads, len(begins)))])
-        return product.reshape(vectors.shape)
+        del motions
+        return self._of_free(forces, vectors), self._of_free(inertia, vectors) if massive else inertia
+
+    def _of_free(self, product: FloatArray, vectors: FloatArray) -> FloatArray:
+        """Rows of the free degrees of freedom, moved up in place, and as many columns as the vectors have."""
+        for first in range(0, len(self._free), _ROWS_AT_ONCE):
+            few = self._free[first : first + _ROWS_AT_ONCE]
+            product[first : first + len(few)] = product[few]
+        return product[: len(self._free), : vectors[0].size].reshape(vectors.shape)
