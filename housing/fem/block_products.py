@@ -1,75 +1,81 @@
 """Products of stiffness and mass with block vectors, from the 3 x 3 blocks themselves: no matrix is assembled.
 
-On a large mesh the assembled matrix is a good part of the memory beside the factor. The blocks on and above the
-diagonal are read once for both triangles, and once for both matrices, which have one pattern. Importing this module
-imports numba.
+On a large mesh the assembled matrix is a good part of the memory beside the factor. Both matrices have one pattern, and
+are multiplied at once, each row by one thread. Importing this module imports numba.
 """
 
 from functools import partial
+from itertools import pairwise
 
 import numba
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 from gearwhine.housing.fem.linear_algebra import at_once
 from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
 
-_COLUMNS = 8  # columns of one pass over the blocks: of a fixed number, they stand in registers
+_COLUMNS = 16  # columns multiplied at once; a fixed number
 _ROWS_AT_ONCE = 2**14  # rows moved in place
 
 
 @_compiled
-def _add_products(
+def _write_products(
+    first: int,
+    last: int,
     pointer: npt.NDArray[np.int32],
     neighbors: npt.NDArray[np.int32],
+    lower_pointer: npt.NDArray[np.int32],
+    lower_neighbors: npt.NDArray[np.int32],
+    lower_places: npt.NDArray[np.int32],
     entries: FloatArray,
     node_mass: FloatArray,
     motions: FloatArray,
-    begin: int,
     forces: FloatArray,
     inertia: FloatArray,
 ) -> None:
-    """Add K u to forces, and (m ⊗ I₃) u to inertia unless that is empty, of _COLUMNS columns from ``begin`` on.
+    """Write K u to forces and (m ⊗ I₃) u to inertia, of _COLUMNS columns, at nodes ``first`` to ``last`` - 1.
 
-    Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node.
+    Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node. The lower pattern
+    has the places of blocks below the diagonal, which are kept above it, transposed.
     """
     own = np.empty((6, _COLUMNS))
-    massive = inertia.size > 0
-    for i in range(pointer.size - 1):
+    for i in range(first, last):
         own[:] = 0.0
-        row = 3 * i
         for place in range(pointer[i], pointer[i + 1]):
             other = 3 * neighbors[place]
             xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
             yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
             zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
+            m = node_mass[place]
             for k in range(_COLUMNS):
-                x, y, z = motions[other, begin + k], motions[other + 1, begin + k], motions[other + 2, begin + k]
+                x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
                 own[0, k] += xx * x + xy * y + xz * z
                 own[1, k] += yx * x + yy * y + yz * z
                 own[2, k] += zx * x + zy * y + zz * z
-            if other != row:
-                for k in range(_COLUMNS):
-                    x, y, z = motions[row, begin + k], motions[row + 1, begin + k], motions[row + 2, begin + k]
-                    forces[other, begin + k] += xx * x + yx * y + zx * z
-                    forces[other + 1, begin + k] += xy * x + yy * y + zy * z
-                    forces[other + 2, begin + k] += xz * x + yz * y + zz * z
-            if massive:
-                m = node_mass[place]
-                for component in range(3):
-                    for k in range(_COLUMNS):
-                        own[3 + component, k] += m * motions[other + component, begin + k]
-                    if other != row:
-                        for k in range(_COLUMNS):
-                            inertia[other + component, begin + k] += m * motions[row + component, begin + k]
+                own[3, k] += m * x
+                own[4, k] += m * y
+                own[5, k] += m * z
+        for number in range(lower_pointer[i], lower_pointer[i + 1]):
+            other, place = 3 * lower_neighbors[number], lower_places[number]
+            xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
+            yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
+            zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
+            m = node_mass[place]
+            for k in range(_COLUMNS):
+                x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                own[0, k] += xx * x + yx * y + zx * z
+                own[1, k] += xy * x + yy * y + zy * z
+                own[2, k] += xz * x + yz * y + zz * z
+                own[3, k] += m * x
+                own[4, k] += m * y
+                own[5, k] += m * z
         for component in range(3):
             for k in range(_COLUMNS):
-                forces[row + component, begin + k] += own[component, k]
-            if massive:
-                for k in range(_COLUMNS):
-                    inertia[row + component, begin + k] += own[3 + component, k]
+                forces[3 * i + component, k] = own[component, k]
+                inertia[3 * i + component, k] = own[3 + component, k]
 
 
 class BlockProduct:
@@ -86,7 +92,7 @@ class BlockProduct:
     free : ndarray of int, shape (n,)
         Free degrees of freedom, ascending.
     threads : int
-        Number of threads; each multiplies eight columns at a time.
+        Number of threads; each multiplies a share of the rows.
     """
 
     def __init__(
@@ -98,41 +104,47 @@ class BlockProduct:
         free: IntArray,
         threads: int = 1,
     ) -> None:
-        self._blocks = pointer, neighbors, blocks.ravel(), node_mass
-        self._order = 3 * (len(pointer) - 1)
-        self._free, self._threads = free, threads
+        n_nodes = len(pointer) - 1
+        above = np.flatnonzero(neighbors != np.repeat(np.arange(n_nodes, dtype=np.int32), np.diff(pointer)))
+        # Above the diagonal, a row begins after its diagonal block.
+        upper = sparse.csr_array(
+            (above.astype(np.int32), neighbors[above], pointer - np.arange(n_nodes + 1, dtype=np.int32)),
+            shape=(n_nodes, n_nodes),
+        )
+        lower = sparse.csc_array(upper)
+        self._blocks = pointer, neighbors, lower.indptr, lower.indices, lower.data, blocks.ravel(), node_mass
+        self._order, self._free = 3 * n_nodes, free
+        ends = np.searchsorted(pointer, np.linspace(0, pointer[-1], threads + 1)).tolist()
+        self._shares = list(pairwise(ends))
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply by one vector or by many, shape (n, m)."""
-        return self._products(vectors, massive=False)[0]
+        return self.with_inertia(vectors)[0]
 
-    def with_inertia(self, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def with_inertia(self, vectors: npt.NDArray[np.floating]) -> tuple[FloatArray, FloatArray]:
         """Products of the matrix and of m ⊗ I₃ with one vector or with many, in single or double precision."""
-        return self._products(vectors, massive=True)
-
-    def _products(self, vectors: FloatArray, *, massive: bool) -> tuple[FloatArray, FloatArray]:
         columns = vectors.reshape(len(vectors), -1)
-        width = columns.shape[1]
-        begins = range(0, width, _COLUMNS)
-        motions = np.zeros((self._order, _COLUMNS * len(begins)))
-        for first in range(0, len(self._free), _ROWS_AT_ONCE):
-            few = slice(first, first + _ROWS_AT_ONCE)
+        if columns.shape[1] <= _COLUMNS:
+            forces, inertia = self._products(columns)
+        else:
+            forces, inertia = np.empty(columns.shape), np.empty(columns.shape)
+            for begin in range(0, columns.shape[1], _COLUMNS):
+                few = slice(begin, begin + _COLUMNS)
+                forces[:, few], inertia[:, few] = self._products(columns[:, few])
+        return forces.reshape(vectors.shape), inertia.reshape(vectors.shape)
+
+    def _products(self, columns: npt.NDArray[np.floating]) -> tuple[FloatArray, FloatArray]:
+        """Multiply _COLUMNS columns or fewer."""
+        n, width = columns.shape
+        motions = np.zeros((self._order, _COLUMNS))
+        pieces = [slice(first, min(first + _ROWS_AT_ONCE, n)) for first in range(0, n, _ROWS_AT_ONCE)]
+        for few in pieces:
             motions[self._free[few], :width] = columns[few]
-        forces = np.zeros_like(motions)
-        inertia = np.zeros_like(motions) if massive else np.empty((0, 0))
-
-        def multiply(begins: range) -> None:
-            for begin in begins:
-                _add_products(*self._blocks, motions, begin, forces, inertia)
-
-        at_once([partial(multiply, begins[share :: self._threads]) for share in range(min(self._threads, len(begins)))])
-        del motions
-        return self._of_free(forces, vectors), self._of_free(inertia, vectors) if massive else inertia
-
-    def _of_free(self, product: FloatArray, vectors: FloatArray) -> FloatArray:
-        """Rows of the free degrees of freedom, moved up in place, and as many columns as the vectors have."""
-        for first in range(0, len(self._free), _ROWS_AT_ONCE):
-            few = self._free[first : first + _ROWS_AT_ONCE]
-            product[first : first + len(few)] = product[few]
-        return product[: len(self._free), : vectors[0].size].reshape(vectors.shape)
+        forces, inertia = np.empty_like(motions), np.empty_like(motions)
+        at_once([partial(_write_products, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
+        for product in (forces, inertia):
+            # The free degrees of freedom ascend: none is overwritten before it is read.
+            for few in pieces:
+                product[few] = product[self._free[few]]
+        return forces[:n, :width], inertia[:n, :width]

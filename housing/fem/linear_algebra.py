@@ -142,7 +142,7 @@ class SymmetricMatrix:
 
 
 _SHARES = 4  # shares into which the rows are divided
-_ROWS_AT_ONCE = 2**14  # rows converted to double precision
+_ROWS_AT_ONCE = 2**12  # rows converted to double precision
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
@@ -208,14 +208,17 @@ class BlockAlgebra:
         return result
 
     def replace(self, block: npt.NDArray[np.float32], mixture: FloatArray, fine: int) -> None:
-        """Replace the first columns of B in single precision by B m, and further ones by the rounding of the first."""
+        """Replace columns of B in single precision by B m, and further ones by 2²⁴ times what rounding took.
+
+        The latter are those of the first ``fine`` columns, which with these are known in double precision.
+        """
 
         def mix(rows: slice) -> None:
             for few in _pieces(rows, block):
                 mixed = _double(block[few]) @ mixture
                 block[few, : mixed.shape[1]] = mixed
                 mixed[:, :fine] -= block[few, :fine]
-                block[few, mixed.shape[1] : mixed.shape[1] + fine] = mixed[:, :fine]
+                block[few, mixed.shape[1] : mixed.shape[1] + fine] = 2.0**24 * mixed[:, :fine]
 
         self._each(mix)
 

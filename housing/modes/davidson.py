@@ -144,7 +144,7 @@ class _RitzSpace:
     def ritz(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Lowest Ritz values, up to ``count`` of them, and their vectors in terms of V, one in each column."""
         stiffness, mass = self._gram[:, : self.size, : self.size]
-        # Of the vectors as if they were of length 1, whatever it is.
+        # As if every vector were of length 1.
         scale = 1.0 / np.sqrt(mass.diagonal())
         both = np.outer(scale, scale)
         values, mixture = linalg.eigh(stiffness * both, mass * both, subset_by_index=(0, min(count, self.size) - 1))
