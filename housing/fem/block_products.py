@@ -6,6 +6,7 @@ are multiplied at once, each row by one thread. Importing this module imports nu
 
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numba
 import numpy as np
@@ -112,7 +113,8 @@ class BlockProduct:
             shape=(n_nodes, n_nodes),
         )
         lower = sparse.csc_array(upper)
-        self._blocks = pointer, neighbors, lower.indptr, lower.indices, lower.data, blocks.ravel(), node_mass
+        below = lower.indptr, lower.indices, lower.data
+        self._blocks: tuple[Any, ...] = pointer, neighbors, *below, blocks.ravel(), node_mass
         self._order, self._free = 3 * n_nodes, free
         ends = np.searchsorted(pointer, np.linspace(0, pointer[-1], threads + 1)).tolist()
         self._shares = list(pairwise(ends))
@@ -122,7 +124,7 @@ class BlockProduct:
         """Multiply by one vector or by many, shape (n, m)."""
         return self.with_inertia(vectors)[0]
 
-    def with_inertia(self, vectors: npt.NDArray[np.floating]) -> tuple[FloatArray, FloatArray]:
+    def with_inertia(self, vectors: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
         """Products of the matrix and of m ⊗ I₃ with one vector or with many, in single or double precision."""
         columns = vectors.reshape(len(vectors), -1)
         if columns.shape[1] <= _COLUMNS:
@@ -134,7 +136,7 @@ class BlockProduct:
                 forces[:, few], inertia[:, few] = self._products(columns[:, few])
         return forces.reshape(vectors.shape), inertia.reshape(vectors.shape)
 
-    def _products(self, columns: npt.NDArray[np.floating]) -> tuple[FloatArray, FloatArray]:
+    def _products(self, columns: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
         """Multiply _COLUMNS columns or fewer."""
         n, width = columns.shape
         motions = np.zeros((self._order, _COLUMNS))

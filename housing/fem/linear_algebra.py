@@ -178,7 +178,7 @@ class BlockAlgebra:
         self._threads = min(threads, _SHARES) if rows > _ROWS_WORTH_A_THREAD else 1
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
-    def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
+    def products(self, left: npt.NDArray[Any], right: FloatArray) -> FloatArray:
         """LᵀR, shape (columns of L, columns of R)."""
 
         def multiply(rows: slice) -> FloatArray:
@@ -186,7 +186,7 @@ class BlockAlgebra:
 
         return np.asarray(sum(self._each(multiply)))
 
-    def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
+    def subtract(self, block: FloatArray, basis: npt.NDArray[Any], parts: FloatArray) -> None:
         """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
@@ -196,7 +196,7 @@ class BlockAlgebra:
 
         self._each(take)
 
-    def combined(self, block: FloatArray, mixture: FloatArray) -> FloatArray:
+    def combined(self, block: npt.NDArray[Any], mixture: FloatArray) -> FloatArray:
         """B m, shape (rows, columns of m)."""
         result = np.empty((len(block), mixture.shape[1]))
 

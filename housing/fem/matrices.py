@@ -410,7 +410,7 @@ class FreeSystem:
     def _attached_mass(self) -> sparse.csr_array | None:
         return attached_mass(self._matrices, self.free)
 
-    def products(self, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def products(self, vectors: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
         """K u [N] and M u [kg m] of one vector or of many, shape (n, m); by blocks, these are read once for both."""
         if not self.by_blocks:
             return self.stiffness @ vectors, self.mass @ vectors

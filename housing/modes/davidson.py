@@ -25,6 +25,7 @@ A block has sixteen columns, since the direct solver takes as long for eight.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -40,12 +41,10 @@ _WELL_OUTSIDE = 1e-6  # least squared part of a block outside the space, and out
 _DEPENDENT = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 _TIMES = 3  # a block is orthogonalised before it counts as lying in the space
 
-SingleArray = npt.NDArray[np.float32]
-
 
 def davidson_modes(
     size: int,
-    products: Callable[[npt.NDArray[np.floating]], tuple[FloatArray, FloatArray]],
+    products: Callable[[npt.NDArray[Any]], tuple[FloatArray, FloatArray]],
     solve_approximately: Callable[[FloatArray], FloatArray],
     count: int,
     *,
@@ -127,7 +126,7 @@ class _RitzSpace:
 
     def __init__(
         self,
-        products: Callable[[npt.NDArray[np.floating]], tuple[FloatArray, FloatArray]],
+        products: Callable[[npt.NDArray[Any]], tuple[FloatArray, FloatArray]],
         most: int,
         algebra: BlockAlgebra,
     ) -> None:
