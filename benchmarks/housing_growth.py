@@ -3,7 +3,6 @@
     python benchmarks/housing_growth.py 24 17 12 8.5
     python benchmarks/housing_growth.py 12 8.5 5.3 --precision single --limit 3000
     python benchmarks/housing_growth.py 5.3 --precision single --limit 3000 --parts    # a million degrees of freedom
-    python benchmarks/housing_growth.py 5.3 --precision single --limit 3000 --parts --beside 1
 
 Each mesh is made in a process of its own, and solved in another, so that the peak of its memory is that of the solution
 alone, from the assembly to the certificate: the largest resident set, as the operating system has it. With --parts
@@ -27,7 +26,7 @@ from timing import machine, timed
 
 from gearwhine.housing import assemble, solve_modes
 from gearwhine.housing.fem import factorization
-from gearwhine.housing.modes import certificate, davidson
+from gearwhine.housing.modes import certificate
 from gearwhine.meshes import ElementBlock, Mesh
 
 Parts = dict[str, list[float]]
@@ -112,7 +111,6 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=3984.0, help="of the frequencies [Hz]")
     parser.add_argument("--precision", choices=["double", "single"], help="of the factor; by default as memory allows")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--beside", type=float, help="memory for the search beside a factor in single precision [GB]")
     parser.add_argument("--parts", action="store_true", help="show the time of each part too")
     parser.add_argument("--mesh", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--solve", type=Path, help=argparse.SUPPRESS)
@@ -121,8 +119,6 @@ def main() -> None:
         write_problem(options.mesh, benchmark_box(1e-3 * options.mesh_size[0]))
         return
     if options.solve is not None:
-        if options.beside is not None:
-            vars(davidson)["available_memory"] = lambda: 1e9 * options.beside
         print(json.dumps(solve(read_problem(options.solve), options.limit, options.precision, options.threads)))
         return
     print(f"{machine()}; all modes below {options.limit:.0f} Hz, {options.threads} threads\n")
@@ -145,8 +141,7 @@ def main() -> None:
             _, seconds_of_mesh = timed(lambda: separately(str(size), "--mesh", str(file)))  # noqa: B023
             words = ["--solve", str(file), "--limit", str(options.limit), "--threads", str(options.threads)]
             precision = [] if options.precision is None else ["--precision", options.precision]
-            beside = [] if options.beside is None else ["--beside", str(options.beside)]
-            row = json.loads(separately(*words, *precision, *beside).splitlines()[-1])
+            row = json.loads(separately(*words, *precision).splitlines()[-1])
         rows.append(row)
         assert row["complete"]
         print(

@@ -75,7 +75,7 @@ def radiate() -> None:
 def multiply() -> None:
     """Product of the stiffness of one node, as of a large housing, by its blocks."""
     node = np.zeros(1, dtype=np.int32)
-    BlockProduct(np.array([0, 1], dtype=np.int32), node, np.eye(3)[None], np.arange(3)) @ np.ones((3, 1))
+    BlockProduct(np.array([0, 1], dtype=np.int32), node, np.eye(3)[None], np.ones(1), np.arange(3)) @ np.ones((3, 1))
 
 
 def motions() -> None:

@@ -1,82 +1,86 @@
-"""Products of the stiffness with block vectors, from its 3 x 3 blocks themselves: no matrix is assembled.
+"""Products of stiffness and mass with block vectors, from the 3 x 3 blocks themselves: no matrix is assembled.
 
-On a large mesh the assembled matrix is a good part of the memory beside the factor. The blocks on and above the
-diagonal are read once for both triangles. Importing this module imports numba.
+On a large mesh the assembled matrix is a good part of the memory beside the factor. Both matrices have one pattern, and
+are multiplied at once, each row by one thread. Importing this module imports numba.
 """
 
 from functools import partial
+from itertools import pairwise
+from typing import Any
 
 import numba
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 from gearwhine.housing.fem.linear_algebra import at_once
 from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
 
-_COLUMNS = 4  # columns of one pass over the blocks: of a fixed number, they stand in registers
+_COLUMNS = 16  # columns multiplied at once; a fixed number
+_ROWS_AT_ONCE = 2**14  # rows moved in place
 
 
 @_compiled
-def _add_stiffness(
+def _write_products(
+    first: int,
+    last: int,
     pointer: npt.NDArray[np.int32],
     neighbors: npt.NDArray[np.int32],
+    lower_pointer: npt.NDArray[np.int32],
+    lower_neighbors: npt.NDArray[np.int32],
+    lower_places: npt.NDArray[np.int32],
     entries: FloatArray,
+    node_mass: FloatArray,
     motions: FloatArray,
     forces: FloatArray,
+    inertia: FloatArray,
 ) -> None:
-    """Add K u to forces; entries are those of all blocks, motions and forces of n_nodes x 3 x _COLUMNS, all flat."""
-    own = np.empty(3 * _COLUMNS)
-    for i in range(pointer.size - 1):
+    """Write K u to forces and (m ⊗ I₃) u to inertia, of _COLUMNS columns, at nodes ``first`` to ``last`` - 1.
+
+    Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node. The lower pattern
+    has the places of blocks below the diagonal, which are kept above it, transposed.
+    """
+    own = np.empty((6, _COLUMNS))
+    for i in range(first, last):
         own[:] = 0.0
-        row = 3 * _COLUMNS * i
         for place in range(pointer[i], pointer[i + 1]):
-            j = neighbors[place]
-            other = 3 * _COLUMNS * j
+            other = 3 * neighbors[place]
             xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
             yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
             zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
-            for column in range(_COLUMNS):
-                x = motions[other + column]
-                y = motions[other + _COLUMNS + column]
-                z = motions[other + 2 * _COLUMNS + column]
-                own[column] += xx * x + xy * y + xz * z
-                own[_COLUMNS + column] += yx * x + yy * y + yz * z
-                own[2 * _COLUMNS + column] += zx * x + zy * y + zz * z
-            if j != i:
-                for column in range(_COLUMNS):
-                    x = motions[row + column]
-                    y = motions[row + _COLUMNS + column]
-                    z = motions[row + 2 * _COLUMNS + column]
-                    forces[other + column] += xx * x + yx * y + zx * z
-                    forces[other + _COLUMNS + column] += xy * x + yy * y + zy * z
-                    forces[other + 2 * _COLUMNS + column] += xz * x + yz * y + zz * z
-        for column in range(3 * _COLUMNS):
-            forces[row + column] += own[column]
-
-
-@_compiled
-def _spread(free: IntArray, columns: FloatArray, begin: int, motions: FloatArray) -> None:
-    """Write _COLUMNS columns from ``begin`` on, or those that there are, to the free degrees of freedom of motions."""
-    width = min(_COLUMNS, columns.shape[1] - begin)
-    motions[:] = 0.0
-    for k in range(free.size):
-        for column in range(width):
-            motions[_COLUMNS * free[k] + column] = columns[k, begin + column]
-
-
-@_compiled
-def _gather(free: IntArray, columns: FloatArray, begin: int, forces: FloatArray) -> None:
-    """Read these columns from the free degrees of freedom of forces."""
-    width = min(_COLUMNS, columns.shape[1] - begin)
-    for k in range(free.size):
-        for column in range(width):
-            columns[k, begin + column] = forces[_COLUMNS * free[k] + column]
+            m = node_mass[place]
+            for k in range(_COLUMNS):
+                x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                own[0, k] += xx * x + xy * y + xz * z
+                own[1, k] += yx * x + yy * y + yz * z
+                own[2, k] += zx * x + zy * y + zz * z
+                own[3, k] += m * x
+                own[4, k] += m * y
+                own[5, k] += m * z
+        for number in range(lower_pointer[i], lower_pointer[i + 1]):
+            other, place = 3 * lower_neighbors[number], lower_places[number]
+            xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
+            yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
+            zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
+            m = node_mass[place]
+            for k in range(_COLUMNS):
+                x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                own[0, k] += xx * x + yx * y + zx * z
+                own[1, k] += xy * x + yy * y + zy * z
+                own[2, k] += xz * x + yz * y + zz * z
+                own[3, k] += m * x
+                own[4, k] += m * y
+                own[5, k] += m * z
+        for component in range(3):
+            for k in range(_COLUMNS):
+                forces[3 * i + component, k] = own[component, k]
+                inertia[3 * i + component, k] = own[3 + component, k]
 
 
 class BlockProduct:
-    """Symmetric matrix on the free degrees of freedom, an operator.
+    """Symmetric matrix on the free degrees of freedom, an operator; and a mass beside it on the same pattern.
 
     Parameters
     ----------
@@ -84,10 +88,12 @@ class BlockProduct:
         Pattern of the blocks, as of :class:`~gearwhine.housing.fem.matrices.Matrices`.
     blocks : ndarray, shape (n_blocks, 3, 3)
         Blocks on and above the diagonal.
+    node_mass : ndarray, shape (n_blocks,)
+        Scalar mass m.
     free : ndarray of int, shape (n,)
         Free degrees of freedom, ascending.
     threads : int
-        Number of threads; each multiplies four columns at a time.
+        Number of threads; each multiplies a share of the rows.
     """
 
     def __init__(
@@ -95,27 +101,52 @@ class BlockProduct:
         pointer: npt.NDArray[np.int32],
         neighbors: npt.NDArray[np.int32],
         blocks: FloatArray,
+        node_mass: FloatArray,
         free: IntArray,
         threads: int = 1,
     ) -> None:
-        self._blocks = pointer, neighbors, blocks.ravel()
-        self._order = 3 * (len(pointer) - 1)
-        self._free, self._threads = free, threads
+        n_nodes = len(pointer) - 1
+        above = np.flatnonzero(neighbors != np.repeat(np.arange(n_nodes, dtype=np.int32), np.diff(pointer)))
+        # Above the diagonal, a row begins after its diagonal block.
+        upper = sparse.csr_array(
+            (above.astype(np.int32), neighbors[above], pointer - np.arange(n_nodes + 1, dtype=np.int32)),
+            shape=(n_nodes, n_nodes),
+        )
+        lower = sparse.csc_array(upper)
+        below = lower.indptr, lower.indices, lower.data
+        self._blocks: tuple[Any, ...] = pointer, neighbors, *below, blocks.ravel(), node_mass
+        self._order, self._free = 3 * n_nodes, free
+        ends = np.searchsorted(pointer, np.linspace(0, pointer[-1], threads + 1)).tolist()
+        self._shares = list(pairwise(ends))
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply by one vector or by many, shape (n, m)."""
-        columns = np.ascontiguousarray(vectors.reshape(len(vectors), -1))
-        product = np.empty_like(columns)
-        begins = range(0, columns.shape[1], _COLUMNS)
+        return self.with_inertia(vectors)[0]
 
-        def multiply(begins: range) -> None:
-            motions, forces = np.empty(self._order * _COLUMNS), np.empty(self._order * _COLUMNS)
-            for begin in begins:
-                _spread(self._free, columns, begin, motions)
-                forces[:] = 0.0
-                _add_stiffness(*self._blocks, motions, forces)
-                _gather(self._free, product, begin, forces)
+    def with_inertia(self, vectors: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+        """Products of the matrix and of m ⊗ I₃ with one vector or with many, in single or double precision."""
+        columns = vectors.reshape(len(vectors), -1)
+        if columns.shape[1] <= _COLUMNS:
+            forces, inertia = self._products(columns)
+        else:
+            forces, inertia = np.empty(columns.shape), np.empty(columns.shape)
+            for begin in range(0, columns.shape[1], _COLUMNS):
+                few = slice(begin, begin + _COLUMNS)
+                forces[:, few], inertia[:, few] = self._products(columns[:, few])
+        return forces.reshape(vectors.shape), inertia.reshape(vectors.shape)
 
-        at_once([partial(multiply, begins[share :: self._threads]) for share in range(min(self._threads, len(begins)))])
-        return product.reshape(vectors.shape)
+    def _products(self, columns: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+        """Multiply _COLUMNS columns or fewer."""
+        n, width = columns.shape
+        motions = np.zeros((self._order, _COLUMNS))
+        pieces = [slice(first, min(first + _ROWS_AT_ONCE, n)) for first in range(0, n, _ROWS_AT_ONCE)]
+        for few in pieces:
+            motions[self._free[few], :width] = columns[few]
+        forces, inertia = np.empty_like(motions), np.empty_like(motions)
+        at_once([partial(_write_products, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
+        for product in (forces, inertia):
+            # The free degrees of freedom ascend: none is overwritten before it is read.
+            for few in pieces:
+                product[few] = product[self._free[few]]
+        return forces[:n, :width], inertia[:n, :width]

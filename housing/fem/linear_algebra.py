@@ -142,12 +142,26 @@ class SymmetricMatrix:
 
 
 _SHARES = 4  # shares into which the rows are divided
-_ROWS_AT_ONCE = 2**14  # rows of a product in place
+_ROWS_AT_ONCE = 2**12  # rows converted to double precision
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
+
+
+def _double(rows: npt.NDArray[Any]) -> FloatArray:
+    return np.asarray(rows, dtype=np.float64)
+
+
+def _pieces(rows: slice, block: npt.NDArray[Any]) -> list[slice]:
+    """Rows of a block, a few at a time where they are converted to double precision."""
+    if block.dtype == np.float64:
+        return [rows]
+    begins = range(rows.start, rows.stop, _ROWS_AT_ONCE)
+    return [slice(begin, min(begin + _ROWS_AT_ONCE, rows.stop)) for begin in begins]
 
 
 class BlockAlgebra:
     """Products of block vectors, matrices with many rows and few columns, by shares of their rows.
+
+    The left factors, bases of many columns, may be in single precision; sums and products are in double.
 
     The number of shares does not depend on the threads, so that sums over the rows are rounded alike.
 
@@ -160,38 +174,51 @@ class BlockAlgebra:
     """
 
     def __init__(self, rows: int, threads: int) -> None:
+        self.rows = rows
         self._threads = min(threads, _SHARES) if rows > _ROWS_WORTH_A_THREAD else 1
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
-    def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
+    def products(self, left: npt.NDArray[Any], right: FloatArray) -> FloatArray:
         """LᵀR, shape (columns of L, columns of R)."""
-        return np.asarray(sum(self._each(lambda rows: left[rows].T @ right[rows])))
 
-    def subtract(self, block: FloatArray, basis: FloatArray, parts: FloatArray) -> None:
+        def multiply(rows: slice) -> FloatArray:
+            return sum((_double(left[few]).T @ right[few] for few in _pieces(rows, left)), np.zeros(()))
+
+        return np.asarray(sum(self._each(multiply)))
+
+    def subtract(self, block: FloatArray, basis: npt.NDArray[Any], parts: FloatArray) -> None:
         """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
-            block[rows] -= (parts.T @ basis[rows].T).T  # one column after another: half the time of basis[rows] @ parts
+            for few in _pieces(rows, basis):
+                # One column after another: half the time of basis[few] @ parts.
+                block[few] -= (parts.T @ _double(basis[few]).T).T
 
         self._each(take)
 
-    def combined(self, block: FloatArray, mixture: FloatArray) -> FloatArray:
+    def combined(self, block: npt.NDArray[Any], mixture: FloatArray) -> FloatArray:
         """B m, shape (rows, columns of m)."""
         result = np.empty((len(block), mixture.shape[1]))
 
         def multiply(rows: slice) -> None:
-            result[rows] = block[rows] @ mixture
+            for few in _pieces(rows, block):
+                result[few] = _double(block[few]) @ mixture
 
         self._each(multiply)
         return result
 
-    def replace(self, block: FloatArray, mixture: FloatArray) -> None:
-        """Replace the first columns of B by B m, in place, a few rows at a time."""
+    def replace(self, block: npt.NDArray[np.float32], mixture: FloatArray, fine: int) -> None:
+        """Replace columns of B in single precision by B m, and further ones by 2²⁴ times what rounding took.
+
+        The latter are those of the first ``fine`` columns, which with these are known in double precision.
+        """
 
         def mix(rows: slice) -> None:
-            for begin in range(rows.start, rows.stop, _ROWS_AT_ONCE):
-                few = slice(begin, min(begin + _ROWS_AT_ONCE, rows.stop))
-                block[few, : mixture.shape[1]] = block[few] @ mixture
+            for few in _pieces(rows, block):
+                mixed = _double(block[few]) @ mixture
+                block[few, : mixed.shape[1]] = mixed
+                mixed[:, :fine] -= block[few, :fine]
+                block[few, mixed.shape[1] : mixed.shape[1] + fine] = 2.0**24 * mixed[:, :fine]
 
         self._each(mix)
 

@@ -8,7 +8,7 @@ found once. A new shift is then one pass over the entries, and no sparse matrix 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import accumulate, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from scipy import sparse
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.linear_algebra import Operator, SymmetricMatrix, at_once
 from gearwhine.numerics.arrays import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from gearwhine.housing.fem.block_products import BlockProduct
 
 Int32Array = npt.NDArray[np.int32]
 
@@ -218,12 +221,12 @@ class Matrices:
     def _is_large(self) -> bool:
         return self.n_nodes > _NODES_BY_BLOCKS
 
-    def product_of(self, blocks: FloatArray, free: IntArray | None = None, threads: int = 2) -> Operator:
+    def product_of(self, blocks: FloatArray, free: IntArray | None = None, threads: int = 2) -> "BlockProduct":
         """Matrix to multiply with of blocks (n_blocks, 3, 3), on the free degrees of freedom, by default on all."""
         from gearwhine.housing.fem.block_products import BlockProduct
 
         places = np.arange(3 * self.n_nodes) if free is None else free
-        return BlockProduct(self.pointer, self.neighbors, blocks, places, threads)
+        return BlockProduct(self.pointer, self.neighbors, blocks, self.node_mass, places, threads)
 
     @cached_property
     def damping(self) -> sparse.csr_array:
@@ -392,14 +395,29 @@ class FreeSystem:
     @cached_property
     def stiffness(self) -> Operator:
         """K [N/m]."""
-        if not self.by_blocks:
-            return self.assembled(self._matrices.blocks)
-        return self._matrices.product_of(self._matrices.blocks, self.free, self.threads)
+        return self._by_blocks if self.by_blocks else self.assembled(self._matrices.blocks)
 
     @cached_property
     def mass(self) -> Operator:
         """M [kg]."""
         return FreeMass(self._matrices, self.free, self.threads)
+
+    @cached_property
+    def _by_blocks(self) -> "BlockProduct":
+        return self._matrices.product_of(self._matrices.blocks, self.free, self.threads)
+
+    @cached_property
+    def _attached_mass(self) -> sparse.csr_array | None:
+        return attached_mass(self._matrices, self.free)
+
+    def products(self, vectors: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+        """K u [N] and M u [kg m] of one vector or of many, shape (n, m); by blocks, these are read once for both."""
+        if not self.by_blocks:
+            return self.stiffness @ vectors, self.mass @ vectors
+        forces, inertia = self._by_blocks.with_inertia(vectors)
+        if self._attached_mass is not None:
+            inertia += self._attached_mass @ vectors
+        return forces, inertia
 
     def shifted(self, shift: float) -> "ShiftedMatrix":
         """K - shift M, always on the same pattern [rad²/s²]."""
@@ -468,14 +486,16 @@ class ShiftedMatrix:
         return self._assembled().full()
 
     def entries(self, kind: type) -> npt.NDArray[Any]:
-        """Entries of the lower triangle, of a type of numbers."""
-        return self._assembled().entries(kind)
+        """Entries of the lower triangle, of a type of numbers; by blocks, the pattern is given up."""
+        values = self._system.assembled(self._system.shifted_blocks(self._shift).astype(kind, copy=False)).values
+        self._system.forget_pattern()
+        return values
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply by one vector or by many, shape (n, m)."""
-        product = np.array(self._system.mass @ vectors)
-        product *= -self._shift
-        product += self._system.stiffness @ vectors
+        product, inertia = self._system.products(vectors)
+        inertia *= self._shift
+        product -= inertia
         return product
 
     def _assembled(self) -> SymmetricMatrix:
@@ -509,8 +529,7 @@ class FreeMass:
         self._order = 3 * len(nodes)
         # Where the free degrees of freedom stand among all those of the nodes that have any.
         self._places = None if 3 * len(nodes) == len(free) else 3 * np.searchsorted(nodes, free // 3) + free % 3
-        attached = matrices.attached_mass
-        self._attached = sparse.csr_array(attached.matrix(matrices.n_nodes)[free][:, free]) if len(attached) else None
+        self._attached = attached_mass(matrices, free)
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
@@ -539,6 +558,12 @@ class FreeMass:
         starts = accumulate((share.shape[0] for share in self._shares), initial=0)
         at_once([partial(fill, start, share) for start, share in zip(starts, self._shares, strict=False)])
         return product
+
+
+def attached_mass(matrices: Matrices, free: IntArray) -> sparse.csr_array | None:
+    """Mass of fixtures on the free degrees of freedom [kg]; None where there are none."""
+    attached = matrices.attached_mass
+    return sparse.csr_array(attached.matrix(matrices.n_nodes)[free][:, free]) if len(attached) else None
 
 
 def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:

@@ -68,7 +68,7 @@ _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away fr
 MOST_MODES = 2000
 """Largest number of modes of one search: the basis of more would exceed any memory."""
 _DRAFT = 1e-4  # residual of the last modes of a draft; modes of half their frequency then have all digits
-_IN_SINGLE = 0.2 * RESIDUAL_BOUND  # residual of the modes of a factor in single precision
+_IN_SINGLE = 0.5 * RESIDUAL_BOUND  # residual of the modes of a factor in single precision
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
@@ -98,7 +98,6 @@ class CertifiedSearch:
         self._system = system
         self._factorizer = factorizer
         self._solver = solver
-        self._mass = system.mass  # made here, while another thread may be finding the ordering
 
     def below(self, limit: float, progress: Callable[[str], None]) -> CertifiedModes:
         """All modes below a limit, which is itself the shift."""
@@ -180,7 +179,6 @@ class CertifiedSearch:
             factor = checked_factor("mumps", numeric, self._system.shifted(shift), time.perf_counter() - start)
         else:
             factor = self._factorizer.factor(self._system.shifted(shift))
-        self._system.forget_pattern()
         self.seconds["factorisation"] += time.perf_counter() - start
         return factor
 
@@ -195,8 +193,8 @@ class CertifiedSearch:
                 return self._factorizer.modes(shift, count, above=above, seed=attempt)
             if factor.precision == "single" and self._solver == "lanczos":
                 return davidson_modes(
-                    system.stiffness,
-                    self._mass,
+                    system.size,
+                    system.products,
                     factor.solve_approximately,
                     count,
                     floor=self.floor,
@@ -207,7 +205,7 @@ class CertifiedSearch:
             return nearest_modes(
                 self._solver,
                 factor.solve,
-                self._mass,
+                system.mass,
                 shift,
                 count,
                 above=above,
@@ -263,7 +261,7 @@ def _refined(
     as they are, so that they fail their certificate.
     """
     algebra = BlockAlgebra(system.size, system.threads)
-    inertia, force = system.mass @ vectors, system.stiffness @ vectors
+    force, inertia = system.products(vectors)
     overlaps = algebra.products(vectors, inertia)
     if np.abs(overlaps - np.eye(len(values))).max(initial=0.0) < OVERLAP_BOUND:
         values, mixture = linalg.eigh(algebra.products(vectors, force), overlaps)

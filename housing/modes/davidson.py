@@ -9,34 +9,42 @@ mode,
 
 By the first form S extended by F⁻¹ r is the Krylov space of F⁻¹ M, and the modes converge as they do in block Lanczos;
 by the second one each step also removes what E has left in x (Davidson 1975; Morgan and Scott 1986). Only the accuracy
-of r limits that of the modes. As long as the space has hardly more vectors than modes are wanted, E does not matter,
-and it is extended by F⁻¹ M of its last block, which takes fewer products. Where S is full, it keeps the lowest Ritz
-vectors and the last changes of the wanted ones (Knyazev 2001), which costs hardly a step.
+of r limits that of the modes.
 
-A block has sixteen columns, since the direct solver takes as long for eight. Where the memory beside the factor is
-short, it has eight, and the space is smaller too.
+S has the vectors V as the factor gives them, in single precision, which halves their memory: they are no more accurate.
+The Ritz vectors are V y, with
+
+    (VᵀK V) y = θ (VᵀM V) y,
+
+where both matrices are products in double precision of the vectors as they are kept, so that V need not be orthonormal.
+It is well enough conditioned: r is orthogonal to S, and F⁻¹ r is so in the product of F. A block that yet lies almost
+in S is orthogonalised. Where S is full, it keeps the lowest Ritz vectors; the rounding of the wanted ones to single
+precision is kept in vectors of its own.
+
+A block has sixteen columns, since the direct solver takes as long for eight.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy import linalg
 
-from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
-from gearwhine.housing.fem.memory import available_memory
+from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.numerics.arrays import FloatArray
 
 _BLOCK = 16
 _STEPS = 40  # beside those of eight times the number of modes
 _CLOSE = 1e-7  # residual below which every correction gains, unless rounding ends it
-_WELL_OUTSIDE = 1e-4  # least squared part of a block outside the space, and outside itself, that is orthonormal at once
-_WITHIN = 1e-22  # squared part of a column outside the space, below which the column lies in it
+_WELL_OUTSIDE = 1e-6  # least squared part of a block outside the space, and outside itself, that is taken as it is
 _DEPENDENT = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
+_TIMES = 3  # a block is orthogonalised before it counts as lying in the space
 
 
 def davidson_modes(
-    stiffness: Operator,
-    mass: Operator,
+    size: int,
+    products: Callable[[npt.NDArray[Any]], tuple[FloatArray, FloatArray]],
     solve_approximately: Callable[[FloatArray], FloatArray],
     count: int,
     *,
@@ -49,8 +57,10 @@ def davidson_modes(
 
     Parameters
     ----------
-    stiffness, mass : operator, shape (n, n)
-        K [N/m] and M [kg].
+    size : int
+        Number n of degrees of freedom.
+    products : callable
+        K X [N/m] and M X [kg] in double precision, of X of shape (n, m) in either.
     solve_approximately : callable
         X from (K - σM) X = Y, shape (n, m) both, with a relative error well below 1; σ next to the modes wanted or
         among them.
@@ -73,42 +83,32 @@ def davidson_modes(
     vectors : ndarray, shape (n, count)
         φ, with φᵀ M φ = 1; fewer where the starting block has no part in the others.
     """
-    n = mass.shape[0]
-    width, share = min(_BLOCK * 2**seed, n), 3
-    if 8.0 * n * (4 * count + 9 * width) > available_memory():
-        width, share = (width + 1) // 2, 2
-    kept, most, begin = share * count + width, (share + 1) * count + 4 * width, count + 4 * width
-    space = _RitzSpace(stiffness, mass, most, BlockAlgebra(n, threads))
+    width = min(_BLOCK * 2**seed, size)
+    space = _RitzSpace(products, 4 * count + 9 * width, BlockAlgebra(size, threads))
     residuals = np.full(count, np.inf)
-    block = np.random.default_rng(seed).standard_normal((n, width))
-    block = mass @ block
+    block = np.random.default_rng(seed).standard_normal((size, width))
     for _ in range(_STEPS + 8 * count // width):
-        if space.size + block.shape[1] > most:
-            space.shrink(kept, count)
-        block = solve_approximately(block)
-        if not space.extend(block):
+        if space.is_full(block.shape[1]):
+            space.shrink(count)
+        if not space.extend(solve_approximately(block)):
             break
-        if space.size < begin:
-            block = mass @ space.last
-            continue
         values, mixture = space.ritz(count)
         scales = np.abs(values) + abs(values[-1]) + floor
-        block = np.empty((n, 0))
-        while not block.shape[1] and (residuals > tolerance).any():
+        block = np.empty((size, 0))
+        left = residuals[: len(values)]
+        while not block.shape[1] and (left > tolerance).any():
             # The largest first: those of the modes that wait for a step are the larger ones of the next.
-            worst = np.argsort(-residuals, kind="stable")[: min(width, np.count_nonzero(residuals > tolerance))]
-            vectors = space.combined(mixture[:, worst])
-            forces, inertia = stiffness @ vectors, mass @ vectors
-            del vectors
+            worst = np.argsort(-left, kind="stable")[: min(width, np.count_nonzero(left > tolerance))]
+            block, inertia = products(space.combined(mixture[:, worst]))
             lengths = np.linalg.norm(inertia, axis=0)
             inertia *= values[worst]
-            forces -= inertia
+            block -= inertia
             del inertia
-            sizes = np.linalg.norm(forces, axis=0) / (scales[worst] * lengths)
-            stalled = (sizes < _CLOSE) & (sizes > residuals[worst])
-            residuals[worst] = np.where(stalled, 0.0, sizes)
-            block = forces[:, residuals[worst] > tolerance]
-            del forces
+            sizes = np.linalg.norm(block, axis=0) / (scales[worst] * lengths)
+            stalled = (sizes < _CLOSE) & (sizes > left[worst])
+            left[worst] = np.where(stalled, 0.0, sizes)
+            if (left[worst] <= tolerance).any():
+                block = block[:, left[worst] > tolerance]
         if not block.shape[1]:
             break
     values, mixture = space.ritz(count)
@@ -116,87 +116,80 @@ def davidson_modes(
 
 
 class _RitzSpace:
-    """M-orthonormal basis V of a space, and Vᵀ K V.
+    """Space of vectors V in single precision, with VᵀK V and VᵀM V in double.
 
     Attributes
     ----------
     size : int
         Number of vectors of V.
-    stiffness : ndarray, shape (size, size)
-        Vᵀ K V.
     """
 
-    def __init__(self, stiffness: Operator, mass: Operator, most: int, algebra: BlockAlgebra) -> None:
-        self._stiffness, self._mass, self._algebra = stiffness, mass, algebra
+    def __init__(
+        self,
+        products: Callable[[npt.NDArray[Any]], tuple[FloatArray, FloatArray]],
+        most: int,
+        algebra: BlockAlgebra,
+    ) -> None:
+        self._products, self._algebra = products, algebra
         # The operating system allocates only the pages that are used.
-        self._vectors = np.empty((mass.shape[0], most), order="F")
-        self._before = self.size = 0
-        self.stiffness = np.empty((0, 0))
+        self._vectors = np.empty((algebra.rows, most), np.float32, order="F")
+        self._gram = np.empty((2, most, most))  # VᵀK V and VᵀM V
+        self.size = 0
 
-    @property
-    def last(self) -> FloatArray:
-        """Vectors by which the space was last extended, shape (n, r)."""
-        return self._vectors[:, self._before : self.size]
+    def is_full(self, width: int) -> bool:
+        """Whether a block of this width no longer fits."""
+        return self.size + width > self._vectors.shape[1]
 
     def ritz(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Lowest Ritz values, shape (count,), and their vectors in terms of V, shape (size, count)."""
-        values, mixture = linalg.eigh(self.stiffness)
-        return values[:count], mixture[:, :count]
-
-    @property
-    def _basis(self) -> FloatArray:
-        return self._vectors[:, : self.size]
+        """Lowest Ritz values, up to ``count`` of them, and their vectors in terms of V, one in each column."""
+        stiffness, mass = self._gram[:, : self.size, : self.size]
+        # As if every vector were of length 1.
+        scale = 1.0 / np.sqrt(mass.diagonal())
+        both = np.outer(scale, scale)
+        values, mixture = linalg.eigh(stiffness * both, mass * both, subset_by_index=(0, min(count, self.size) - 1))
+        return values, scale[:, None] * mixture
 
     def combined(self, mixture: FloatArray) -> FloatArray:
-        """V m, shape (n, columns of m)."""
-        return self._algebra.combined(self._basis, mixture)
+        """V y, shape (n, columns of y)."""
+        return self._algebra.combined(self._vectors[:, : self.size], mixture)
 
     def extend(self, block: FloatArray) -> bool:
-        """Extend the space by a block of shape (n, width), which is overwritten; return whether it lay outside.
-
-        K and M are multiplied with the block as it is: of its part outside the space the products follow from those
-        with V, unless that part is so small that rounding shows. Then this part is taken as a block once more.
-        """
-        algebra = self._algebra
-        block /= np.linalg.norm(block, axis=0)
-        for last in (False, True):
-            inertia = self._mass @ block
-            within, gram = algebra.products(self._basis, inertia), algebra.products(block, inertia)
-            del inertia
-            outside = gram - within.T @ within
-            parts = outside.diagonal() / gram.diagonal()
-            independent = parts > _WITHIN
-            lengths = np.sqrt(outside.diagonal()[independent])
-            values, turn = linalg.eigh(outside[np.ix_(independent, independent)] / np.outer(lengths, lengths))
-            chosen = values > _DEPENDENT
-            mixture = np.zeros((len(parts), int(chosen.sum())))
-            mixture[independent] = turn[:, chosen] / lengths[:, None] / np.sqrt(values[chosen])
-            if last or min(parts.min(), values.min(initial=1.0)) > _WELL_OUTSIDE:
+        """Extend the space by a block of shape (n, width), or the part of it outside; return whether there is any."""
+        basis, mass = self._vectors[:, : self.size], self._gram[1, : self.size, : self.size]
+        for _ in range(_TIMES):
+            block = block / np.linalg.norm(block, axis=0)
+            kept = slice(self.size, self.size + block.shape[1])
+            self._vectors[:, kept] = block
+            self._multiply(kept)
+            within, own = self._gram[1, : self.size, kept], self._gram[1, kept, kept]
+            parts = linalg.solve(mass, within, assume_a="pos") if self.size else within
+            lengths = np.sqrt(own.diagonal())
+            if np.linalg.eigvalsh((own - within.T @ parts) / np.outer(lengths, lengths))[0] > _WELL_OUTSIDE:
+                self.size = kept.stop
+                return True
+            block = self._vectors[:, kept].astype(np.float64)
+            self._algebra.subtract(block, basis, parts)
+            lengths = np.linalg.norm(block, axis=0)
+            block = block[:, lengths > 0.0] / lengths[lengths > 0.0]
+            values, turn = np.linalg.eigh(self._algebra.products(block, block))
+            block = self._algebra.combined(block, turn[:, values > _DEPENDENT])
+            if not block.shape[1]:
                 break
-            algebra.subtract(block, self._basis, within)
-            block = algebra.combined(block, mixture)
-        if not mixture.shape[1]:
-            return False
-        forces = self._stiffness @ block
-        coupling, own = algebra.products(self._basis, forces), algebra.products(block, forces)
-        del forces
-        shared = within.T @ coupling
-        own = mixture.T @ (own - shared - shared.T + within.T @ self.stiffness @ within) @ mixture
-        coupling = (coupling - self.stiffness @ within) @ mixture
-        algebra.subtract(block, self._basis, within)
-        added = algebra.combined(block, mixture)
-        self._before, self.size = self.size, self.size + added.shape[1]
-        self._vectors[:, self._before : self.size] = added
-        self.stiffness = np.block([[self.stiffness, coupling], [coupling.T, 0.5 * (own + own.T)]])
-        return True
+        return False
 
-    def shrink(self, kept: int, count: int) -> None:
-        """Keep the lowest Ritz vectors, and the changes of the first ``count`` ones by the last block."""
-        mixture = self.ritz(kept)[1]
-        changes = mixture[:, :count].copy()
-        changes[: self._before] = 0.0
-        changes -= mixture @ (mixture.T @ changes)
-        changes = np.linalg.svd(changes, full_matrices=False)[0][:, : min(count, self.size - self._before)]
-        mixture = np.linalg.qr(np.concatenate([mixture, changes], axis=1))[0]
-        self._algebra.replace(self._basis, mixture)
-        self.stiffness, self.size = mixture.T @ self.stiffness @ mixture, mixture.shape[1]
+    def _multiply(self, columns: slice) -> None:
+        """Products of some vectors with those before them and with themselves."""
+        vectors = self._vectors[:, : columns.stop]
+        for gram, product in zip(self._gram, self._products(vectors[:, columns]), strict=True):
+            shares = self._algebra.products(vectors, product)
+            own = shares[columns]
+            shares[columns] = 0.5 * (own + own.T)
+            gram[: columns.stop, columns], gram[columns, : columns.stop] = shares, shares.T
+
+    def shrink(self, count: int) -> None:
+        """Keep the 2 ``count`` lowest Ritz vectors, and what rounding takes from the first ``count`` of them."""
+        mixture = self.ritz(2 * count)[1]
+        self._algebra.replace(self._vectors[:, : self.size], mixture, count)
+        self.size = mixture.shape[1] + count
+        for begin in range(0, self.size, _BLOCK):
+            self._multiply(slice(begin, min(begin + _BLOCK, self.size)))
