@@ -208,7 +208,7 @@ def _whole_order(
 
 
 def _mesh_combination(machine: CoupledMachine, frequency: float, tolerance: float) -> str:
-    """Return the sum or difference of harmonics of two meshes at a frequency, of the lowest harmonics; empty without one.
+    """Return the lowest sum or difference of harmonics of two meshes at a frequency; empty without one.
 
     Meshes on carriers are left out: each of their lines is a whole number of turns off another.
     """
