@@ -2,10 +2,11 @@
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a harmonic torque or motion of the base, the passing of the elements of a rolling bearing whose
-law follows them, a sideband, any other whole order. One that is much nearer to the line goes before a simpler one;
-causes that are about as near and as simple are named together. Sidebands by the turning of planet carriers are those
-that the machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`), and those of the mean
-load are orders of the carrier. Orders of a shaft and their sidebands count where something excites them
+law follows them, a sideband, any other whole order, a sum or difference of harmonics of two meshes, by which the motion
+in one mesh modulates the force of the other. One that is much nearer to the line goes before a simpler one; causes that
+are about as near and as simple are named together. Sidebands by the turning of planet carriers are those that the
+machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`), and those of the mean load are
+orders of the carrier. Orders of a shaft and their sidebands count where something excites them
 (:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to the line. A
 line at none of these is free vibration, named after its mode. Either may be near a mode, which is given apart from the
 cause. A line that is near no mode either, whole turns of a carrier off a harmonic of its planets' meshes, is one of
@@ -14,6 +15,7 @@ their far sidebands, which parts that hand a motion on to each other leave.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -38,6 +40,7 @@ _SHAFT_ORDERS = 4  # highest shaft order that takes precedence over a sideband o
 _SIDEBANDS = 4  # by gears and loads; those by turning carriers are as many as the machine has
 _ELEMENT_PASSES = 4
 _LOAD_MULTIPLES = 4
+_COMBINED_HARMONICS = 7  # highest sum of the harmonics of two meshes in a combination
 _HALF_WIDTHS = 3.0  # reach of a line that slip makes wide: four fifths of its power
 _MUCH_NEARER = 0.25  # part of the distance from a cause within which another one is the cause
 _SAME_FREQUENCY = 1e-9  # relative difference of frequencies that are one
@@ -160,6 +163,8 @@ def line_names(
             named.append(LineName(kind, text, order, mode))
         elif whole:
             named.append(LineName("shaft", whole, order, mode))
+        elif combined := _mesh_combination(machine, frequency, of_shafts):
+            named.append(LineName("sideband", combined, order, mode))
         elif modes is not None and mode is not None:
             named.append(LineName("mode", _label(modes, mode), order, mode))
         elif far := _far_sideband(machine, frequency, within):
@@ -204,6 +209,34 @@ def _whole_order(
         if multiple in excited[name] and abs(frequency - multiple * rotation_frequency) <= tolerance:
             orders.append((multiple, f"{multiple}× {name}", abs(frequency - multiple * rotation_frequency)))
     return min(orders)[1:] if orders else ("", np.inf)
+
+
+def _mesh_combination(machine: CoupledMachine, frequency: float, tolerance: float) -> str:
+    """Return the lowest sum or difference of harmonics of two meshes at a frequency; empty without one.
+
+    Meshes on carriers are left out: each of their lines is a whole number of turns off another.
+    """
+    meshes = [
+        (mesh.name, abs(machine.system.contacts[number].mesh_frequency))
+        for number, mesh in zip(machine.loaded_contacts, machine.meshes, strict=True)
+        if mesh.carrier is None
+    ]
+    found = []
+    for pair in combinations(meshes, 2):
+        (high, above), (low, below) = sorted(pair, key=lambda mesh: -mesh[1])
+        # Every line is near some multiple of a very slow mesh; equal rates have no combinations.
+        if below <= 2.5 * tolerance or above - below <= tolerance:
+            continue
+        for first in range(1, _COMBINED_HARMONICS):
+            for sign in (1, -1):
+                second = round((frequency - sign * first * above) / below)
+                if abs(frequency - sign * first * above - second * below) > tolerance:
+                    continue
+                name = f"{first}× {high} {'-' if second < 0 else '+'} {abs(second)}× {low}"
+                name = f"{second}× {low} - {first}× {high}" if sign < 0 else name
+                if second and first + abs(second) <= _COMBINED_HARMONICS:
+                    found.append((first + abs(second), name))
+    return min(found)[1] if found else ""
 
 
 def _far_sideband(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:

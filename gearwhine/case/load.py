@@ -123,15 +123,17 @@ def _expected(detail: ErrorDetails, context: dict[str, Any]) -> str:
 
 
 _FIELD_WORDS = {
+    "beta": "helix_angle",
     "crowning": "errors.helix.crowning",
     "end_relief": "errors.helix.end_relief",
-    "helix": "errors.helix",
+    "helix": "helix_angle",
     "helix_crowning": "errors.helix.crowning",
     "helix_modification": "errors.helix",
     "lead_crowning": "errors.helix.crowning",
     "lead_modification": "errors.helix",
+    "number_of_teeth": "teeth",
 }
-"""Words of the field for keys that stand in a table of this one."""
+"""Words of the field for keys of a table, or of one in it."""
 
 
 def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:

@@ -373,6 +373,8 @@ def _hint(document: Mapping[str, Any], steps: Sequence[str]) -> str:
         if not any(True for _ in matching_places(document, steps[:length])):
             around = [look_up(document, place) for place in matching_places(document, steps[: length - 1])]
             names = [name for one in around for name in _names_in(one)]
+            if "*" in steps[length - 1] != "*":
+                return f"; '*' stands for a whole name, not for a part as in '{steps[length - 1]}'"
             return did_you_mean(steps[length - 1], names)
     return ""
 

@@ -22,6 +22,9 @@ OUTPUT, STAGE = 19 * 21 / 72 / 56, 19 * 21 / 72
         (STAGE + 4.0 * OUTPUT, "1× c -> d + 4× output"),
         (STAGE + OUTPUT, "1× c -> d + 1× output"),
         (7.0, "7× input"),
+        (2.0 * STAGE + 21.0, "1× a -> b + 2× c -> d"),
+        (21.0 - 2.0 * STAGE, "1× a -> b - 2× c -> d"),
+        (6.0 * STAGE - 21.0, "6× c -> d - 1× a -> b"),
     ],
 )
 def test_a_whole_order_of_another_shaft_beside_a_sideband_has_its_own_name(

@@ -158,6 +158,7 @@ NONSENSE: dict[str, dict[str, Any]] = {
     "speed of 500000 rpm": changed(SPUR, ("operation.speed", "500000 rpm")),
     "speed of 60000 rpm": changed(SPUR, ("operation.speed", "60000 rpm")),
     "speed in Hz": operated(speed="5500 Hz"),
+    "torque in where it leaves": changed(SPUR, ("operation.rotor", "output")),
     "torque per angle": operated(torque="71.77 N*m/deg"),
     "torque per radian": operated(torque="71.77 N*m/rad"),
     "gravity in mm/s2": changed(SPUR, ("operation.gravity", [0, -9810, 0])),

@@ -530,7 +530,7 @@ def _check_distance(pair: GearPairGeometry) -> None:
         _check_internal_distance(pair, distance, close, where)
     elif not (math.isfinite(distance) and distance > pair.base_radii_sum):
         raise InterferenceError(
-            f"{pair.label}: the gears do not fit {where}, which exceeds the sum of the base radii, "
+            f"{pair.label}: the gears do not fit {where}; it has to exceed the sum of the base radii, "
             f"{pair.base_radii_sum * 1e3:.6g} mm"
         )
     if pair.normal_backlash < -_ALLOWED_JAM * pair.driver.module:

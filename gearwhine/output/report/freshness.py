@@ -10,8 +10,6 @@ from gearwhine.case.input_files import file_contents
 
 _DIFFERENCES = 6  # largest number of keys of the case that are named
 _REMARKS = "provenance."  # beginning of keys that give the sources of values, and change no value
-_MOTION_ALONE = "run without sound"
-_SOUND_IN_RUN = ("acoustics.in_run", "acoustics.method")  # keys that decide whether a run has sound
 _TITLES = ("title", "notes")
 _HOUSING = ("modes", "compare", "survey", "update", "render")
 _READERS: dict[str, tuple[str, ...]] = {
@@ -51,24 +49,32 @@ def stored_case(place: Path) -> Mapping[str, Any] | None:
 
 def mismatches(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> list[str]:
     """Return how the case and the input files of a result differ from those of now; empty where they do not."""
-    command = _MOTION_ALONE if "sound_not_solved" in document else str(document.get("command", ""))
-    differences = _differences(stored_case(place), present, command)
+    differences = _differences(stored_case(place), present, document)
     return [*differences, *_changed_files(document.get("input_files"))]
 
 
 def _reads(command: str, key: str) -> bool:
     """Whether a command reads a key of the case; one that is not known reads all."""
-    if command == _MOTION_ALONE:
-        command = "run"
-        if key.startswith("acoustics.") and key not in _SOUND_IN_RUN:
-            return False
     table = key.partition(".")[0]
     return table not in _TITLES and (
         command in _READERS[table] if table in _READERS else table not in _UNREAD.get(command, ())
     )
 
 
-def _differences(stored: Mapping[str, Any] | None, present: Mapping[str, Any] | None, command: str) -> list[str]:
+def _has_sound(document: Mapping[str, Any], *cases: Mapping[str, Any]) -> bool:
+    """Whether a result has sound, or would have in one of these cases: a run by its keys, `load` by what it ranks."""
+    if document.get("command") == "load":
+        return "loudest_lines" in document
+    settings = [case["acoustics"] for case in cases if "acoustics" in case]
+    return document.get("command") not in ("run", "simulate") or any(
+        acoustics.get("in_run", acoustics.get("method", "boundary-elements") != "boundary-elements")
+        for acoustics in settings
+    )
+
+
+def _differences(
+    stored: Mapping[str, Any] | None, present: Mapping[str, Any] | None, document: Mapping[str, Any]
+) -> list[str]:
     """Keys that a command reads and in which the case of its result differs from the present one, in one sentence."""
     if stored is None or present is None:
         return []
@@ -77,7 +83,12 @@ def _differences(stored: Mapping[str, Any] | None, present: Mapping[str, Any] | 
         for document in (stored, present)
     )
     changed = (key for key in dict.fromkeys([*before, *now]) if before.get(key) != now.get(key))
-    keys = [key for key in changed if not command or _reads(command, key)]
+    command, has_sound = str(document.get("command", "")), _has_sound(document, stored, present)
+    keys = [
+        key
+        for key in changed
+        if (not command or _reads(command, key)) and (has_sound or not key.startswith("acoustics."))
+    ]
     if not keys:
         return []
     listed = ", ".join(

@@ -119,7 +119,12 @@ def test_line_of_action_angle() -> None:
             MismatchedGearsError,
             "pressure_angle, got 20 and 25",
         ),
-        (WHEEL, 90e-3, InterferenceError, "do not fit .* 90 mm; they mesh .* at 97.*sum of the base radii"),
+        (
+            WHEEL,
+            90e-3,
+            InterferenceError,
+            "do not fit .* 90 mm; they mesh .* at 97.*; it has to exceed the sum of the base radii",
+        ),
         (WHEEL, 96.5e-3, InterferenceError, "the teeth jam"),
         (WHEEL, math.nan, InterferenceError, "centre distance"),
         (WHEEL, 101.5e-3, NoContactError, "lose contact .* 101.5 mm; they mesh without backlash at 97"),

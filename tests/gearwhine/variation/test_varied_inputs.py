@@ -156,6 +156,7 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
         ('vary = { "gear.pinion.errors.phase" = { class = 6 } }', "one of the errors pitch"),
         ('vary = { "gear.pinion.errors.runout" = { class = 12 } }', "a whole number from 1 to 11"),
         ('vary = { "gears.pinion.bore" = { uniform = [1, 2] } }', "leads to something in the case"),
+        ('vary = { "gear.pin*.bore" = { uniform = [1, 2] } }', "for a whole name, not for a part as in 'pin*'"),
         ('vary = { "gear.pinion.bore" = { uniform = [0.03, 0.04], factor = { pinon = 2 } } }', "did you mean 'pinion'"),
         ('vary = { "gear.*.bore" = { fit = "H7" } }', "independent = true"),
         ('vary = { "gear.*.root_relief.amount" = { uniform = ["1 um", "2 um"] } }', "'start_roll_angle' and 'length'"),

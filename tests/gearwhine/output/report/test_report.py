@@ -349,7 +349,9 @@ def test_results_of_another_case_fail_on_the_first_page(tmp_path: Path) -> None:
         ("compare", "[measured]\nfrequencies = [3]", True),
         ("rotors", "[measured]\nfrequencies = [3]", False),
         ("sound", "[acoustics]\nlines = 3", True),
-        ("run", "[acoustics]\nlines = 3", True),
+        ("run", "[acoustics]\nlines = 3", False),
+        ("run", "[acoustics]\nin_run = true", True),
+        ("load", "[acoustics]\nlines = 3", False),
         ("run", "notes = 'other words'", False),
         ("run", "[unheard_of]\nkey = 3", True),
     ],
@@ -370,8 +372,8 @@ def test_a_run_without_sound_is_not_held_against_the_keys_of_sound(
 ) -> None:
     write(tmp_path, {"command": "run"}, "[acoustics]\n")
     present = tomllib.loads(f"[acoustics]\n{change}\n")
-    document = {"command": "run", "sound_not_solved": "left out"}
-    assert bool(mismatches(tmp_path, document, present)) is differs
+    assert bool(mismatches(tmp_path, {"command": "run"}, present)) is differs
+    assert mismatches(tmp_path, {"command": "load", "loudest_lines": []}, present)
 
 
 @pytest.mark.parametrize(("error", "passed"), [(0.2, True), (0.36, None), (1.2, False)])
