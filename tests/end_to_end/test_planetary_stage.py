@@ -53,16 +53,6 @@ def _json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
     return document
 
 
-def test_check_tells_members_and_mesh_frequency(capsys: pytest.CaptureFixture[str]) -> None:
-    document = _json(capsys, "check", NAME)
-    # Willis: 3000 rpm over 1 + 90 / 24; the mesh of 90 teeth of the ring with the carrier's speed.
-    carrier = 3000.0 / (1.0 + 90.0 / 24.0)
-    speeds = {rotor["name"]: rotor["speed_rpm"] for rotor in document["rotors"]}
-    assert speeds["carrier"] == pytest.approx(carrier)
-    assert speeds["ring"] == 0.0
-    assert {round(pair["mesh_frequency_hz"], 6) for pair in document["gear_pairs"]} == {round(90.0 * carrier / 60.0, 6)}
-
-
 def test_check_tells_the_turns_of_the_carrier_in_a_record_and_the_outside_of_the_ring(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
