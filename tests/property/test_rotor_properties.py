@@ -13,16 +13,12 @@ from hypothesis import strategies as st
 from numpy.polynomial import legendre
 
 from gearwhine.rotors import (
-    Bearing,
     Disc,
     RadialSupport,
     Rotor,
     Segment,
     ShaftMaterial,
-    critical_speeds,
-    rest_frequencies,
     solve_lateral_modes,
-    solve_whirl,
 )
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
@@ -97,31 +93,6 @@ def test_shapes_are_orthonormal_and_continue_between_stations(case: tuple[Rotor,
     np.testing.assert_allclose(x, modes.displacement, atol=1e-9 * np.abs(x).max())
     np.testing.assert_allclose(b, modes.slope, atol=1e-9 * np.abs(b).max())
     assert np.linalg.eigvalsh(modes.polar_inertia_matrix).min() > -1e-9
-
-
-@settings(FEW, max_examples=5)
-@given(random_rotors(), reals(1e5, 1e8), reals(10.0, 2000.0))
-def test_reversed_rotation_swaps_the_directions(rotor: Rotor, stiffness: float, speed: float) -> None:
-    bearings = [Bearing.isotropic(str(z), z * rotor.length, stiffness) for z in (0.0, 1.0)]
-    one = solve_whirl(rotor, bearings, speed, count=6)
-    other = solve_whirl(rotor, bearings, -speed, count=6)
-    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-8)
-    np.testing.assert_allclose(np.abs(one.damping_ratios), 0.0, atol=1e-8)
-    separate = np.abs(np.diff(one.frequencies)).min(initial=np.inf) > 1e-4 * one.frequencies[-1]
-    if separate:
-        np.testing.assert_allclose(other.direction, -one.direction, atol=1e-5)
-
-
-@settings(FEW, max_examples=5)
-@given(random_rotors(), reals(1e5, 1e8), reals(1e5, 1e8))
-def test_planes_at_rest(rotor: Rotor, k_xx: float, k_yy: float) -> None:
-    bearings = [Bearing(str(z), z * rotor.length, np.diag([k_xx, k_yy]), np.zeros((2, 2))) for z in (0.0, 1.0)]
-    exact = rest_frequencies(rotor, bearings, count=6)
-    whirl = solve_whirl(rotor, bearings, 0.0, count=8)
-    np.testing.assert_allclose(whirl.frequencies[: exact.frequencies.size], exact.frequencies, rtol=1e-5)
-    assert exact.certificate.complete
-    # With the polar inertia joining the mass, backward critical speeds lie below the frequencies at rest.
-    assert critical_speeds(rotor, bearings, count=1).speeds[0] <= exact.frequencies[0] * (1 + 1e-9)
 
 
 def test_lumping_converges_to_the_distributed_shaft() -> None:
