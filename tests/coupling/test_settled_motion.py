@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from test_floquet_exponents import multipliers
 
 from gearwhine.coupling import CoupledSystem, CouplingError, PeriodicError
 from gearwhine.coupling.analyses.steady_state import solve_steady
@@ -88,6 +89,20 @@ def test_lines_of_the_settled_motion_are_the_linear_ones() -> None:
         checked += len(strong)
     assert checked >= 4
     assert settled.contact_loss.max() == 0.0
+
+
+@pytest.mark.slow
+def test_multipliers_are_those_of_a_turn() -> None:
+    """The largest is that of the monodromy by Magnus's series, within its error."""
+    machine = turning_machine(ANISOTROPIC, speed=3000.0, mode_count=None)
+    settled = settled_response(machine.system, closure=1e-6)
+    exact = multipliers(machine.system, settled.period, 60)
+    # Without the rotation of the train and the torsion of shafts that no force moves, which nothing damps.
+    largest = np.abs(exact[np.abs(exact) < 1.0 - 1e-4]).max()
+    assert largest == pytest.approx(0.9539, abs=1e-4)
+    assert settled.floquet.largest_error < 0.03
+    assert settled.floquet.largest == pytest.approx(largest, abs=settled.floquet.largest_error)
+    assert settled.stability == "stable"
 
 
 DAMPED = 0.02 * np.eye(2)
