@@ -39,12 +39,13 @@ help:
 	@echo "make validation     docs/validation.md anew, from the tests against published values"
 	@echo "make clean          the environment and what these have made"
 
-test: lint checked-and-compiled unit
+test: checked-and-compiled unit
 
-# The types take one core for a minute, and the kernels both: side by side they take less than one after the other.
+# Lint and types take one core for a minute, the browser a download, and the kernels both cores: side by side they take
+# less than one after the other.
 checked-and-compiled: $(VENV)/.installed-dev
-	@$(MAKE) --no-print-directory types & types=$$!; \
-		$(MAKE) --no-print-directory install-dev; installed=$$?; wait $$types && exit $$installed
+	@$(MAKE) --no-print-directory lint types browser & checks=$$!; \
+		$(MAKE) --no-print-directory install-dev; installed=$$?; wait $$checks && exit $$installed
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
@@ -64,7 +65,7 @@ test-slow: install-dev browser
 	$(PYTEST) -m slow
 
 # All in one go: files with slow and fast tests solve what both share once.
-test-all: lint checked-and-compiled install-dev browser
+test-all: checked-and-compiled
 	$(PYTEST)
 
 install: $(VENV)/.installed system $(VENV)/.compiled

@@ -35,7 +35,7 @@ install() {
     fi
     echo "Installing system packages: $*"
     $as_root apt-get update -qq # fails for any broken source, so the installation is tried all the same
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=300 "$@" >/dev/null
 }
 
 if [ "${2:-}" = --browser ]; then

@@ -28,32 +28,6 @@ def test_the_average_keeps_what_repeats_with_the_turn() -> None:
         synchronous_average(MESH[:10], N)
 
 
-def test_gaussian_noise_has_the_moments_3_15_and_105() -> None:
-    noise = np.random.default_rng(2).normal(size=2**20)
-    found = SynchronousAverage(noise, TEETH)
-    assert found.fm4 == pytest.approx(3.0, rel=0.02)
-    assert found.m6a == pytest.approx(15.0, rel=0.05)
-    assert found.m8a == pytest.approx(105.0, rel=0.15)
-
-
-def test_one_pulse_a_turn_has_the_moments_of_its_length() -> None:
-    """A pulse of one of N samples: mean 1/N, so that the moment of power 2k is near N^(k - 1)."""
-    pulse = np.zeros(N)
-    pulse[17] = 1.0
-    found = SynchronousAverage(MESH + pulse, TEETH, harmonics=1)
-    # The lines that the difference signal is without take part of the pulse: 1, 2, 22, 23 and 24 of 2048, and the mean.
-    kept = 1.0 - 2.0 * 5.0 / N
-    assert found.difference[17] == pytest.approx(kept - 1.0 / N + _second_harmonic(17), abs=1e-3)
-    alone = SynchronousAverage(pulse + 3.0 * np.cos(TEETH * ANGLES), TEETH, harmonics=1)
-    assert alone.fm4 == pytest.approx(N, rel=0.01)
-    assert alone.m6a == pytest.approx(N**2, rel=0.02)
-    assert alone.m8a == pytest.approx(float(N) ** 3, rel=0.03)
-
-
-def _second_harmonic(place: int) -> float:
-    return float(0.5 * np.cos(2 * TEETH * ANGLES[place] + 0.3))
-
-
 def test_a_pure_mesh_tone_has_no_residual_and_no_indicators_of_one() -> None:
     found = SynchronousAverage(MESH + 7.0, TEETH)
     assert (found.fm4, found.m6a, found.m8a) == (None, None, None)

@@ -193,27 +193,6 @@ def test_free_machine_has_its_rigid_motions(matrix: FloatArray | None) -> None:
     assert values[~zero].min() > 0.0
 
 
-def rolling(parts: CoupledMachine) -> FloatArray:
-    """The two shafts turning with their tooth ratio."""
-    driver, driven = both_rotors()
-    rows = np.zeros((2, parts.system.size))
-    rows[0, : driver.size] = driver.rotation(GEAR_AT["input"])
-    rows[1, driver.size : driver.size + driven.size] = driven.rotation(GEAR_AT["output"])
-    q = np.zeros(parts.system.size)
-    # The rigid rotation of each is its first torsional mode.
-    first = 2 * driver.modal.lateral.count
-    second = driver.size + 2 * driven.modal.lateral.count
-    q[first], q[second] = 1.0 / rows[0, first], -1.0 / PAIR.ratio / rows[1, second]
-    return q
-
-
-def test_rolling_does_not_compress() -> None:
-    parts = machine(backlash=BACKLASH)
-    q = rolling(parts)
-    for contact in parts.system.contacts:
-        assert abs(contact.direction @ q) < 1e-12
-
-
 @pytest.mark.parametrize("angle", [0.4, np.pi / 2.0, 2.9])
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("tilting", [False, True])

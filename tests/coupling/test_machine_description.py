@@ -6,11 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from gearwhine.coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
-from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
 from gearwhine.coupling.description.parts import rotor_with_gears
 from gearwhine.coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
 from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
@@ -268,16 +265,6 @@ def test_helical_thrust_needs_a_bearing_that_carries_it() -> None:
         for at in (0.0, LENGTH)
     ]
     assert Machine(**parts, bearings=bearings).pair_torques == pytest.approx((40.0,), rel=1e-12)
-
-
-@given(st.lists(st.tuples(st.integers(5, 200), st.integers(5, 200)), min_size=1, max_size=6), st.floats(-50.0, 50.0))
-def test_power_in_is_power_through_every_pair_of_a_chain(teeth: list[tuple[int, int]], torque: float) -> None:
-    train = gear_train(GearedShafts(str(i), str(i + 1), pair) for i, pair in enumerate(teeth))
-    last = train.output_shafts[0]
-    leaving = -torque / abs(float(train.ratios[last]))
-    carried = train.pair_torques({"0": torque, last: leaving})
-    powers = [one * abs(float(train.ratios[str(i)])) for i, one in enumerate(carried)]
-    assert powers == pytest.approx([torque] * len(teeth), rel=1e-9, abs=1e-9)
 
 
 def test_motion_is_labelled_and_carries_the_mean_torque() -> None:

@@ -6,9 +6,6 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from gearwhine.coupling import (
@@ -164,35 +161,6 @@ def test_rectangular_stiffness_against_matrix_exponentials(seed: int, ratio: flo
     assert response.mean_force[0] > 0.0
 
 
-@given(seed=st.integers(0, 10_000), ratio=st.floats(1.05, 2.6), speed=st.floats(0.3, 3.0), phase=st.floats(0.0, 1.0))
-@settings(max_examples=15, deadline=None)
-def test_mean_power_in_is_mean_loss(seed: int, ratio: float, speed: float, phase: float) -> None:
-    """Over a period: work of the loads and of the turning teeth = loss in the dampers.
-
-    The turning teeth's part is not looked at: at a mesh that is one constant spring it is none.
-    """
-    stiffness, damping = drawn(seed)
-    rng = np.random.default_rng(seed)
-    amplitude = rng.normal(size=SIZE) + 1j * rng.normal(size=SIZE)
-    contact = square(2.0, 1.0, damping=0.2, depth=0.05)
-    system = body(
-        stiffness, damping, [tooth(contact, 0.0, phase)], 1.5 * ratio * DIRECTION, [HarmonicLoad(speed, amplitude)]
-    )
-    response = periodic_response(system)
-    rows = TransientOutputs(np.eye(SIZE), np.eye(SIZE), np.eye(SIZE))
-    record = response.record(rows, 4000)
-    force = (np.exp(1j * speed * record.times)[:, None] * amplitude).real
-    fed = ((force + system.load) * record.velocity).sum(axis=1).mean()
-    loss = np.einsum("si,ij,sj->s", record.velocity, damping, record.velocity).mean()
-    # Of the force of the teeth the part that is no spring's: springs give back all that they take.
-    loss += (record.force[:, 0] * (record.velocity @ DIRECTION)).mean()
-    assert fed == pytest.approx(loss, rel=1e-4)
-    # And the equation of motion holds at every sample.
-    rest = record.acceleration + record.velocity @ damping + record.displacement @ stiffness
-    rest += np.outer(record.force[:, 0], DIRECTION) - force - system.load
-    assert np.abs(rest).max() < 1e-9 * np.abs(record.acceleration).max()
-
-
 def settled(system: CoupledSystem, response: PeriodicResponse, periods: int, steps: int) -> FloatArray:
     """Displacement of a one-mass system over its last period by the transient, 64 samples."""
     period = response.period
@@ -223,23 +191,6 @@ def both_motions(system: CoupledSystem) -> tuple[PeriodicResponse, PeriodicRespo
     return closed, parted
 
 
-@pytest.mark.parametrize(("damping", "viscous", "fade"), [(0.05, 0.0, 0.0), (0.02, 0.06, 0.0), (0.02, 0.06, 0.3)])
-def test_motions_repeat_under_another_integrator(damping: float, viscous: float, fade: float) -> None:
-    """Runge and Kutta's steps on the law as the sources write it; damping that strikes at once too."""
-    system = one_mass(0.78, waving(0.3, viscous, fade), damping)
-
-    def rates(time: float, state: FloatArray) -> list[float]:
-        x, v = state
-        part = 0.0 if x <= 0.0 else min(1.0, x / fade) if fade else 1.0
-        force = max(0.0, (1.0 + 0.3 * np.cos(0.78 * time)) * x + viscous * part * v) if x > 0.0 else 0.0
-        return [v, 1.0 - 2.0 * damping * v - force]
-
-    for response in both_motions(system):
-        start = [response.displacement[0], response.velocity[0]]
-        end = solve_ivp(rates, (0.0, response.period), start, rtol=1e-10, atol=1e-11, max_step=0.02).y[:, -1]
-        np.testing.assert_allclose(end, start, atol=1e-6)
-
-
 @pytest.mark.parametrize(("viscous", "fade"), [(0.0, 0.0), (0.08, 0.0), (0.08, 0.4)])
 def test_monodromy_over_losses_of_contact(viscous: float, fade: float) -> None:
     """Against differences of the whole march, forces that step at impact included; det M = e^{-∫ damping dt}."""
@@ -266,14 +217,6 @@ def test_monodromy_over_losses_of_contact(viscous: float, fade: float) -> None:
     np.testing.assert_allclose(
         np.exp(response.floquet.exponents * response.period), response.floquet.values, rtol=1e-12
     )
-
-
-def test_the_step_of_damping_at_impact_counts() -> None:
-    """The check of the monodromy above can fail: det M has the loss of the smooth stretches and the steps' own."""
-    response = periodic_response(one_mass(0.78, waving(0.3, 0.08), 0.03), start=(np.array([3.8]), np.zeros(1)))
-    closed = 1.0 - response.contact_loss[0]
-    smooth = np.exp(-(2.0 * 0.03 + 0.08 * closed) * response.period)
-    assert abs(np.prod(response.floquet.values)) != pytest.approx(smooth, rel=1e-3)
 
 
 def test_runout_and_a_longer_period() -> None:

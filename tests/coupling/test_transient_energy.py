@@ -25,7 +25,7 @@ from gearwhine.coupling.gears import (
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.machine.components import Component
-from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.transient import EnergyBalance, TransientResult
@@ -85,17 +85,6 @@ def held_energy(system: CoupledSystem, result: TransientResult) -> FloatArray:
 def struck(system: CoupledSystem, settings: TransientSettings, speed: float = 0.3) -> TransientResult:
     velocity = speed * np.array([1.0, -0.5, 0.25, 0.8])
     return simulate(system, settings, everything(system.size), initial=(static_equilibrium(system), velocity))
-
-
-def test_stiffness_of_every_tie_is_symmetric() -> None:
-    system = contact_system(spring(2.0), 0.0)
-    bearing = LinearConnector("bearing", np.eye(SIZE)[:, :2], np.diag([2.0, 3.0]), np.zeros((2, 2)))
-    tied = CoupledSystem(system.components, (0.0,), (bearing,), system.contacts, system.load)
-    np.testing.assert_array_equal(tied.stiffness, tied.stiffness.T)
-    np.testing.assert_allclose(tied.mean_stiffness, tied.mean_stiffness.T, rtol=1e-15)
-    expected = drawn_stiffness() + np.diag([2.0, 3.0, 0.0, 0.0]) + 2.0 * np.outer(DIRECTION, DIRECTION)
-    np.testing.assert_allclose(tied.mean_stiffness, expected, rtol=1e-14, atol=1e-15)
-    assert np.linalg.eigvalsh(tied.mean_stiffness).min() > 0.0
 
 
 # Steps whose size has more digits than a round number: the matrices of the step must be those of this size.

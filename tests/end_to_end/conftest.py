@@ -1,5 +1,6 @@
 """Runs of the real command, in this process or in one of its own; figures are rendered where a test is of them."""
 
+import importlib.util
 import json
 import os
 import signal
@@ -8,6 +9,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -17,6 +19,7 @@ import gearwhine as gw
 from gearwhine.cli import run_command
 from gearwhine.from_case import mesh
 from gearwhine.meshes import mesh_cad
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -43,6 +46,37 @@ def _periodic_motions_found_once(periodic_motions_found_once: None) -> None:
 def linear_drawings(monkeypatch: pytest.MonkeyPatch) -> None:
     """Mesh drawings by linear tetrahedra: their bolts, not the size of elements, say how many there are."""
     monkeypatch.setattr(mesh, "mesh_cad", lambda *drawing, **how: mesh_cad(*drawing, **how | {"order": 1}))
+
+
+@pytest.fixture
+def drawing_script(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], ModuleType]:
+    """``drawing_script(name)``: a module of `scripts`, which draws the housing of a bundled case."""
+    scripts = Path(__file__).parents[2] / "scripts"
+    monkeypatch.syspath_prepend(scripts)
+
+    def load(name: str) -> ModuleType:
+        spec = importlib.util.spec_from_file_location(name, scripts / f"{name}.py")
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, name, module)
+        spec.loader.exec_module(module)
+        return module
+
+    return load
+
+
+@pytest.fixture
+def solid_measures() -> Callable[[Path], list[float]]:
+    """``solid_measures(path)``: volume [mm³] and bounds [mm] of the only solid of a drawing."""
+
+    def measure(path: Path) -> list[float]:
+        with gmsh_session("file") as gmsh:
+            ((dimension, tag),) = gmsh.model.occ.importShapes(str(path))
+            gmsh.model.occ.synchronize()
+            return [gmsh.model.occ.getMass(dimension, tag), *gmsh.model.getBoundingBox(dimension, tag)]
+
+    return measure
 
 
 @dataclass(frozen=True)

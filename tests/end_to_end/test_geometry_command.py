@@ -1,6 +1,5 @@
 """Housings from files through the real command: what works at once, and what is wrong told by its key."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -74,14 +73,6 @@ def test_a_drawing_becomes_a_mesh_file_of_the_default_format(gearwhine: Any, cas
     mesh = read_mesh(tmp_path / "out" / "mesh.msh")
     assert mesh.element_volumes.sum() == pytest.approx(SOLID, rel=1e-3)
     assert list(mesh.surfaces) == ["input"]
-
-
-def test_a_drawing_becomes_modes_with_its_seat_found(gearwhine: Any, case: Any) -> None:
-    outcome = gearwhine("modes", case(), "--json", "-q")
-    assert outcome.code == 0, outcome.err
-    assert outcome.document["certificate"]["complete"] is True
-    assert outcome.document["mass_kg"] == pytest.approx(7850 * SOLID, rel=1e-3)
-    assert all(mode["strength"] > 0.0 for mode in outcome.document["modes"])
 
 
 def test_a_bolted_cover_is_not_doubted_for_being_bolted(gearwhine: Any) -> None:
@@ -164,10 +155,6 @@ def test_a_mesh_that_few_computers_solve_is_doubted_by_the_check(gearwhine: Any)
     assert "load" not in [one["name"] for one in gearwhine("check", "steel-box", "--json", "-q").document["warnings"]]
 
 
-def test_the_check_says_that_it_meshes_a_drawing(gearwhine: Any, case: Any) -> None:
-    assert "meshing the drawing" in gearwhine("check", case()).err
-
-
 @pytest.mark.parametrize("size", ["0.1 mm", "3 m"])
 @pytest.mark.parametrize("command", ["check", "modes"])
 def test_a_box_of_absurd_elements_is_refused_before_it_is_meshed(gearwhine: Any, size: str, command: str) -> None:
@@ -205,31 +192,6 @@ modes = 4
 mesh = { file = "FILE", unit = "mm" }
 """
 )
-POINTS = "0 0 0 100 0 0 0 100 0 0 0 100"
-CUT_SHORT = f'<?xml version="1.0"?><VTKFile type="UnstructuredGrid"><DataArray>{POINTS}'
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "said"),
-    [
-        ("empty.msh", "", "empty.msh is empty"),
-        ("empty.vtu", "", "empty.vtu is empty"),
-        ("cut.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n", "cut.msh"),
-        ("cut.vtu", CUT_SHORT, "cut.vtu"),
-        ("picture.png", "no mesh", "no format of meshes has the ending '.png'; such as .inp .med .msh"),
-        ("nodes.inp", "*NODE\n1, 0, 0, 0\n", "nodes.inp holds no solid elements"),
-    ],
-)
-def test_files_that_are_no_mesh_are_told_by_their_key(
-    gearwhine: Any, tmp_path: Path, name: str, content: str, said: str
-) -> None:
-    (tmp_path / name).write_text(content)
-    (tmp_path / "case.toml").write_text(MESH.replace("FILE", name))
-    outcome = gearwhine("modes", "case.toml", "-q")
-    assert outcome.code == 2
-    assert "housing.mesh.file: expected a mesh of solid elements; mesh file" in outcome.err
-    assert said in outcome.err
-    assert "Traceback" not in outcome.err
 
 
 def test_a_mistaken_unit_is_named_where_it_makes_places_miss(gearwhine: Any, case: Any, tmp_path: Path) -> None:
@@ -244,17 +206,3 @@ def test_a_mistaken_unit_is_named_where_it_makes_places_miss(gearwhine: Any, cas
         assert outcome.code == 2
         assert "warning: the part is 200 m long; is the unit 'm'? With 'mm' it would be 200 mm" in outcome.err
         assert "housing.support[0].plane" in outcome.err
-
-
-def test_any_shape_has_modes(gearwhine: Any, tmp_path: Path) -> None:
-    """A wedge that rises to an edge: no facet of it looks up or to the right."""
-    with gmsh_session("wedge") as gmsh:
-        gmsh.model.occ.addWedge(0, 0, 0, 200, 100, 150, ltx=0)
-        gmsh.model.occ.synchronize()
-        gmsh.write(str(tmp_path / "wedge.step"))
-    (tmp_path / "case.toml").write_text(
-        STEEL + '[housing]\nmaterial = "steel"\nmodes = 7\ncad = { file = "wedge.step", mesh_size = "60 mm" }\n'
-    )
-    outcome = gearwhine("modes", "case.toml", "--json", "-q")
-    assert outcome.code == 0, outcome.err
-    assert json.loads(outcome.out)["certificate"]["complete"] is True

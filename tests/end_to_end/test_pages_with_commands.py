@@ -51,6 +51,7 @@ COARSE = 0.05
 """Least size of the elements of a box [m]."""
 FEWER_POINTS = {"rpm:19": "rpm:2", "N*m:10": "N*m:2"}
 """Ranges of a sweep that are cut."""
+FEWER_SIZES = 'detection.severities=["1 mm", "2 mm"]'
 REPORTED = "rig"
 """Page whose report is looked at in a browser, in the folder of the page's name."""
 _WITHOUT_A_CASE = ("examples",)
@@ -75,7 +76,7 @@ def with_less_effort(words: list[str]) -> list[str]:
     settings = LESS_EFFORT["steel-box" if case == "updated" else case]
     if words[0] == "detect":
         # A record of fewer turns has no averages.
-        settings = ("transient.revolutions=12", "transient.discard=6", "transient.tolerance=5e-3")
+        settings = ("transient.revolutions=12", "transient.discard=6", "transient.tolerance=5e-3", FEWER_SIZES)
     changes = [part for setting in settings for part in ("--set", setting)]
     if case == "planetary-helical":
         # The page of the set alone solves a turn of its carrier.

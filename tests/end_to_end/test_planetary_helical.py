@@ -1,22 +1,15 @@
 """The bundled planetary and helical unit: its drawing, power flow, statics by hand, lines of both stages."""
 
-import importlib.util
-import json
 import math
-import sys
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.cli import run_command
 from gearwhine.coupling.signals.line_names import line_names
-from gearwhine.meshes.gmsh_meshing import gmsh_session
 
-ROOT = Path(__file__).parents[2]
 NAME = "planetary-helical"
 COARSE = ("--set", "housing.cad.mesh_size=26 mm", "--set", "housing.frequency_limit=900 Hz")
 
@@ -29,45 +22,19 @@ TORQUE = 60.0
 """Torque at the sun [N m]."""
 
 
-@pytest.fixture
-def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(ROOT / "scripts")
-    spec = importlib.util.spec_from_file_location("helical_drawing", ROOT / "scripts" / "make_planetary_helical.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, spec.name, module)
-    spec.loader.exec_module(module)
-    return module
-
-
-def _measures(path: Path) -> list[float]:
-    """Volume [mm³] and bounds [mm] of the only solid."""
-    with gmsh_session("file") as gmsh:
-        ((dimension, tag),) = gmsh.model.occ.importShapes(str(path))
-        gmsh.model.occ.synchronize()
-        return [gmsh.model.occ.getMass(dimension, tag), *gmsh.model.getBoundingBox(dimension, tag)]
-
-
-def test_the_script_draws_the_bundled_file(script: ModuleType, tmp_path: Path) -> None:
+def test_the_script_draws_the_bundled_file(drawing_script: Any, solid_measures: Any, tmp_path: Path) -> None:
+    script = drawing_script("make_planetary_helical")
     script.write(tmp_path / "drawn.step")
-    bundled, size = _measures(script.TARGET), script.Unit()
-    assert bundled == pytest.approx(_measures(tmp_path / "drawn.step"), rel=1e-6, abs=1e-4)
+    bundled, size = solid_measures(script.TARGET), script.Unit()
+    assert bundled == pytest.approx(solid_measures(tmp_path / "drawn.step"), rel=1e-6, abs=1e-4)
     ends = [size.neck.z[0], max(end for boss in size.bosses for end in boss.z)]
     assert bundled[3::3] == pytest.approx(ends, abs=1e-5)
     assert bundled[2::3] == pytest.approx([0.0, size.box[1][1]], abs=1e-5)
 
 
-def _json(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
-    assert run_command([*words, "-q", "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert isinstance(document, dict)
-    return document
-
-
 @pytest.mark.slow
-def test_check_has_speeds_torques_and_mesh_frequencies_of_both_stages(capsys: pytest.CaptureFixture[str]) -> None:
-    document = _json(capsys, "check", NAME)
+def test_check_has_speeds_torques_and_mesh_frequencies_of_both_stages(gearwhine: Any) -> None:
+    document = gearwhine("check", NAME, "-q", "--json").document
     assert document["warnings"] == []  # each bearing stands in the bore of its own seat
     speeds = {rotor["name"]: rotor["speed_rpm"] for rotor in document["rotors"]}
     assert speeds["carrier"] == pytest.approx(60.0 * CARRIER_TURN)
@@ -103,9 +70,9 @@ def _mesh_force(on_wheel: bool) -> np.ndarray:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("linear_drawings")
-def test_bearings_carry_both_stages(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_bearings_carry_both_stages(gearwhine: Any, tmp_path: Path) -> None:
     """Reactions of the bearings by the equilibrium of each shaft, from the planets' shares and the helical mesh."""
-    document = _json(capsys, "load", NAME, "-o", str(tmp_path / "out"), *COARSE)
+    document = gearwhine("load", NAME, "-o", str(tmp_path / "out"), *COARSE, "-q", "--json").document
     bearings = {bearing["name"]: bearing for bearing in document["bearings"]}
     (stage,) = document["planetary"]
     shares = np.array([planet["load_share"] for planet in stage["planets"]])

@@ -124,11 +124,11 @@ def test_mutated_cases_and_damaged_files_end_in_words(tmp_path: Path) -> None:
     quick = ("step", "brep", "msh", "vtu", "inp", "unv", "csv")
     ends = []
     for outcomes in (
-        case_outcomes(random.Random(3), 20, tmp_path),
+        case_outcomes(random.Random(3), 8, tmp_path),
         file_outcomes(random.Random(3), 1, tmp_path, formats=quick),
     ):
         for what, place, outcome in outcomes:
             assert not outcome.fault or outcome.fault.startswith("took"), (what, place.read_bytes()[:2000], outcome)
             ends.append(outcome.code)
-    assert ends.count(2) > 10
+    assert ends.count(2) > 6
     assert ends.count(0) > 8  # at least the sound files

@@ -55,23 +55,6 @@ def test_results_of_a_run_outlive_those_of_every_other_command(gearwhine: Callab
     assert "transient.revolutions was" in page
 
 
-@pytest.mark.slow
-def test_a_run_has_the_folder_itself_and_what_was_there_moves(gearwhine: Callable[..., Any], tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    first = gearwhine("gears", "spur-pair", "-q", "--json", "-o", "out").document
-    assert "results.nc" in first["files"]
-    before = contents(out, "")
-    (out / "mine.txt").write_text("mine", encoding="utf-8")
-    assert gearwhine("run", "spur-pair", "-q", "-o", "out", "--no-pictures", *SHORT).code == 0
-    for name, data in before.items():
-        if name != "summary.json":
-            assert (out / "gears" / name).read_bytes() == data
-    moved = json.loads((out / "gears" / "summary.json").read_text(encoding="utf-8"))
-    assert moved == first | {"files": [f"gears/{name}" for name in first["files"]]}
-    assert (out / "mine.txt").read_text(encoding="utf-8") == "mine"
-    assert {path.name for path in out.glob("[!.]*")} == {"gears", "mine.txt", "case.toml", "results.nc", "summary.json"}
-
-
 @pytest.mark.parametrize("how", ["file", "link"])
 def test_a_sub_folder_that_is_none_is_refused_before_the_work(
     gearwhine: Callable[..., Any], tmp_path: Path, how: str

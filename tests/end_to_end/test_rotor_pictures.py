@@ -32,17 +32,6 @@ def test_without_a_speed_there_is_no_whirl_to_draw(gearwhine) -> None:
 
 
 @pytest.mark.slow
-def test_gears_seats_and_odd_names(gearwhine) -> None:
-    renamed = []
-    for key in ("rotor.0.name", "bearing.0.rotor", "bearing.1.rotor", "gear.0.rotor"):
-        renamed += ["--set", f'{key}="Welle ä: $1*"']
-    outcome = gearwhine("rotors", "nasa-gear-noise-rig", "--json", "-q", "-o", "out", "--set", "sweep=", *renamed)
-    assert outcome.code == 0, outcome.err
-    pictures = {name for name in outcome.document["files"] if name.endswith(".png")}
-    assert pictures == {f"rotor-{stem}-{kind}.png" for stem in ("Welle-1", "output") for kind in KINDS}
-
-
-@pytest.mark.slow
 def test_the_critical_speed_map_is_drawn_where_it_is_asked_for(gearwhine) -> None:
     few = ("rotor_analysis.modes=4", "sweep=", "rotor.0.unbalance=")
     settings = [part for change in few for part in ("--set", change)]

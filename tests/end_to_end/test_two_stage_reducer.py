@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearwhine.case import Case, bundled_files, load_case
+from gearwhine.case import Case, load_case
 from gearwhine.case.bearings import RollingCatalogue, RollingStiffness
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.meshes.gmsh_meshing import gmsh_session
@@ -135,22 +135,3 @@ def test_check_tells_mesh_frequencies_and_speeds(gearwhine: Any) -> None:
     assert f"{19 * 1450 / 60:.2f} Hz" in shown
     assert f"{17 * 1450 * 19 / 77 / 60:.2f} Hz" in shown
     assert "Campbell diagram at 51 speeds, -536.688 to 0 rpm" in shown
-
-
-@pytest.mark.slow
-def test_a_copied_example_brings_its_drawing(gearwhine: Any, script: ModuleType, tmp_path: Path) -> None:
-    assert [file.name for file in bundled_files(NAME)] == [f"{NAME}.toml", f"{NAME}.step"]
-    assert gearwhine("examples", "copy", NAME).code == 0
-    assert {path.name for path in tmp_path.iterdir()} == {f"{NAME}.toml", f"{NAME}.step"}
-    outcome = gearwhine("mesh", f"{NAME}.toml", "--json", "-q", "--set", "housing.cad.mesh_size=17 mm")
-    assert outcome.code == 0, outcome.err
-    document = outcome.document
-    drawn = sum(volume for volume, *_ in _measures(script.TARGET).values())
-    assert document["volume_m3"] == pytest.approx(1e-9 * drawn, rel=5e-3)  # fillets are meshed flat
-    assert set(document["volumes"]) == set(script.SOLIDS)
-    assert {warning["name"] for warning in document["warnings"]} <= {"size"}  # no element is out of shape
-    bores = [bore for bore in document["bores"] if bore["axis"] == "z" and bore["diameter_m"] > 0.05]
-    places = {round(MM * bore["diameter_m"], 3): MM * np.array(bore["center_m"]) for bore in bores}
-    assert set(places) == {72.0, 80.0, 110.0}
-    assert np.hypot(*(places[80.0] - places[72.0])[:2]) == pytest.approx(100.0, abs=1e-4)
-    assert np.hypot(*(places[110.0] - places[80.0])[:2]) == pytest.approx(160.0, abs=1e-4)

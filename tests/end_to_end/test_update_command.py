@@ -4,12 +4,9 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.from_case.parametric_housing import ParametricHousing, fitted_case
-from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, map_survey, write_survey
 from gearwhine.solve import updating
 
 SECRET = {"top": 10.5e-3, "front": 15e-3}
@@ -130,62 +127,6 @@ def test_an_update_finds_a_secret_and_writes_it(gearwhine, one_worker: Callable[
     assert told["null"]["sets"] == len(told["null"]["fits"]) == 1
     assert told["null"]["within_1_percent"] == 0.0
     assert told["null"]["measured_likewise"]["max_error_percent"] < 1.0
-
-
-def secret_survey(text: str) -> SurveyData:
-    """What a survey of 60 points finds of the box with its secret walls: seven of the first nine modes.
-
-    5 % noise in the motions, 0.1 % in the frequencies; scales and phases arbitrary; one point lacks the third mode.
-    """
-    generator = np.random.default_rng(4)
-    case = load_case(text, [f"housing.box.wall.{face}={value} m" for face, value in SECRET.items()]).case
-    secret = ParametricHousing(fitted_case(case), 24, threads=1).solve(np.zeros(2))
-    assert secret.shapes is not None
-    corners = np.array([[-0.1, 0.0, -0.12], [0.1, 0.16, 0.12]])
-    where = corners[0] + (corners[1] - corners[0]) * generator.uniform(0.05, 0.95, size=(60, 3))
-    sides = generator.integers(0, 3, 60), generator.integers(0, 2, 60)
-    where[np.arange(60), sides[0]] = corners[sides[1], sides[0]]
-    directions = np.zeros((60, 3))
-    directions[np.arange(60), sides[0]] = 2.0 * sides[1] - 1.0
-    geometry = MeasuredGeometry(tuple(map(str, range(1, 61))), where, np.arange(60), directions)
-    seen = [0, 1, 2, 4, 5, 7, 8]
-    shapes = map_survey(secret.mesh, geometry).shapes(secret.shapes)[seen]
-    shapes += 0.05 * np.sqrt((shapes**2).mean(axis=1))[:, None] * generator.normal(size=shapes.shape)
-    scaled = shapes * np.exp(2j * np.pi * generator.uniform(size=len(seen)))[:, None]
-    frequencies = secret.state.frequencies[seen] * (1.0 + 1e-3 * generator.normal(size=len(seen)))
-    modes = MeasuredModes(frequencies, None, scaled, geometry)
-    return SurveyData(geometry=geometry, modes=modes)
-
-
-@pytest.mark.slow
-def test_an_update_by_measured_shapes_finds_a_secret(gearwhine, one_worker: Callable[[], None], tmp_path: Path) -> None:
-    one_worker()
-    walls = "{ left = '13 mm', right = '13 mm', bottom = '13 mm', top = '13 mm', back = '13 mm', front = '13 mm' }"
-    text = CASE.replace('wall = "13 mm"', f"wall = {walls}")
-    # 5 % are the survey's; shapes of two meshes as coarse as these differ by more.
-    text = text.replace('mesh_size = "54 mm"', "shape_noise = 0.2")
-    (tmp_path / "plain.toml").write_text(text + "\n[measured]\nfrequencies = ['1 kHz']\n", encoding="utf-8")
-    survey = secret_survey(str(tmp_path / "plain.toml"))
-    write_survey(tmp_path / "survey.uff", survey)
-    (tmp_path / "box.toml").write_text(text + "\n[measured]\nfile = 'survey.uff'\n", encoding="utf-8")
-
-    outcome = gearwhine("update", "box.toml", "--json", "-q", "-o", "out")
-    assert outcome.code == 0
-    document = outcome.document
-    assert document["pairing"] == "shapes"
-    assert [pair["mode"] for pair in document["pairs"]] == [1, 2, 3, 5, 6, 8, 9]
-    assert min(pair["mac"] for pair in document["pairs"]) > 0.98  # 5 % noise leaves 1 / (1 + 0.05²)
-    assert "gap" not in document
-    assert document["wrong_pairs"] == 0
-    for row in document["parameters"]:
-        assert abs(row["after"] - SECRET[row["name"]]) < 3.0 * row["standard_deviation"]
-        assert row["standard_deviation"] < 0.1 * row["prior"]["spread"]
-    assert document["before"]["rms_error_percent"] > 5.0 * document["rms_error_percent"]
-    assert "least MAC" in (tmp_path / "out" / "updated.toml").read_text(encoding="utf-8").partition("\n\n")[0]
-
-    refused = gearwhine("update", "box.toml", "-q", "--null", "2")
-    assert refused.code == 2
-    assert "random frequencies have none" in refused.err
 
 
 @pytest.mark.parametrize(

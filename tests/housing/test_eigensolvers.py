@@ -63,21 +63,6 @@ def test_modes_of_eigsh_repeat_to_the_last_bit(square_tube: Matrices) -> None:
     np.testing.assert_array_equal(one.shapes, other.shapes)
 
 
-def test_certificate_catches_eigsh_that_misses_one_of_a_double_mode(
-    square_tube: Matrices, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    honest = solve_modes(square_tube, count=24, solver="eigsh")
-    pair = int(np.argmin(np.diff(honest.frequencies[6:]) / honest.frequencies[7:])) + 6
-
-    def missing(*arguments: Any, **options: Any) -> tuple[Any, Any]:
-        values, vectors = arpack_modes(*arguments, **options)
-        return np.delete(values, pair), np.delete(vectors, pair, axis=1)
-
-    monkeypatch.setattr(eigensolver, "arpack_modes", missing)
-    with pytest.raises(IncompleteModesError, match=r"modes found below .* Hz where the inertia demands"):
-        solve_modes(square_tube, frequency_limit=honest.certificate.limit, solver="eigsh")
-
-
 def test_eigsh_that_does_not_converge_is_tried_again_and_then_refused(
     square_tube: Matrices, monkeypatch: pytest.MonkeyPatch
 ) -> None:

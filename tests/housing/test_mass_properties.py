@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from gearwhine.housing import LumpedMass, Material, Patch, assemble, attach_fixtures
-from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.material import mass_properties
 from gearwhine.housing.model.patches import rigid_body
 from gearwhine.meshes import Mesh
@@ -24,11 +23,6 @@ def test_a_block_of_two_materials(block_of: Callable[..., Mesh], steel: Material
     assert parts.mass == pytest.approx(size.prod() * (steel.density + light.density) / 2)
     middle = (0.25 * steel.density + 0.75 * light.density) / (steel.density + light.density)
     np.testing.assert_allclose(parts.center, [middle, 0.3, 0.2], rtol=1e-12)
-
-
-def _bent(points: np.ndarray) -> np.ndarray:
-    x, y, z = points.T
-    return points + 0.1 * np.stack([y * z, x**2, x], axis=1)
 
 
 @pytest.mark.parametrize("kind", SOLIDS)
@@ -48,12 +42,6 @@ def test_curved_elements_weigh_what_their_mass_matrix_weighs(
         place = np.zeros((len(mesh.points), 3))
         place[:, 0] = mesh.points[:, axis]
         assert push.ravel() @ mass @ place.ravel() == pytest.approx(found.mass * found.center[axis], rel=2e-3)
-
-
-def test_the_housing_with_everything(box: Mesh, steel: Material, box_matrices: Matrices) -> None:
-    found = mass_properties(box, steel)
-    assert found.mass == pytest.approx(box_matrices.total_mass, rel=1e-6)
-    assert found.mass == pytest.approx(steel.density * box.element_volumes.sum(), rel=1e-12)
 
 
 def test_inertia_is_about_the_centre_of_gravity_wherever_the_nodes_lie(

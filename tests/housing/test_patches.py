@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from gearwhine.housing import HousingError, Patch
@@ -68,13 +67,3 @@ def test_a_patch_drawn_out_to_a_thread_is_refused(block: Callable[..., Mesh]) ->
     mesh = block((1.0, 1e-5, 1e-5))
     with pytest.raises(HousingError, match="too small to tell its rotations"):
         patch_matrix(mesh, mesh.surface("top"))
-
-
-def test_a_sheared_patch_of_any_place_has_work_on_both_sides(block: Callable[..., Mesh]) -> None:
-    mesh = block((0.10, 0.07, 0.05), (2, 1, 1), 1)
-    port = patch_matrix(mesh, mesh.surface("top"), np.array([0.0, 1.0, 0.0]))
-    loads: npt.NDArray[np.float64] = np.array([1.0, -2.0, 3.0, 0.4, -0.5, 0.6])
-    forces = (port.T @ loads).reshape(-1, 3)
-    np.testing.assert_allclose(forces.sum(axis=0), loads[:3], atol=1e-11)
-    moment = np.cross(mesh.points - [0.0, 1.0, 0.0], forces).sum(axis=0)
-    np.testing.assert_allclose(moment, loads[3:], atol=1e-11)

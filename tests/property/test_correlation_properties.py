@@ -15,9 +15,7 @@ from gearwhine.housing.correlation import (
     modal_assurance_criterion,
     pair_modes,
     phase_collinearity,
-    principal_angles,
     real_shapes,
-    span_mac,
 )
 from gearwhine.housing.correlation.modal_assurance_criterion import mean_phase
 
@@ -48,31 +46,6 @@ def test_mac(seed: int, size: tuple[int, int, int]) -> None:
     order = random.permutation(n)
     assert modal_assurance_criterion(a[order], b) == pytest.approx(value[order])
     assert auto_mac(a).diagonal() == pytest.approx(np.ones(n))
-
-
-@settings(max_examples=25, deadline=None)
-@given(SEEDS, SIZES)
-def test_orthogonal_frames_keep_it(seed: int, size: tuple[int, int, int]) -> None:
-    """Turning every point's axes alike turns no angle between shapes."""
-    random = np.random.default_rng(seed)
-    n, m, dofs = size
-    a, b = _shapes(random, n, dofs), _shapes(random, m, dofs)
-    turn = np.linalg.qr(random.normal(size=(dofs, dofs)))[0]
-    assert modal_assurance_criterion(a @ turn, b @ turn) == pytest.approx(modal_assurance_criterion(a, b))
-    assert principal_angles(a @ turn, b @ turn) == pytest.approx(principal_angles(a, b), abs=1e-7)
-
-
-@settings(max_examples=25, deadline=None)
-@given(SEEDS, SIZES)
-def test_spans_do_not_change_when_mixed(seed: int, size: tuple[int, int, int]) -> None:
-    random = np.random.default_rng(seed)
-    n, m, dofs = size
-    basis, shapes = _shapes(random, n, dofs), _shapes(random, m, dofs)
-    mixing = np.linalg.qr(_shapes(random, n, n))[0] + 0.1 * np.eye(n)
-    part = span_mac(basis, shapes)
-    assert span_mac(mixing @ basis, shapes) == pytest.approx(part)
-    assert (part >= modal_assurance_criterion(basis, shapes).max(axis=0) - 1e-12).all()
-    assert (part <= 1.0).all()
 
 
 @settings(max_examples=25, deadline=None)

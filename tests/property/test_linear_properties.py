@@ -107,17 +107,6 @@ def test_growth_has_a_feeder(system: CoupledSystem) -> None:
 
 
 @patient
-@given(systems(), st.integers(0, 2**32 - 1))
-def test_superposition_is_the_solution(system: CoupledSystem, seed: int) -> None:
-    modes = coupled_modes(system)
-    assume(modes.certificate.sum_rule < 1e-9)
-    rows = np.random.default_rng(seed).normal(size=(2, 2, system.size))
-    one = receptance(system, *rows, FREQUENCIES, modes=modes)
-    other = receptance(system, *rows, FREQUENCIES)
-    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-7 * np.abs(other).max())
-
-
-@patient
 @given(systems(symmetric=True), st.integers(0, 2**32 - 1))
 def test_reciprocity_with_the_rotation_reversed(system: CoupledSystem, seed: int) -> None:
     rows = np.random.default_rng(seed).normal(size=(2, 2, system.size))

@@ -2,7 +2,7 @@
 
 The reference is the finite-element model of `finite_element_rotor`, in thirty-one digits, counted by Sylvester's law
 of inertia. It is counted just below and just above every frequency found, and at the limit: so each frequency is a
-root to 1e-10 of itself, with its multiplicity, and there are no others. Its own error is 1e-13 (its own tests).
+root to 1e-10 of itself, with its multiplicity, and there are no others. Its own error is 1e-13.
 Frequencies nearer to each other than that are held together, as one root of their number.
 
 Drawn are shafts of lengths, diameters and materials many decades apart, with cones, axial forces and couplings, discs

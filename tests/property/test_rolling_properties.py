@@ -182,25 +182,3 @@ def test_a_turn_by_one_element_turns_the_answer(data: st.DataObject) -> None:
     np.testing.assert_allclose(
         turned.reaction / size, (turn @ state.reaction) / size, rtol=1e-6, atol=1e-7 * np.abs(load / size).max() + 1e-9
     )
-
-
-@settings(max_examples=12, deadline=None)
-@given(ball_rows(), st.floats(0.0, 2.0 * math.pi), logarithmic(-3.0, 0.0))
-def test_the_work_of_a_closed_path_is_none(row: BallRow, angle: float, size: float) -> None:
-    """Betti: the stiffness between any two states is symmetric because their reactions have a potential."""
-    bearing = RollingBearing([replace(row, clearance=-abs(row.clearance))])
-    shift = 1e-3 * size * row.ball_diameter
-    corners = [np.zeros(5), np.zeros(5), np.zeros(5)]
-    corners[1][:3] = shift * np.array([math.cos(angle), math.sin(angle), 0.0])
-    corners[2][2:] = shift * np.array([1.0, 0.3 / bearing.reach, -0.5 / bearing.reach])
-    points, weights = np.polynomial.legendre.leggauss(12)
-    work, total = 0.0, 0.0
-    for begin, end in zip(corners, corners[1:] + corners[:1], strict=True):
-        for point, weight in zip(points, weights, strict=True):
-            try:
-                reaction = rolling_state(bearing, begin + 0.5 * (point + 1.0) * (end - begin)).reaction
-            except EquilibriumError:
-                assume(False)
-            part = 0.5 * weight * float(reaction @ (end - begin))
-            work, total = work + part, total + abs(part)
-    assert abs(work) <= 1e-3 * total

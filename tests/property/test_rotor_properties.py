@@ -5,29 +5,21 @@ Frequencies against an independent model are in `test_no_missed_roots` and `test
 
 import itertools
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from finite_element_rotor import bending_model
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import legendre
 
 from gearwhine.rotors import (
-    Bearing,
     Disc,
     RadialSupport,
     Rotor,
     Segment,
     ShaftMaterial,
-    critical_speeds,
-    rest_frequencies,
     solve_lateral_modes,
-    solve_torsional_modes,
-    solve_whirl,
 )
-from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 BRASS = ShaftMaterial(100e9, 37e9, 8500.0)
@@ -101,120 +93,6 @@ def test_shapes_are_orthonormal_and_continue_between_stations(case: tuple[Rotor,
     np.testing.assert_allclose(x, modes.displacement, atol=1e-9 * np.abs(x).max())
     np.testing.assert_allclose(b, modes.slope, atol=1e-9 * np.abs(b).max())
     assert np.linalg.eigvalsh(modes.polar_inertia_matrix).min() > -1e-9
-
-
-@FEW
-@given(supported_rotors())
-def test_a_rotor_seen_from_the_other_end_is_the_same_rotor(case: tuple[Rotor, list[RadialSupport]]) -> None:
-    rotor, supports = case
-    length = rotor.length
-    discs = [replace(disc, at=max(length - disc.at, 0.0)) for disc in rotor.discs]
-    turned = Rotor("turned", rotor.segments[::-1], discs)
-    turned_supports = [replace(support, at=max(length - support.at, 0.0)) for support in supports]
-    one, other = solve_lateral_modes(rotor, supports, count=6), solve_lateral_modes(turned, turned_supports, count=6)
-    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-9)
-    twist, turned_twist = solve_torsional_modes(rotor, count=6), solve_torsional_modes(turned, count=6)
-    np.testing.assert_allclose(turned_twist.frequencies, twist.frequencies, rtol=1e-10)
-
-
-@FEW
-@given(supported_rotors(), st.data())
-def test_cutting_a_segment_changes_nothing(case: tuple[Rotor, list[RadialSupport]], data: st.DataObject) -> None:
-    rotor, supports = case
-    pieces = data.draw(st.integers(2, 40))
-    cut = [replace(part, length=part.length / pieces) for part in rotor.segments for _ in range(pieces)]
-    one = solve_lateral_modes(rotor, supports, count=6)
-    other = solve_lateral_modes(replace(rotor, segments=cut), supports, count=6)
-    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-10)
-    np.testing.assert_allclose(np.abs(other.evaluate([0.0])[0]), np.abs(one.evaluate([0.0])[0]), rtol=1e-5, atol=1e-7)
-
-
-@FEW
-@given(random_rotors(), reals(0.1, 10.0))
-def test_frequencies_scale_inversely_with_size(rotor: Rotor, factor: float) -> None:
-    segments = [
-        replace(
-            part,
-            length=factor * part.length,
-            outer_diameter=factor * part.outer_diameter,
-            inner_diameter=factor * part.inner_diameter,
-        )
-        for part in rotor.segments
-    ]
-    discs = [
-        Disc(factor * d.at, factor**3 * d.mass, factor**5 * d.polar_inertia, factor**5 * d.diametral_inertia)
-        for d in rotor.discs
-    ]
-    large = Rotor("large", segments, discs)
-    one, other = solve_lateral_modes(rotor, count=6), solve_lateral_modes(large, count=6)
-    np.testing.assert_allclose(factor * other.frequencies, one.frequencies, rtol=1e-10)
-    np.testing.assert_allclose(
-        factor * solve_torsional_modes(large, count=4).frequencies,
-        solve_torsional_modes(rotor, count=4).frequencies,
-        rtol=1e-10,
-    )
-
-
-@FEW
-@given(supported_rotors(), PLACES, reals(0.1, 50.0))
-def test_added_mass_lowers_and_added_stiffness_raises(
-    case: tuple[Rotor, list[RadialSupport]], place: float, amount: float
-) -> None:
-    rotor, supports = case
-    at = place * rotor.length
-    plain = solve_lateral_modes(rotor, supports, count=6).frequencies
-    heavier = replace(rotor, discs=[*rotor.discs, Disc(at, amount, 0.01 * amount, 0.005 * amount)])
-    loaded = solve_lateral_modes(heavier, supports, count=6).frequencies
-    stiffer = solve_lateral_modes(rotor, [*supports, RadialSupport(at, 1e6 * amount)], count=6).frequencies
-    count = min(plain.size, loaded.size, stiffer.size)
-    assert (loaded[:count] <= plain[:count] * (1 + 1e-11)).all()
-    assert (stiffer[:count] >= plain[:count] * (1 - 1e-11)).all()
-    # One spring is one constraint at most: by interlacing no frequency passes the next.
-    assert (stiffer[: count - 1] <= plain[1:count] * (1 + 1e-11) + 1e-9).all()
-
-
-@settings(FEW, max_examples=5)
-@given(random_rotors(), reals(1e5, 1e8), reals(10.0, 2000.0))
-def test_reversed_rotation_swaps_the_directions(rotor: Rotor, stiffness: float, speed: float) -> None:
-    bearings = [Bearing.isotropic(str(z), z * rotor.length, stiffness) for z in (0.0, 1.0)]
-    one = solve_whirl(rotor, bearings, speed, count=6)
-    other = solve_whirl(rotor, bearings, -speed, count=6)
-    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-8)
-    np.testing.assert_allclose(np.abs(one.damping_ratios), 0.0, atol=1e-8)
-    separate = np.abs(np.diff(one.frequencies)).min(initial=np.inf) > 1e-4 * one.frequencies[-1]
-    if separate:
-        np.testing.assert_allclose(other.direction, -one.direction, atol=1e-5)
-
-
-@settings(FEW, max_examples=5)
-@given(random_rotors(), reals(1e5, 1e8), reals(1e5, 1e8))
-def test_planes_at_rest(rotor: Rotor, k_xx: float, k_yy: float) -> None:
-    bearings = [Bearing(str(z), z * rotor.length, np.diag([k_xx, k_yy]), np.zeros((2, 2))) for z in (0.0, 1.0)]
-    exact = rest_frequencies(rotor, bearings, count=6)
-    whirl = solve_whirl(rotor, bearings, 0.0, count=8)
-    np.testing.assert_allclose(whirl.frequencies[: exact.frequencies.size], exact.frequencies, rtol=1e-5)
-    assert exact.certificate.complete
-    # With the polar inertia joining the mass, backward critical speeds lie below the frequencies at rest.
-    assert critical_speeds(rotor, bearings, count=1).speeds[0] <= exact.frequencies[0] * (1 + 1e-9)
-
-
-@settings(FEW, max_examples=5)
-@given(random_rotors(), PLACES, PLACES)
-def test_compliance_of_attached_loads_is_reciprocal_and_that_of_the_model(
-    rotor: Rotor, first: float, second: float
-) -> None:
-    supports = [RadialSupport(0.0, 1e7), RadialSupport(rotor.length, 3e7)]
-    places = [first * rotor.length, second * rotor.length]
-    modes = add_attachment_modes(solve_lateral_modes(rotor, supports, count=3), forces_at=places)
-    shapes = modes.evaluate(places)[0]
-    compliance = (shapes / modes.frequencies[:, None] ** 2).T @ shapes
-    model = bending_model(rotor, supports, float(modes.frequencies[2]), places=places)
-    stiffness = model.assembled("stiffness")
-    loads = np.zeros((stiffness.shape[0], 2))
-    for column, place in enumerate(places):
-        loads[2 * model.elements.node(place), column] = 1.0
-    expected = loads.T @ np.linalg.solve(stiffness, loads)
-    np.testing.assert_allclose(compliance, expected, rtol=1e-8, atol=1e-9 * expected.max())
 
 
 def test_lumping_converges_to_the_distributed_shaft() -> None:

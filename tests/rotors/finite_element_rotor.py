@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from double_double import DoubleDouble
 from inertia_count import negative_pivots
-from lobatto_elements import DEGREE, REACH, Elements, Matrices, bending_matrices, cut, rod_matrices
+from lobatto_elements import Elements, Matrices, bending_matrices, cut, rod_matrices
 from scipy import linalg
 
 from gearwhine.numerics.arrays import FloatArray, IndexArray
@@ -119,17 +119,15 @@ def bending_model(
     highest: float,
     *,
     places: Sequence[float] = (),
-    degree: int = DEGREE,
-    reach: float = REACH,
 ) -> PlaneModel:
     """Bending in one plane, converged up to ``highest`` rad/s; with nodes at ``places`` (m) too."""
-    elements = cut(rotor, [*places, *(support.at for support in supports)], highest, reach)
+    elements = cut(rotor, [*places, *(support.at for support in supports)], highest)
     stiffness = np.zeros((elements.nodes.size, 2))
     for support in supports:
         stiffness[elements.node(support.at)] += support.stiffness, support.tilt_stiffness
     inertia = node_inertias(rotor, elements)
     polar = np.stack([np.zeros(elements.nodes.size), inertia[:, 2]], axis=1)
-    return PlaneModel(elements, bending_matrices(rotor, elements, degree), stiffness, inertia[:, :2], polar)
+    return PlaneModel(elements, bending_matrices(rotor, elements), stiffness, inertia[:, :2], polar)
 
 
 def rod_model(
@@ -138,16 +136,14 @@ def rod_model(
     highest: float,
     *,
     springs: Sequence[tuple[float, float]] = (),
-    degree: int = DEGREE,
-    reach: float = REACH,
 ) -> PlaneModel:
     """Torsion ("torsion") or axial motion ("axial"), with springs to ground, each a place (m) and a stiffness."""
-    elements = cut(rotor, [at for at, _ in springs], highest, reach, bends=False)
+    elements = cut(rotor, [at for at, _ in springs], highest, bends=False)
     stiffness = np.zeros((elements.nodes.size, 1))
     for at, value in springs:
         stiffness[elements.node(at)] += value
     inertia = node_inertias(rotor, elements)[:, [2 if motion == "torsion" else 0]]
-    matrices = rod_matrices(rotor, elements, motion, degree)
+    matrices = rod_matrices(rotor, elements, motion)
     return PlaneModel(elements, matrices, stiffness, inertia, np.zeros_like(inertia))
 
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from finite_element_rotor import PlaneModel, bending_model, condensed, rod_model
-from lobatto_elements import DEGREE, REACH
 from scipy import linalg
 
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -56,8 +55,6 @@ def spatial_matrices(
     *,
     axial: bool = False,
     two_node: bool = False,
-    degree: int = DEGREE,
-    reach: float = REACH,
 ) -> SpatialMatrices:
     """Matrices of a rotor on bearings of constant coefficients, converged up to ``highest`` rad/s.
 
@@ -65,8 +62,8 @@ def spatial_matrices(
     `finite_element_rotor.condensed`, which a low ``highest`` leaves one to a span.
     """
     places = [bearing.at for bearing in bearings]
-    plane = bending_model(rotor, [], highest, places=places, degree=degree, reach=reach)
-    rod = rod_model(rotor, "axial", highest, springs=[(at, 0.0) for at in places], degree=degree, reach=reach)
+    plane = bending_model(rotor, [], highest, places=places)
+    rod = rod_model(rotor, "axial", highest, springs=[(at, 0.0) for at in places])
     if two_node:
         plane, rod = condensed(plane), condensed(rod)
     blocks = [plane, plane, rod] if axial else [plane, plane]

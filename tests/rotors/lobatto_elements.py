@@ -69,7 +69,7 @@ class Matrices:
     polar: DoubleDouble
 
 
-def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = REACH, *, bends: bool = True) -> Elements:
+def cut(rotor: Rotor, places: Sequence[float], highest: float, *, bends: bool = True) -> Elements:
     """Elements with nodes at every joint, disc and place, short enough for vibration at ``highest`` rad/s.
 
     Waves of torsion and of axial motion are longer than those of bending: without ``bends`` only they are heeded.
@@ -85,7 +85,7 @@ def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = RE
                 stops.append((place - left) / part.length)
         stops.append(1.0)
         for start, stop in itertools.pairwise(stops):
-            for near, far in itertools.pairwise([start, *_edges(part, (start, stop), highest, reach, bends)]):
+            for near, far in itertools.pairwise([start, *_edges(part, (start, stop), highest, bends)]):
                 segments.append(index)
                 fractions.append((near, far))
                 lengths.append((far - near) * part.length)
@@ -93,9 +93,9 @@ def cut(rotor: Rotor, places: Sequence[float], highest: float, reach: float = RE
     return Elements(np.array(nodes), np.array(segments), np.array(fractions), np.array(lengths))
 
 
-def bending_matrices(rotor: Rotor, elements: Elements, degree: int = DEGREE) -> Matrices:
+def bending_matrices(rotor: Rotor, elements: Elements) -> Matrices:
     """Of one plane; `polar` is the gyroscopic matrix per rad/s."""
-    value, slope, weight, per_length = _at_gauss_points(rotor, elements, degree)
+    value, slope, weight, per_length = _at_gauss_points(rotor, elements)
     n = value.high.shape[-1]
     order = _by_ends(2, n)
     nothing = DoubleDouble.of(np.zeros_like(value.high))
@@ -112,23 +112,21 @@ def bending_matrices(rotor: Rotor, elements: Elements, degree: int = DEGREE) -> 
     return Matrices(2, stiffness, mass, rotary + rotary)
 
 
-def rod_matrices(rotor: Rotor, elements: Elements, motion: str, degree: int = DEGREE) -> Matrices:
+def rod_matrices(rotor: Rotor, elements: Elements, motion: str) -> Matrices:
     """Of twisting (``motion`` "torsion") or of stretching ("axial")."""
-    value, slope, weight, per_length = _at_gauss_points(rotor, elements, degree)
+    value, slope, weight, per_length = _at_gauss_points(rotor, elements)
     stiff, heavy = {"torsion": ("GJ", "rhoJ"), "axial": ("EA", "rhoA")}[motion]
     mass = _gram(value, weight * per_length[heavy])
     return Matrices(1, _gram(slope, weight * per_length[stiff]), mass, mass - mass)
 
 
-def _edges(
-    part: Segment | Coupling, stretch: tuple[float, float], highest: float, reach: float, bends: bool
-) -> list[float]:
+def _edges(part: Segment | Coupling, stretch: tuple[float, float], highest: float, bends: bool) -> list[float]:
     """Right ends of the elements of a stretch of a segment, as fractions of the segment."""
     start, stop = stretch
     if isinstance(part, Coupling):
         # Its own field has the wave number √(N/EI), N = P L / (k_t L²).
         stretched = abs(part.axial_force) / (part.tilt_stiffness * part.length)
-        count = max(1, math.ceil(math.sqrt(stretched) * (stop - start) * part.length / reach))
+        count = max(1, math.ceil(math.sqrt(stretched) * (stop - start) * part.length / REACH))
         return [*(start + (stop - start) * np.arange(1, count) / count).tolist(), stop]
     ends = [part.section(start), part.section(stop)]
     diameters = sorted(section.outer_diameter for section in ends)
@@ -136,12 +134,12 @@ def _edges(
     if max(diameters[1] / diameters[0], walls[1] / walls[0]) > TAPER:
         middle = 0.5 * (start + stop)
         halves = ((start, middle), (middle, stop))
-        return [edge for half in halves for edge in _edges(part, half, highest, reach, bends)]
+        return [edge for half in halves for edge in _edges(part, half, highest, bends)]
     # Torsion is slower than axial motion.
     wave = highest * math.sqrt(part.material.density / part.material.shear_modulus)
     if bends:
         wave = max(_bending_wave(section, part.axial_force, highest) for section in ends)
-    count = max(1, math.ceil(wave * (stop - start) * part.length / reach))
+    count = max(1, math.ceil(wave * (stop - start) * part.length / REACH))
     return [*(start + (stop - start) * np.arange(1, count) / count).tolist(), stop]
 
 
@@ -156,10 +154,10 @@ def _bending_wave(section: Section, force: float, omega: float) -> float:
 
 
 def _at_gauss_points(
-    rotor: Rotor, elements: Elements, degree: int
+    rotor: Rotor, elements: Elements
 ) -> tuple[DoubleDouble, DoubleDouble, FloatArray, dict[str, FloatArray]]:
     """Shape functions and their slopes (e, q, p + 1), weights and sections (e, q)."""
-    value, derived, points, weights = _reference(degree)
+    value, derived, points, weights = _reference()
     count = elements.lengths.size
     ones = DoubleDouble.of(np.ones((count, 1, 1)))
     scale = DoubleDouble.of((2.0 / elements.lengths)[:, None, None])
@@ -191,18 +189,18 @@ def _section_rows(rotor: Rotor, index: int, fractions: FloatArray) -> list[tuple
 
 
 @cache
-def _reference(degree: int) -> tuple[DoubleDouble, DoubleDouble, FloatArray, FloatArray]:
+def _reference() -> tuple[DoubleDouble, DoubleDouble, FloatArray, FloatArray]:
     """Shape functions and derivatives on [−1, 1] at Gauss's points (q, p + 1), rational at these doubles; weights."""
-    points, weights = np.polynomial.legendre.leggauss(degree + 4)
+    points, weights = np.polynomial.legendre.leggauss(DEGREE + 4)
     values, slopes = [], []
     for point in points.tolist():
         xi = Fraction(point)
         legendre = [Fraction(1), xi]
-        for k in range(2, degree + 1):
+        for k in range(2, DEGREE + 1):
             legendre.append(((2 * k - 1) * xi * legendre[-1] - (k - 1) * legendre[-2]) / k)
-        bubbles = [(legendre[k] - legendre[k - 2]) / (2 * k - 1) for k in range(2, degree + 1)]
+        bubbles = [(legendre[k] - legendre[k - 2]) / (2 * k - 1) for k in range(2, DEGREE + 1)]
         values.append([(1 - xi) / 2, (1 + xi) / 2, *bubbles])
-        slopes.append([Fraction(-1, 2), Fraction(1, 2), *legendre[1:degree]])
+        slopes.append([Fraction(-1, 2), Fraction(1, 2), *legendre[1:DEGREE]])
     return DoubleDouble.of_fractions(values), DoubleDouble.of_fractions(slopes), points, weights
 
 

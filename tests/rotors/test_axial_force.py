@@ -55,27 +55,6 @@ def test_clamped_and_cantilever_bars_buckle_as_engesser_says() -> None:
         assert buckling_factor(bar(-1e3), ends) == pytest.approx(euler / (1 + euler / SHEAR) / 1e3, rel=1e-10)
 
 
-def test_clamped_and_pinned_bar_buckles_at_its_transcendental_root() -> None:
-    load = brentq(
-        _clamped_pinned, 1.5 * math.pi**2 * BENDING / LENGTH**2, 2.1 * math.pi**2 * BENDING / LENGTH**2, rtol=1e-14
-    )
-    assert buckling_factor(bar(-1.0), held(CLAMP, PIN)) == pytest.approx(load, rel=1e-9)
-
-
-def _clamped_pinned(force: float) -> float:
-    """Deflection at the pin of a bar clamped at 0, under the reaction r that makes its moment vanish there.
-
-    With P = −force: EI β'' = gPβ − g r, so β = r/P + a cos kz + b sin kz with k² = g·force/EI; β(0) = 0 and β'(L) = 0
-    give a = −r/P, b = a tan kL; x(L) = ∫ gβ + r/(κGA + P) dz.
-    """
-    share, pull = SHEAR / (SHEAR - force), -force
-    k = math.sqrt(share * force / BENDING)
-    a = -1.0 / pull
-    b = a * math.tan(k * LENGTH)
-    integral = LENGTH / pull + a * math.sin(k * LENGTH) / k + b * (1 - math.cos(k * LENGTH)) / k
-    return (share * integral + LENGTH / (SHEAR + pull)) * math.cos(k * LENGTH)
-
-
 def test_a_shaft_beyond_buckling_is_refused_with_the_load_that_it_bears() -> None:
     euler = math.pi**2 * BENDING / LENGTH**2
     critical = euler / (1 + euler / SHEAR)

@@ -140,20 +140,6 @@ def test_a_cone_cut_into_cones_is_the_same_cone(cone: Segment, pieces: int) -> N
     )
 
 
-def test_short_cylinders_approach_the_cone() -> None:
-    # A staircase of n cylinders errs by O(1/n²): the cone is its Richardson limit.
-    cone = Segment(0.5, 0.05, 0.02, STEEL, "cowper", 0.1, 0.03)
-    clamp = [RadialSupport(0.0, math.inf, math.inf)]
-    exact = solve_lateral_modes(Rotor("cone", [cone]), clamp, count=4).frequencies
-    stairs = []
-    for n in (20, 40):
-        steps = [cone.section((i + 0.5) / n) for i in range(n)]
-        parts = [Segment(0.5 / n, step.outer_diameter, step.inner_diameter, STEEL) for step in steps]
-        stairs.append(solve_lateral_modes(Rotor("stairs", parts), clamp, count=4).frequencies)
-    np.testing.assert_allclose((4 * stairs[1] - stairs[0]) / 3, exact, rtol=2e-5)
-    assert np.all(np.abs(stairs[1] / exact - 1) < 0.3 * np.abs(stairs[0] / exact - 1))
-
-
 def test_lumped_cone_keeps_mass_centre_and_polar_inertia() -> None:
     cone = Segment(0.3, 0.1, 0.0, STEEL, right_outer_diameter=0.04)
     rotor = Rotor("cone", [cone], mass_model="lumped")
@@ -168,14 +154,3 @@ def test_lumped_cone_keeps_mass_centre_and_polar_inertia() -> None:
     np.testing.assert_allclose(table[1, 0] * h, mass * centre, rtol=1e-13)
     np.testing.assert_allclose(table[:, 2].sum(), 0.3 * mass * (R**5 - r**5) / (R**3 - r**3), rtol=1e-13)
     assert rotor.centre_of_mass == pytest.approx(centre, rel=1e-13)
-
-
-def test_lumped_cones_converge_to_the_distributed_cone() -> None:
-    cone = Segment(0.5, 0.03, 0.0, STEEL, right_outer_diameter=0.06)
-    pins = [RadialSupport(0.0, math.inf), RadialSupport(0.5, math.inf)]
-    exact = solve_lateral_modes(Rotor("d", [cone]), pins, count=2).frequencies
-    twist = solve_torsional_modes(Rotor("d", [cone]), count=3).frequencies
-    for n, close in ((16, 2e-2), (64, 1.4e-3)):
-        lumped = Rotor("l", cut(cone, n), mass_model="lumped")
-        np.testing.assert_allclose(solve_lateral_modes(lumped, pins, count=2).frequencies, exact, rtol=close)
-        np.testing.assert_allclose(solve_torsional_modes(lumped, count=3).frequencies, twist, rtol=close)

@@ -5,8 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from finite_element_whirl import spatial_matrices
-from scipy.optimize import linear_sum_assignment
 
 from gearwhine.rotors import (
     Bearing,
@@ -69,31 +67,6 @@ def bearings_of(kind: str) -> list[Bearing]:
     return [Bearing.isotropic("a", 0.05, 2e7, 3e3), Bearing.isotropic("b", 0.75, 1e7, 2e3)]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ["cross-coupled", "pedestals", "tilting", "five motions", "isotropic"])
-@pytest.mark.parametrize("speed", [0.0, 900.0])
-def test_every_root_is_what_finite_elements_converge_to(kind: str, speed: float) -> None:
-    bearings = bearings_of(kind)
-    modes = solve_whirl(SHAFT, bearings, speed, frequency_limit=6000.0)
-    assert modes.certificate.complete
-    assert modes.certificate.method == "winding"
-    # High-degree elements, converged; each root has one of theirs, and there is none besides.
-    model = spatial_matrices(SHAFT, bearings, 9000.0, axial=kind == "five motions")
-    expected = model.eigenvalues(speed)
-    expected = expected[(np.abs(expected) < 6000.0) & (expected.imag > 1e-6 * np.abs(expected))]
-    assert expected.size == modes.eigenvalues.size
-    ours, theirs = linear_sum_assignment(np.abs(modes.eigenvalues[:, None] - expected))
-    np.testing.assert_allclose(modes.eigenvalues[ours], expected[theirs], rtol=2e-8)
-
-
-def test_exact_roots_do_not_depend_on_how_the_shaft_is_cut() -> None:
-    parts = [dataclasses.replace(s, length=s.length / 5) for s in SHAFT.segments for _ in range(5)]
-    cut = Rotor("cut", parts, SHAFT.discs)
-    for kind in ("cross-coupled", "pedestals"):
-        one, other = (solve_whirl(rotor, bearings_of(kind), 900.0, count=10) for rotor in (SHAFT, cut))
-        np.testing.assert_allclose(other.eigenvalues, one.eigenvalues, rtol=2e-12)
-
-
 def test_double_and_nearly_double_roots_keep_all_digits() -> None:
     supports = [bearing.mean_support for bearing in bearings_of("isotropic")]
     planar = solve_lateral_modes(SHAFT, supports, count=6).frequencies
@@ -134,31 +107,6 @@ def test_forward_and_backward_whirl_that_coalesce(excess: float) -> None:
     known = 3e-15 / math.sqrt(max(excess, 1e-15))
     np.testing.assert_allclose(modes.frequencies, np.sort(np.concatenate(planar)), rtol=max(1e-11, 10.0 * known))
     assert modes.certificate.complete
-
-
-def test_stability_threshold_of_the_cross_coupled_jeffcott_rotor() -> None:
-    # On stiff bearings a seal with direct damping c and cross-coupling κ at the disc: unstable where κ > c ω.
-    light = ShaftMaterial(211e9, 81.2e9, 0.0)
-    shaft = Rotor("seal", [Segment(0.5, 0.03, 0.0, light)] * 2, [Disc(0.5, 20.0)])
-    part = shaft.segments[0].section(0.0)
-    compliance = 1.0 / (48 * part.bending_stiffness) + 1.0 / (4 * part.shear_stiffness)
-    support, damping = 1e9, 50.0
-    stiffness = 1.0 / (compliance + 1.0 / (2.0 * support))
-    natural = math.sqrt(stiffness / 20.0)
-    for excess, stable in ((0.99, True), (1.01, False)):
-        kappa = excess * damping * natural
-        seal = Bearing("seal", 0.5, np.array([[0.0, kappa], [-kappa, 0.0]]), damping * np.eye(2))
-        bearings = [Bearing.isotropic("l", 0.0, support), seal, Bearing.isotropic("r", 1.0, support)]
-        modes = solve_whirl(shaft, bearings, 100.0)
-        # 20 s² + c s + k ∓ i κ = 0, forward above.
-        roots = np.concatenate([np.roots([20.0, damping, stiffness - sign * 1j * kappa]) for sign in (1, -1)])
-        expected = roots[roots.imag > 0.0]
-        assert (modes.eigenvalues.real.max() < 0.0) == stable
-        np.testing.assert_allclose(
-            np.sort_complex(modes.eigenvalues), np.sort_complex(expected), rtol=1e-11, atol=1e-11 * natural
-        )
-        assert modes.direction[np.argmax(modes.eigenvalues.real)] == pytest.approx(1.0)
-        np.testing.assert_allclose(modes.log_decrements, -2 * np.pi * modes.eigenvalues.real / modes.eigenvalues.imag)
 
 
 @pytest.mark.parametrize("speed", [0.0, 400.0, -400.0])
@@ -216,17 +164,6 @@ def test_a_root_too_many_is_refused() -> None:
     twice = roots.joined(roots.take(np.array([0])))
     with pytest.raises(IncompleteModesError, match="exact equations have"):
         certified_roots(chain, twice, turning, sector, False)
-
-
-def test_free_rotor_turning_has_its_nutation_and_no_more_below_bending() -> None:
-    modes = solve_whirl(SHAFT, [], 500.0, count=3)
-    assert modes.certificate.complete
-    tilt = sum(d.diametral_inertia + d.mass * (d.at - SHAFT.centre_of_mass) ** 2 for d in SHAFT.discs)
-    for part, left in zip(SHAFT.segments, SHAFT.joints[:-1], strict=True):
-        tilt += part.diametral_inertia + part.mass * (left + part.mass_centre - SHAFT.centre_of_mass) ** 2
-    # The rigid body's; the shaft gives way a little.
-    assert modes.frequencies[0] == pytest.approx(500.0 * SHAFT.polar_inertia / tilt, rel=1e-2)
-    assert modes.direction[0] == 1.0
 
 
 def test_campbell_is_solve_whirl_at_every_speed_and_crosses_at_critical_speeds() -> None:

@@ -34,14 +34,6 @@ CONE = Segment(0.15, 0.03, 0.0, STEEL, "cowper", right_outer_diameter=0.06, righ
 JAW = Coupling(0.05, 2e7, 4e4, 9e3, 5e7, mass=1.2, polar_inertia=1e-3, diametral_inertia=8e-4)
 
 
-def rigid_motions(places: FloatArray) -> FloatArray:
-    """Six rigid motions of nodes on the z axis, (6, 6N): a rotation about x moves y by −z, one about y x by +z."""
-    motions = np.zeros((6, places.size, 6))
-    motions[range(6), :, range(6)] = 1.0
-    motions[3, :, 1], motions[4, :, 0] = -places, places
-    return motions.reshape(6, -1)
-
-
 def solve(stiffness: FloatArray, loads: FloatArray, held: Sequence[int] | IndexArray = ()) -> FloatArray:
     """Displacements under loads (..., k), some held; scaled, because forces and moments have units of their own."""
     free = np.setdiff1d(np.arange(stiffness.shape[0]), held)
@@ -307,14 +299,6 @@ def test_a_cone_stretches_twists_and_bends_as_its_compliance_integrates() -> Non
     bent = [integral("bending_stiffness", arm) for arm in range(3)]
     assert tip[4] == pytest.approx(bent[0] + bent[1], rel=1e-11)
     assert tip[0] == pytest.approx(bent[1] + bent[2] + integral("shear_stiffness", 0), rel=1e-11)
-
-
-def central_sag_of_a_tie(rotor: Rotor) -> float:
-    """L / 4P − tanh(k L / 2) / 2Pk, k² = P / EI, of a tie-rod without shear (Timoshenko, Strength of Materials II)."""
-    (part,) = rotor.segments
-    assert isinstance(part, Segment)
-    P, k = part.axial_force, math.sqrt(part.axial_force / part.section(0.0).bending_stiffness)
-    return rotor.length / (4 * P) - math.tanh(k * rotor.length / 2) / (2 * P * k)
 
 
 @pytest.mark.parametrize(

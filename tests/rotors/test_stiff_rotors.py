@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from finite_element_rotor import bending_model, rod_model
 
@@ -85,54 +84,6 @@ def test_twins_tied_by_a_hair_in_torsion() -> None:
     limit = float(modes.frequencies[-1]) * (1.0 + 1e-9)
     reference = rod_model(rotor, "torsion", limit).natural_frequencies(limit)
     np.testing.assert_allclose(modes.frequencies, reference, rtol=1e-10, atol=1e-9 * limit)
-
-
-def test_digits_of_what_a_hair_holds() -> None:
-    # Two bodies that the hair alone bends between: they are rigid to the square of the ratio of these frequencies to
-    # the bars' own. The hair's mass, a part in 1e9 of theirs, moves as its static shape does.
-    bar, end = Segment(1.0, 0.01, 0.0, ALUMINIUM), Segment(0.0002573, 0.1329, 0.5 * 0.1329, ALUMINIUM)
-    hair = Segment(0.1023, 1.313e-6, 0.0, STEEL)
-    discs = [Disc(0.6668382, 0.3519), Disc(1.4359764, 0.3519)]
-    modes = solve_lateral_modes(Rotor("pair", [end, bar, hair, bar, end], discs), count=4)
-
-    left, right = end.length + bar.length, end.length + bar.length + hair.length
-    one = rigid_body([(end, 0.0), (bar, end.length)], discs[0])
-    other = rigid_body([(bar, right), (end, right + bar.length)], discs[1])
-    # From displacement and slope of either body at its centre of mass to those of the hair's ends.
-    ends = np.eye(4)
-    ends[0, 1], ends[2, 3] = left - one[2], right - other[2]
-    length, section = hair.length, hair.section(0.5)
-    mass = np.diag([one[0], one[1], other[0], other[1]])
-    mass += ends.T @ cubic_mass(hair.mass, length) @ ends
-    # Strains of a beam without load between its ends: bent evenly, and with shear (Przemieniecki 1968, 5.6).
-    even = section.bending_stiffness / length
-    odd = 3.0 * even / (1.0 + 12.0 * section.bending_stiffness / (section.shear_stiffness * length**2))
-    strains = np.array([[0.0, -1.0, 0.0, 1.0], [2.0 / length, 1.0, -2.0 / length, 1.0]]) @ ends
-    rows = np.sqrt([[even], [odd]]) * strains
-    # Squared singular values of the rows over the mass: rigid motions, which have none, cost no digits.
-    values = np.linalg.svd(np.linalg.solve(np.linalg.cholesky(mass), rows.T), compute_uv=False)
-    np.testing.assert_allclose(modes.frequencies[2:], values[::-1], rtol=1e-12)
-
-
-def rigid_body(parts: list[tuple[Segment, float]], disc: Disc) -> tuple[float, float, float]:
-    """Mass, moment of inertia about a diameter through the centre of mass, and that centre's place."""
-    points = [(part.mass, part.diametral_inertia, left + 0.5 * part.length) for part, left in parts]
-    points.append((disc.mass, disc.diametral_inertia, disc.at))
-    mass = math.fsum(m for m, _, _ in points)
-    centre = math.fsum(m * z for m, _, z in points) / mass
-    return mass, math.fsum(inertia + m * (z - centre) ** 2 for m, inertia, z in points), centre
-
-
-def cubic_mass(mass: float, length: float) -> npt.NDArray[np.float64]:
-    """Consistent mass matrix of a slender uniform beam."""
-    return (mass / 420.0) * np.array(
-        [
-            [156.0, 22.0 * length, 54.0, -13.0 * length],
-            [22.0 * length, 4.0 * length**2, 13.0 * length, -3.0 * length**2],
-            [54.0, 13.0 * length, 156.0, -22.0 * length],
-            [-13.0 * length, -3.0 * length**2, -22.0 * length, 4.0 * length**2],
-        ]
-    )
 
 
 def test_thin_walled_cone() -> None:

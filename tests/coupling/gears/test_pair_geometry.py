@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.errors import InterferenceError, MismatchedGearsError, NoContactError
-from gearwhine.coupling.gears.geometry.involute import involute
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 
 ALPHA = math.radians(20.0)
@@ -56,24 +55,6 @@ def test_roll_angles_are_linear_and_turn_with_the_gears() -> None:
     assert PAIR.driver_position(roll) == pytest.approx(0.7, rel=1e-12)
     assert PAIR.driven_position(float(PAIR.driven_roll_angle(0.7))) == pytest.approx(0.7, rel=1e-12)
     assert roll == pytest.approx(PINION.roll_angle(float(PAIR.driver_radius(0.7))), rel=1e-12)
-
-
-def test_working_angle_closes_the_teeth() -> None:
-    # Without backlash the teeth's thicknesses on the working pitch circles fill the working pitch.
-    w = PAIR.working_pressure_angle
-    thickness = sum(
-        2.0 * (gear.base_half_angle - involute(w)) * gear.base_radius / math.cos(w) for gear in (PINION, WHEEL)
-    )
-    assert thickness == pytest.approx(PAIR.base_pitch / math.cos(w), rel=1e-12)
-    assert PAIR.normal_backlash == pytest.approx(0.0, abs=1e-15)
-
-
-def test_standard_pair_runs_at_its_standard_distance() -> None:
-    gears = replace(PINION, profile_shift=0.0), replace(WHEEL, profile_shift=0.0)
-    pair = GearPairGeometry(*gears)
-    assert pair.working_centre_distance == pytest.approx(0.5 * 3e-3 * 64, rel=1e-13)
-    assert pair.working_pressure_angle == pytest.approx(ALPHA, rel=1e-13)
-    assert pair.ratio == pytest.approx(43 / 21)
 
 
 def test_wider_distance_opens_backlash_and_shortens_contact() -> None:

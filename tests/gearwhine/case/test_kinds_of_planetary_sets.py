@@ -18,7 +18,7 @@ KINDS = {"simple": (stage, 1.0), "stepped": (stepped_stage, 36 / 18), "double": 
 @pytest.fixture(scope="module", params=KINDS)
 def studied(request: pytest.FixtureRequest) -> tuple[Any, float]:
     made, lever = KINDS[request.param]
-    return gw.build(**(made() | {"transient": {"revolutions": 2, "discard": 1}})), lever
+    return gw.build(**made()), lever
 
 
 def test_mesh_forces_are_those_of_the_torques(studied: tuple[Any, float]) -> None:
@@ -39,11 +39,11 @@ def test_a_set_that_turns_as_one_neither_comes_back_nor_runs_away(studied: tuple
 
 
 @pytest.mark.slow
-def test_the_mean_of_the_motion_is_the_static_force(studied: tuple[Any, float]) -> None:
-    study, lever = studied
+def test_the_mean_of_the_motion_is_the_static_force() -> None:
+    study = gw.build(**(double_stage() | {"transient": {"revolutions": 2, "discard": 1}}))
     means = {(one["driver"], one["driven"]): one["mean_force_n"] for one in study.simulate().document["gear_pairs"]}
-    assert [force for ends, force in means.items() if "s" in ends] == pytest.approx([SUN_FORCE] * 3, rel=5e-3)
-    assert [force for ends, force in means.items() if "r" in ends] == pytest.approx([lever * SUN_FORCE] * 3, rel=5e-3)
+    for member in "sr":
+        assert [force for ends, force in means.items() if member in ends] == pytest.approx([SUN_FORCE] * 3, rel=5e-3)
 
 
 def test_a_set_that_runs_idle_has_no_shares_and_no_warnings_of_its_faces() -> None:

@@ -43,14 +43,13 @@ def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, So
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("teeth", [(27, 29), (26, 30)])
-def test_tooth_numbers_without_common_turns_have_their_orders(teeth: tuple[int, int]) -> None:
-    case, solved = run_up(teeth, 0.6)
+def test_tooth_numbers_without_common_turns_have_their_orders() -> None:
+    case, solved = run_up((27, 29), 0.6)
     found = solve_run_signature(solved, tracking_of(case.transient))
     assert found is not None
     rows = run_signature_document(found)["orders"]
-    assert {row["order"] for row in rows} >= {teeth[0], 2 * teeth[0]}
-    # 30 turns do not part one shaft from another that turns 27/29 or 26/30 times: it is said.
+    assert {row["order"] for row in rows} >= {27, 54}
+    # 30 turns do not part one shaft from another that turns 27/29 times: it is said.
     (told,) = run_signature_warnings(solved, tracking_of(case.transient))
     assert told["name"] == "run signature"
     assert "output" in told["message"]

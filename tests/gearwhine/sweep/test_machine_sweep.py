@@ -42,17 +42,6 @@ def test_a_sweep_of_a_machine_is_that_of_the_case(swept_here: None, tmp_path: Pa
     assert {"sweep.nc", "sweep.json"} & set(files)
 
 
-@pytest.mark.slow
-def test_peaks_between_the_speeds_of_a_machine_in_a_housing_are_those_of_the_case(
-    swept_here: None, tmp_path: Path
-) -> None:
-    changes = SHORT | {"housing.box.mesh_size": "60 mm", "sweep.speed": ["4000 rpm", "5000 rpm"]}
-    study = gw.load("small-gearbox", changes)
-    found = gw.Study(study.machine, study.settings).sweep()
-    assert found.document["missed_peaks"]
-    assert_alike(found, study.sweep(folder=tmp_path, workers=1))
-
-
 def test_a_speed_without_a_motion_has_its_failure_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
     def solve(machine: gw.Machine, *_: Any) -> PointResult:
         if machine.speed > 150.0:

@@ -1,7 +1,7 @@
 """Gradients of the sound power of mesh harmonics, against that of machines whose housing is moved and solved anew."""
 
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -123,14 +123,13 @@ def derivatives(case: Case, solved: Solved, model: LineModel) -> tuple[FloatArra
 
 
 CHAINS = {
-    "erp": ({"method": "erp", "mesh_size": "30 mm", "highest_frequency": "6 kHz"}, 1e-5, True),
-    "rayleigh": ({"method": "rayleigh", "faces": ["top"], "highest_frequency": "3 kHz"}, 1e-3, False),
-    "boundary elements": ({"mesh_size": "30 mm", "highest_frequency": "3 kHz"}, 1e-3, True),
+    "erp": ({"method": "erp", "mesh_size": "30 mm", "highest_frequency": "6 kHz"}, 1e-5),
+    "boundary elements": ({"mesh_size": "30 mm", "highest_frequency": "3 kHz"}, 1e-3),
 }
-"""Acoustics, error relative to the sum of the parts, and whether facets are kept.
+"""Acoustics, and error relative to the sum of the parts.
 
 The gradient by the modes' resistance is exact, so that of the equivalent power is; where the mesh slides along the
-surface, reciprocity of the integrals takes part. The points of a flat face have no holes beside them.
+surface, reciprocity of the integrals takes part.
 """
 
 
@@ -173,7 +172,7 @@ def test_the_whole_chain_by_the_housing(chain: str, way: tuple[float, FloatArray
     The mean mesh stiffness, which moves in steps, is constant over this one, as no slice of a face comes into touch.
     Its mean slope, which the derivatives have, is a part of 5e-5 here.
     """
-    acoustics, bound, held = CHAINS[chain]
+    acoustics, bound = CHAINS[chain]
     step, along, (here, *beside) = way
     case = with_acoustics(here.case, acoustics)
     solved = solve_sound(case, here.at_rest)
@@ -181,7 +180,7 @@ def test_the_whole_chain_by_the_housing(chain: str, way: tuple[float, FloatArray
     lines, (own, rates, slopes) = sound_lines(solved), derivatives(case, solved, model)
     kept, _, _ = derivatives(case, solved, without_stiffness(model))
     assert len(lines) == (2 if chain == "erp" else 1)
-    base = lines[0].power.radiation if held else None
+    base = lines[0].power.radiation
     either = []
     for one in beside:
         moved = solve_sound(with_acoustics(one.case, acoustics), one.at_rest, base)
@@ -215,26 +214,11 @@ def study() -> gw.CaseStudy:
 
 
 @pytest.mark.slow
-def test_a_line_sounds_as_in_the_motion_where_the_mesh_stiffness_hardly_varies() -> None:
-    """Of helical teeth, whose stiffness varies by 3 %, the line that leads is that of the whole law within 0.1 dB."""
-    stiffness = {"matrix": np.diag([1.2e8, 1.2e8, 5e7, 0.0, 0.0]).tolist()}
-    changes: dict[str, Any] = {f"bearing.{number}.stiffness": stiffness for number in range(4)}
-    for gear, angle in (("pinion", "20 deg"), ("wheel", "-20 deg")):
-        changes |= {f"gear.{gear}.module": f"{3.175 * np.cos(np.deg2rad(20.0))} mm"}  # at the same centre distance
-        changes |= {f"gear.{gear}.face_width": "30 mm", f"gear.{gear}.helix_angle": angle}
-    study = gw.load("small-gearbox", SOUNDING | changes)
-    loudest = study.operating_point(sensitivity=True).document["loudest_lines"][0]
-    steady = {one["name"]: one["sound_power_db"] for one in study.sound().document["lines"]}
-    assert loudest["excitation"] == "1× pinion -> wheel"
-    assert loudest["sound_power_db"] == pytest.approx(steady[loudest["excitation"]], abs=0.1)
-
-
-@pytest.mark.slow
 def test_the_document_ranks_by_the_sound(study: gw.CaseStudy) -> None:
     result = study.operating_point(sensitivity=True)
     loudest = result.document["loudest_lines"]
     assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
-    # The steady motion follows the whole law of the teeth, whose stiffness varies by a third here; see the next test.
+    # The steady motion follows the whole law of the teeth, whose stiffness varies by a third here.
     steady = {one["name"]: one["sound_power_db"] for one in study.sound().document["lines"]}
     assert loudest[1]["sound_power_db"] == pytest.approx(steady["1× pinion -> wheel"], abs=1.0)
     for one in loudest:

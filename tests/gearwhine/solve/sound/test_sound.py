@@ -1,6 +1,5 @@
 """Sound of a case: parts that add up, two motions that sound alike, measurement by ISO 3744, and refusals."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ from sounding_gearbox import swept_point
 
 import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
-from gearwhine.cli.command_line import run_command
 from gearwhine.coupling.sound.microphones import microphone_histories
 from gearwhine.coupling.sound.solution import build_radiation
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
@@ -191,66 +189,12 @@ def test_rayleigh_of_the_top_is_near_boundary_elements_for_a_mode_of_the_top(stu
     assert baffled["faces"] == {"top": pytest.approx(1.0, abs=0.03)}
 
 
-def test_json_of_the_command(capsys, tmp_path):
-    changes = [f"--set={key}={value}" for key, value in COARSE.items()]
-    arguments = [
-        "sound",
-        "steel-box",
-        "--json",
-        "-q",
-        "--set=acoustics.method=erp",
-        "--set=housing.box.mesh_size=50 mm",
-        *changes,
-        "-o",
-        str(tmp_path / "out"),
-    ]
-    assert run_command(arguments) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert {"method", "lines", "total_db", "total_db_a", "modes", "microphones"} <= set(document)
-    assert all(mode["radiation_efficiency"] == pytest.approx(1.0) for mode in document["modes"])
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"acoustics.method": "rayleigh"}, "flat faces that radiate"),
-        ({"acoustics.faces": ["top"]}, "takes the whole surface"),
-        ({"acoustics.method": "erp", "acoustics.microphone_box": "1 m"}, "no microphones"),
-        ({"acoustics.method": "erp", "acoustics.floor": "0 mm"}, "no floor"),
-        ({"acoustics.speed_of_sound": "-3 m/s"}, "a velocity"),
-    ],
-)
-def test_refuses_choices_that_do_not_fit(changes, message):
-    with pytest.raises(CaseError, match=message):
-        gw.load("small-gearbox", changes)
-
-
 def test_triangles_of_no_use_are_refused_by_the_radiation_itself(study):
     """Where nothing was checked before: a sweep's points, whose housing may have changed."""
     case = study.changed({"acoustics.mesh_size": "90 mm"}).case
     acoustics, message = acoustics_of(case), r"^acoustics\.mesh_size: .* too large for 2800 Hz: .*, got '90 mm'"
     with pytest.raises(CaseError, match=message), refused_by_key(acoustics):
         build_radiation(acoustics, study.housing.displacement_field)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"acoustics.still": ["sole"]}, r"acoustics.still\[0\].*surface of the housing"),
-        ({"acoustics.method": "rayleigh", "acoustics.faces": ["lid"]}, r"acoustics.faces\[0\].*surface of the housing"),
-        ({"acoustics.method": "rayleigh", "acoustics.faces": ["input-back"]}, "flat surface"),
-        (
-            COARSE | {"acoustics.mesh_size": "90 mm"},
-            r"acoustics\.mesh_size: .* of at most .*, got '90 mm'",
-        ),
-    ],
-)
-def test_refuses_what_is_not_there(study, changes, message):
-    other = gw.load("small-gearbox", changes)
-    other._kept.solved = study.housing
-    with pytest.raises(Exception, match=message) as caught:
-        other.sound()
-    assert type(caught.value).__name__ in ("CaseError", "HousingError")
 
 
 def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monkeypatch, tmp_path):
@@ -323,19 +267,6 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
     louder = acoustics_of(gw.load("small-gearbox", low | {"acoustics.mesh_size": "33 mm"}).case)
     with pytest.raises(TypeError):
         kept_radiation(louder, again, build_radiation(louder, field), np.zeros((0, 3)), (20.0, 3000.0))
-
-
-def test_sweep_sounds_as_its_points_do(swept_here, tmp_path):
-    """Each point of a sweep has the power of a run at its speed."""
-    short = COARSE | {"housing.box.mesh_size": "45 mm"}
-    short |= {"transient.revolutions": 12, "transient.discard": 10, "transient.tolerance": 1e-3}
-    swept = gw.load("small-gearbox", short).sweep(["operation.speed=5500 rpm"], folder=tmp_path / "out", workers=1)
-    levels = swept.dataset["sound_power_level"].values
-    assert np.isfinite(levels).all()
-    found = gw.load("small-gearbox", short | {"acoustics.in_run": True}).run().solved.sound
-    assert levels[0] == pytest.approx(found.total_db, abs=0.05)
-    loudest = max(found.lines, key=lambda line: line.sound.power)
-    assert swept.dataset["sound_line_frequency"].values[0, 0] == pytest.approx(loudest.frequency_hz)
 
 
 def test_sweep_sounds_by_the_housing_of_its_points(swept_here, tmp_path):
