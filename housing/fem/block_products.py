@@ -4,6 +4,7 @@ On a large mesh the assembled matrix is a good part of the memory beside the fac
 are multiplied at once, each row by one thread. Importing this module imports numba.
 """
 
+from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -144,7 +145,8 @@ class BlockProduct:
         for few in pieces:
             motions[self._free[few], :width] = columns[few]
         forces, inertia = np.empty_like(motions), np.empty_like(motions)
-        at_once([partial(_write_products, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
+        write: Callable[..., None] = _write_products
+        at_once([partial(write, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
         for product in (forces, inertia):
             # The free degrees of freedom ascend: none is overwritten before it is read.
             for few in pieces:

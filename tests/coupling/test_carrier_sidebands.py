@@ -390,7 +390,7 @@ def test_far_sidebands_are_named_by_the_nearest_harmonic() -> None:
 
 
 def test_level_has_the_power_of_what_differs_between_teeth() -> None:
-    """Runout of all gears, beside the harmonic balance of each line: carriers frozen all round leave out m f, up to a dB."""
+    """Runout, beside the harmonic balance of each line: what carriers frozen all round leave out is below a dB."""
     even = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL)
     rng, contacts = np.random.default_rng(0), []
     for contact in even.system.contacts:
