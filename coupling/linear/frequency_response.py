@@ -37,7 +37,6 @@ from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from gearwhine.coupling.linear.frozen_directions import frozen
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
 from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.machine.connectors import TurningPart
@@ -600,7 +599,7 @@ class BasisError:
 def _superposable(system: CoupledSystem) -> Eigenpairs | None:
     """Eigenpairs about the mean contact; None where they fail their proof, since the system can always be solved."""
     try:
-        pairs = quadratic_eigenpairs(*linear_matrices(frozen(system), mean_contact(system)))
+        pairs = quadratic_eigenpairs(*linear_matrices(system.standing(0.0), mean_contact(system)))
     except ModesError:
         return None
     return pairs if pairs.sum_rule <= SUM_RULE else None
@@ -612,7 +611,7 @@ def _sensor_responses(
     """Motion along each sensor by each excitation, shape (f, e): by superposition where there are eigenpairs."""
     loads_of_lines = excitations(machine)
     loads = np.broadcast_to(loads_of_lines, (len(frequencies), *loads_of_lines.shape))
-    moved = response(frozen(machine.system), loads, frequencies, pairs=pairs)
+    moved = response(machine.system.standing(0.0), loads, frequencies, pairs=pairs)
     return {name: moved @ row for name, row in machine.sensor_rows.items()}
 
 

@@ -7,12 +7,10 @@ coefficients, and a table of modes or a diagram is that of a frozen picture. How
 (:mod:`gearwhine.coupling.linear.turning_response`) and need no warning.
 """
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from gearwhine.coupling.machine.connectors import turned
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 
@@ -21,18 +19,6 @@ FROZEN_CARRIER = "carrier frozen"
 
 FROZEN_MODES = "natural modes, damping ratios and stability"
 """Subject of the warning of natural modes."""
-
-
-def frozen(system: CoupledSystem, time: float = 0.0) -> CoupledSystem:
-    """Return a system whose directions stand as they do at a nominal time [s]."""
-    if not system.turns:
-        return system
-    linear = [replace(one, directions=turned(one.directions, one.turning, time), turning=()) for one in system.linear]
-    contacts = [
-        replace(one, direction=turned(one.direction[:, None], one.turning, time)[:, 0], turning=())
-        for one in system.contacts
-    ]
-    return replace(system, linear=tuple(linear), contacts=tuple(contacts))
 
 
 def frozen_warnings(

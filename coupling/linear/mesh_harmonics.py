@@ -36,7 +36,6 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 )
 from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands, Sideband
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
-from gearwhine.coupling.linear.frozen_directions import frozen
 from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
 from gearwhine.coupling.linear.turning_response import Order, TurningResponse
 from gearwhine.coupling.linear.turning_stiffness import TurningStiffnessForce, turning_stiffness_forces
@@ -241,7 +240,7 @@ class MeshHarmonicModel:
 
     def frozen(self, time: float) -> "MeshHarmonicModel":
         """Model of the machine whose directions stand as they do at a nominal time [s], with the same loaded meshes."""
-        still = replace(self, machine=replace(self.machine, system=frozen(self.machine.system, time)))
+        still = replace(self, machine=replace(self.machine, system=self.machine.system.standing(time)))
         still.__dict__.update({name: getattr(self, name) for name in ("contact", "meshes", "alike")})
         return still
 
