@@ -246,7 +246,7 @@ def hunting_period(system: CoupledSystem) -> int:
     """Mesh cycles after which the same teeth meet in all meshes that share a frequency: the most of any frequency."""
     periods = dict[str, int]()
     for contact in (one for one in system.contacts if one.loaded):
-        rate = f"{abs(contact.mesh_frequency):.9g}"
+        rate = _rate(contact)
         periods[rate] = math.lcm(periods.get(rate, 1), contact.contact.hunting_period)
     return max(periods.values(), default=1)
 
@@ -261,8 +261,8 @@ def excitation_groups(
     Meshes are grouped first, the fastest first, then loads and runout errors; each joins the group with which its
     common period is the shortest, or begins one. What repeats within a group's own period joins it however long that
     is: the load shuttling of a mesh whose teeth are not alike adds to its lines with their phases. Constant loads are
-    in none. Where a hunting period is too long, meshes are grouped as with teeth that are alike, and the differences of
-    teeth are groups by the turns of their gears.
+    in none. Where a hunting period is too long, meshes that share their frequency are together, and divided by the
+    turns of gears whose teeth differ.
 
     Parameters
     ----------
@@ -273,15 +273,22 @@ def excitation_groups(
         Largest number of mesh cycles in the hunting period of meshes that share their frequency that is one group.
     """
     groups: list[ExcitationGroup] = []
-    by_mesh = _with_teeth_of(system, 0.0) if hunting_period(system) > longest_hunting else system
     meshes, loads = _atoms(system)
-    for atom in meshes:
-        _join(by_mesh, groups, atom, longest)
-    if by_mesh is not system:
-        groups = [part for group in groups for part in _by_turns(system, group)]
-    for atom in loads:
+    if hunting_period(system) > longest_hunting:
+        sharing = dict[str, tuple[int, ...]]()
+        for (number,) in (atom.meshes for atom in meshes):
+            rate = _rate(system.contacts[number])
+            sharing[rate] = (*sharing.get(rate, ()), number)
+        groups = [part for numbers in sharing.values() for part in _by_turns(system, ExcitationGroup(numbers))]
+        meshes = []
+    for atom in (*meshes, *loads):
         _join(system, groups, atom, longest)
     return tuple(groups)
+
+
+def _rate(contact: ContactConnector) -> str:
+    """Return the mesh frequency, the same of meshes that share it."""
+    return f"{abs(contact.mesh_frequency):.9g}"
 
 
 def _join(system: CoupledSystem, groups: list[ExcitationGroup], atom: ExcitationGroup, longest: float) -> None:

@@ -20,6 +20,7 @@ from gearwhine.coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
+from gearwhine.coupling.gears.contact.tooth_pair import ToothPairCurves
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
@@ -195,6 +196,18 @@ def test_meshes_of_an_idler_have_a_motion_for_each_gear_and_loads_go_with_their_
     loads = [[round(rate / (2.0 * math.pi), 3) for rate in one.frequencies] for one in groups]
     assert loads == [[800.0], [800.0], [800.0], [800.0, 44.444], [321.0]]
     assert [one.turn for one in excitation_groups(system, longest_hunting=468)] == [None, None]
+
+
+def test_the_part_of_a_gear_has_the_damage_that_most_of_its_pairs_have() -> None:
+    """Tooth 5 of 12 and tooth 11 of 18 are damaged, and meet once in 36 cycles."""
+    sound = contact_of(PotentialEnergyStiffness(), 0.0)
+    pairs = np.arange(PERIOD)
+    variants = 1 * (pairs % 12 == 5) + 2 * (pairs % 18 == 11)
+    both = replace(sound, variants=(ToothPairCurves(sound.stiffness, sound.deviation),) * 3, pair_variants=variants)
+    np.testing.assert_array_equal(both.teeth_of(driver=True).pair_variants, 1 * (np.arange(12) == 5))
+    np.testing.assert_array_equal(both.teeth_of(driven=True).pair_variants, 2 * (np.arange(18) == 11))
+    assert not both.teeth_of().pair_variants.any()
+    assert both.teeth_of(driver=True, driven=True) is both
 
 
 def superposed_and_whole(scale: float, relief: float) -> tuple[FloatArray, FloatArray, float]:

@@ -16,7 +16,12 @@ CALLS: list[tuple[str, str, list[str], dict[str, Any]]] = [
         ["--campbell", "--sidebands", "3", "--mesh-harmonics", "5", "--mesh-phase", "0.25"],
         {"campbell": True, "sidebands": 3, "mesh_harmonics": 5, "mesh_phase": 0.25},
     ),
-    ("steady", "steady", ["--down", "--points", "7", "--exact"], {"down": True, "points": 7, "exact": True}),
+    (
+        "steady",
+        "steady",
+        ["--down", "--points", "7", "--exact", "--superpose"],
+        {"down": True, "points": 7, "exact": True, "superpose": True},
+    ),
     ("load", "operating_point", ["--over-torque", "--rigid-seats"], {"over_torque": True, "rigid_seats": True}),
     ("load", "operating_point", ["--line", "roof@1377"], {"line": "roof@1377"}),
     ("update", "update", ["--null", "5", "--held-back"], {"null": 5, "held_back": True}),

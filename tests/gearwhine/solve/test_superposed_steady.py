@@ -267,6 +267,7 @@ def hunting_pair(micrometres: float, name: str = "spur-pair", housing: HousingMo
     return coupled(load_case(name, changes).case, housing)
 
 
+@pytest.mark.slow
 def test_unequal_teeth_of_both_gears_have_the_lines_of_the_hunting_period() -> None:
     """Errors of 1 µm, of which next to nothing is left out: lines, bearing loads and names are those of the period."""
     machine = hunting_pair(1.0)
