@@ -51,7 +51,9 @@ def solve_shafts(
         progress(f"rotor {shaft.name}")
         held, rolling = bearings[shaft.name]
         chosen = replace(shaft_settings(machine, shaft.name, held, speeds), **settings)
-        solved.append(solve_rotor(machine.rotor(shaft.name), held, chosen, rolling=rolling, progress=progress))
+        turning = {one.bearing.name: machine.bearing_speed(one) for one in machine.bearings if one.rotor == shaft.name}
+        rotor = machine.rotor(shaft.name)
+        solved.append(solve_rotor(rotor, held, chosen, rolling=rolling, bearing_speeds=turning, progress=progress))
     return tuple(solved)
 
 

@@ -41,7 +41,15 @@ def solve_rotors(case: Case, progress: Progress = silent, **chosen: Any) -> tupl
         progress(f"rotor {table.name}")
         bearings, rolling = built[table.name]
         settings = replace(rotor_settings(case, table), **chosen)
-        solved.append(solve_rotor(rotor, bearings, settings, rolling=rolling, progress=progress))
+        speeds = case.parts.speeds
+        turning = {
+            one.name: speeds[one.rotor] - speeds.get(one.seat, 0.0)
+            for one in case.bearing
+            if one.rotor == table.name and one.rotor in speeds
+        }
+        solved.append(
+            solve_rotor(rotor, bearings, settings, rolling=rolling, bearing_speeds=turning, progress=progress)
+        )
     return tuple(solved)
 
 

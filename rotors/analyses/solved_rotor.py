@@ -625,6 +625,7 @@ def solve_rotor(
     settings: RotorSettings | None = None,
     *,
     rolling: Mapping[str, RollingState] | None = None,
+    bearing_speeds: Mapping[str, float] | None = None,
     progress: Progress = silent,
 ) -> SolvedRotor:
     """Solve a rotor alone in its bearings, which stand on the ground or on their pedestals.
@@ -637,6 +638,8 @@ def solve_rotor(
     settings : RotorSettings, optional
     rolling : mapping of str to RollingState, optional
         States of its rolling bearings under load, by name, for their lives.
+    bearing_speeds : mapping of str to float, optional
+        Speed of the rotor against what holds a bearing, by name [rad/s]; by default that of operation.
     progress : callable
 
     Raises
@@ -647,6 +650,7 @@ def solve_rotor(
         Where modes fail their certificate.
     """
     settings, bearings, rolling = settings or RotorSettings(), tuple(bearings), rolling or {}
+    in_seats = bearing_speeds or {}
     count, operation, diagram = settings.mode_count, settings.operation, settings.diagram_speeds
     lowest, _ = table_range(bearings)
     resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
@@ -679,7 +683,7 @@ def solve_rotor(
         torsion=_solve_torsion(rotor, settings.torsion, torsional),
         stiffness_map=_stiffness_map(rotor, bearings, settings.stiffness_map),
         rolling=rolling,
-        lives={name: BearingLife(state, operation) for name, state in rolling.items()},
+        lives={name: BearingLife(state, in_seats.get(name, operation)) for name, state in rolling.items()},
     )
 
 

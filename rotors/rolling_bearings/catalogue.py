@@ -287,7 +287,7 @@ def bearing_of_row(
     require_finite("preload", preload, minimum=0.0)
     require_finite("axial offset", axial_offset)
     held = axial_offset == 0.0 or row.has_axial_stiffness
-    require(held, "axial offset", axial_offset, "none: cylindrical rollers carry no axial load without flanges")
+    require(held, "axial offset", axial_offset, "none: its rollers carry no axial load")
     sense = 1 if carries == "+z" else -1
     if arrangement == "single":
         require(spacing is None, "spacing", spacing, "none of a single bearing")

@@ -1,10 +1,10 @@
 """Planets alone on their pins, and lives of their bearings: at the speed relative to the carrier, by hand."""
 
 import pytest
-from planetary_machines import set_parts
+from planetary_machines import set_parts, shaft
 
 from gearwhine.coupling import Machine, MountedBearing
-from gearwhine.coupling.analyses.shafts_alone import planet_warnings, shaft_settings
+from gearwhine.coupling.analyses.shafts_alone import planet_warnings, shaft_settings, solve_shafts
 from gearwhine.coupling.load_analysis.solved_load import solve_load
 from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing
 
@@ -39,6 +39,18 @@ def test_bearings_of_a_planet_live_by_its_speed_on_the_pin(machine: Machine) -> 
     lives = {bearing.load.name: bearing.rated for bearing in solved.bearings if bearing.rated is not None}
     assert sorted(lives) == ["p 0.01 2", "p 0.05 2"]
     assert [life.speed for life in lives.values()] == pytest.approx([ON_PIN] * 2)
+
+
+def test_a_shaft_alone_in_another_one_lives_by_its_speed_against_that() -> None:
+    """The sun, on balls in the carrier, which follows at 24/108 of its speed; as at the operating point."""
+    parts = set_parts()
+    longer = {"s": shaft("s", length=0.15), "c": shaft("c", start=0.1, bore=0.03)}
+    parts["shafts"] = [longer.get(one.name, one) for one in parts["shafts"]]
+    elements = RollingBearing((BallRow(16, 3e-3, 25e-3, clearance=-2e-6),))
+    inside = MountedBearing.from_elements("inside", 0.13, "s", "c", elements)
+    parts["bearings"] = [inside if one.bearing.name == "s 0.05" else one for one in parts["bearings"]]
+    sun = next(one for one in solve_shafts(Machine(**parts), mode_count=2) if one.rotor.name == "s")
+    assert sun.lives["inside"].speed == pytest.approx(SPEED * (1.0 - 24.0 / 108.0))
 
 
 def test_what_a_planet_alone_leaves_out_is_told() -> None:

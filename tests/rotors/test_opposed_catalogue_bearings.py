@@ -106,7 +106,7 @@ def test_the_angle_by_the_axial_factor_is_that_by_the_limit_e(kind: Any, factor:
         ({"spacing": 0.03}, "spacing is 0.03; expected none of a single bearing"),
         ({"kind": "four-point", "arrangement": "tandem", "spacing": 0.03}, "expected 'single' of a four-point bearing"),
         ({"arrangement": "tandem", "spacing": 0.03, "axial_offset": 1e-6}, "axial offset is 1e-06; expected none"),
-        ({"kind": "cylindrical-roller", "axial_offset": 1e-6}, "axial offset is 1e-06; expected none: cylindrical"),
+        ({"kind": "cylindrical-roller", "axial_offset": 1e-6}, "axial offset is 1e-06; expected none: its rollers"),
         ({"floating": True}, "floats, and its rows carry thrust one way only"),
     ],
 )

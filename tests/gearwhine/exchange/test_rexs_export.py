@@ -331,7 +331,13 @@ def test_what_the_bundled_cases_do_not_have_comes_back_too() -> None:
     assert {note.text for note in exported.notes} == set()
 
 
-ANGLES = {"four-point": 35, "four-point-ball": 30, "self-aligning-ball": 10, "tapered-roller": 14}
+ANGLES = {
+    "four-point": 35,
+    "four-point-ball": 30,
+    "self-aligning-ball": 10,
+    "tapered-roller": 14,
+    "spherical-roller": 9,
+}
 
 
 @st.composite

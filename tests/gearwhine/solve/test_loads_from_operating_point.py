@@ -449,3 +449,12 @@ def test_gears_takes_the_housing_that_stands_in_its_folder(tmp_path: Path, monke
         assert pair["misalignment_rad"] == pytest.approx(found["misalignment_rad"], rel=1e-6)
         assert "rigid seats" not in [entry["name"] for entry in document.get("warnings", ())]
     assert abs(rigid["misalignment_rad"] - found["misalignment_rad"]) > 0.02 * abs(found["misalignment_rad"])
+
+
+def test_a_bearing_in_a_turning_shaft_lives_by_the_relative_speed() -> None:
+    """24 teeth of the sun and 90 of the held ring: the carrier turns with 24/114 of the sun's 3000 rpm."""
+    size = {"type": "deep-groove", "bore": "20 mm", "outer_diameter": "42 mm", "width": "12 mm"}
+    changes = {"seat": "carrier", "at": "110 mm", "stiffness": {"rolling": {"catalogue": size}}, "damping": ""}
+    case = gw.load("planetary-stage", {f"bearing.sun inner.{key}": value for key, value in changes.items()}).case
+    lives = {name: life for rotor in solve_rotors(case, mode_count=2) for name, life in rotor.lives.items()}
+    assert lives["sun inner"].speed == pytest.approx(100.0 * math.pi * (1.0 - 24.0 / 114.0))
