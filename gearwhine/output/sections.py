@@ -110,7 +110,7 @@ class Table:
 
     def filled(self) -> tuple[tuple[Column, ...], list[list[str]]]:
         """Return the columns that hold a value in any row, and the text of each row in them."""
-        texts = {column: [column.text(row) for row in self.rows] for column in self.columns}
+        texts = {column: [arrowed(column.text(row)) for row in self.rows] for column in self.columns}
         filled = tuple(column for column in self.columns if any(text != NOTHING for text in texts[column]))
         return filled, [[texts[column][number] for column in filled] for number in range(len(self.rows))]
 
