@@ -11,7 +11,7 @@ def life_in_words(hours: float | None) -> str:
     """Return a life for a table, three digits; empty where there is none."""
     if hours is None:
         return ""
-    return f"{hours:.3g}" if hours <= LONGEST_LIFE else f"> {LONGEST_LIFE:.0e}".replace("e+0", "e")
+    return f"{float(f'{hours:.3g}'):.6g}" if hours <= LONGEST_LIFE else f"> {LONGEST_LIFE:.0e}".replace("e+0", "e")
 
 
 def life_quantities(rated: str, name: str, headings: tuple[str, str]) -> tuple[Quantity, ...]:

@@ -230,7 +230,7 @@ SHAFT = (
     Quantity("name", "name", "deflected_shaft", heading="shaft"),
     Quantity("largest_deflection_m", "largest.0", heading="largest [µm]", shown=".4g"),
     Quantity("largest_deflection_at_m", "largest.1", heading="at, from its left end [mm]", shown=".4g"),
-    Quantity("twist_rad", heading="twist [µrad]", shown=".4g"),
+    Quantity("twist_rad", heading="twist [µrad]", shown=".0f"),
     in_file("shaft_position", _PLACE, "at", unit="m"),
     in_file("shaft_z", _PLACE, "z", unit="m"),
     in_file(

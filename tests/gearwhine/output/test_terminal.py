@@ -189,6 +189,10 @@ def test_rows_of_a_table_too_wide_for_the_terminal_become_columns() -> None:
         assert isinstance(console.file, io.StringIO)
         return console.file.getvalue().splitlines()
 
+    # A file has whole words, however many columns they take; a terminal its own width.
+    many = Table(tuple(Column(f"displacement {number}", "name") for number in range(12)), rows)
+    lines = _said(lambda _: (Section("", (many,)),), {}).splitlines()
+    assert (lines[0].split().count("displacement"), lines[3].split()) == (12, 12 * ["pinion"])
     wide, narrow = drawn(200), drawn(80)
     assert sum("quantity 0 [mm]" in line and "quantity 7 [mm]" in line for line in wide) == 1
     assert not any("…" in line or len(line.rstrip()) > 80 for line in narrow)
