@@ -13,6 +13,7 @@ from gearwhine.case import load_case
 from gearwhine.coupling.linear.carrier_sidebands import Sideband
 from gearwhine.coupling.linear.mesh_harmonics import causes_in_words
 from gearwhine.coupling.signals.line_names import line_names
+from gearwhine.figures.machine.system import _place_beside_harmonic
 
 WAVES = np.random.default_rng(2).normal(size=56)
 OUTPUT, STAGE = 19 * 21 / 72 / 56, 19 * 21 / 72
@@ -48,7 +49,10 @@ def test_the_harmonic_that_a_line_is_the_fewest_turns_off_comes_first() -> None:
     machine: Any = SimpleNamespace(meshes=meshes, system=SimpleNamespace(contacts=meshes), flanks=lambda n: (n, 0))
     sidebands = [Sideband((("carrier", turns),)) for turns in (5.0, -1.0)]
     expected = ["2× c -> d - 1× carrier", "8× a -> b + 5× carrier"]
-    assert causes_in_words(machine, [(0, 8), (1, 2)], sidebands) == expected
+    causes = [(0, 8), (1, 2)]
+    assert causes_in_words(machine, causes, sidebands) == expected
+    line: Any = SimpleNamespace(causes=causes, sidebands=sidebands)
+    assert _place_beside_harmonic(line) == "2 -1"
 
 
 def test_of_two_meshes_the_much_nearer_one_is_named_and_both_where_neither_is(tmp_path: Path) -> None:
