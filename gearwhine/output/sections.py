@@ -110,7 +110,7 @@ class Table:
 
     def filled(self) -> tuple[tuple[Column, ...], list[list[str]]]:
         """Return the columns that hold a value in any row, and the text of each row in them."""
-        texts = {column: [arrowed(column.text(row)) for row in self.rows] for column in self.columns}
+        texts = {column: [column.text(row) for row in self.rows] for column in self.columns}
         filled = tuple(column for column in self.columns if any(text != NOTHING for text in texts[column]))
         return filled, [[texts[column][number] for column in filled] for number in range(len(self.rows))]
 
@@ -264,6 +264,11 @@ def arrowed(text: str) -> str:
 def counted(number: int, noun: str) -> str:
     """Return a number of things in words, such as ``1 mode`` and ``2 modes``."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def significant(number: float, digits: int = 3) -> str:
+    """Return a number of some significant digits without a power of ten, but for very small and very large ones."""
+    return f"{float(f'{number:.{digits}g}'):.10g}"
 
 
 def rms_of_band(limits: Iterable[float | None]) -> str:

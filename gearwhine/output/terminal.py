@@ -12,7 +12,7 @@ from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from gearwhine.output.sections import Document, Section, Table, is_number
+from gearwhine.output.sections import Column, Document, Section, Table, arrowed, is_number
 
 _WIDTH, _WIDEST = 120, 10_000  # of a table that is not on a terminal, and where its words are longer
 _MOST_LISTED_FILES = 12  # largest number of files that are named
@@ -64,13 +64,13 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
     for item in section.content:
         if isinstance(item, Table):
             if item.caption:
-                console.print(f"{' ' * indent}{item.caption}")
+                console.print(f"{' ' * indent}{arrowed(item.caption)}")
             for grid in _fitting(console, item, indent):
                 least = 1 + sum(_BETWEEN + (column.min_width or 0) for column in grid.columns)
                 padded = Padding(grid, (0, 0, 1, indent), expand=False)
                 console.print(padded if console.is_terminal else Constrain(padded, max(_WIDTH, indent + least)))
         else:
-            console.print(f"{' ' * indent}{_hanging(console, str(item), indent)}")
+            console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}")
     for inner in section.inner:
         show_section(console, inner, indent)
 
@@ -105,9 +105,14 @@ def show_origin(console: Console, document: Document) -> None:
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 
 
+def _filled(table: Table) -> tuple[tuple[Column, ...], list[list[str]]]:
+    columns, rows = table.filled()
+    return columns, [[arrowed(cell) for cell in row] for row in rows]
+
+
 def _fitting(console: Console, table: Table, indent: int) -> list[Grid]:
     """Return a table as it fits a terminal: its rows become columns, a few beside each other, where it is too wide."""
-    columns, rows = table.filled()
+    columns, rows = _filled(table)
     if not console.is_terminal:
         return [_grid(table, breaks_words=False)]
     headings = [column.heading for column in columns]
@@ -139,7 +144,7 @@ def _turned(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
 
 def _grid(table: Table, *, breaks_words: bool = True) -> Grid:
     """Return a table in rows; where words are not broken it may be wider than the console."""
-    columns, rows = table.filled()
+    columns, rows = _filled(table)
     grid = Grid(box=SIMPLE_HEAD, show_edge=False)
     for place, column in enumerate(columns):
         numbers = any(is_number(row[place]) for row in rows)
