@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import EQUAL_MESHES, GearTrain
 from gearwhine.coupling.gears import (
@@ -36,6 +37,7 @@ from gearwhine.coupling.gears.loaded.optimal_relief import (
 )
 from gearwhine.coupling.gears.loaded.transmission_error import (
     MeshStiffnessFigures,
+    along_one_pair,
     mesh_period_phases,
     mesh_stiffness_figures,
 )
@@ -210,12 +212,16 @@ class PairAnalysis:
 
         None without load or single pairs.
         """
-        static = self.solved.static
-        if static.force == 0.0 or not self.solved.has_single_pairs:
+        if self.solved.static.force == 0.0 or not self.solved.has_single_pairs:
             return None
-        present = self.solved.carrying_flanks.pairs(static.phases).present
-        order = np.argsort(static.positions[present], kind="stable")
-        return static.positions[present][order], static.load_shares[present][order]
+        mesh, present = self.along_one_pair
+        order = np.argsort(mesh.positions[present], kind="stable")
+        return mesh.positions[present][order], mesh.load_shares[present][order]
+
+    @cached_property
+    def along_one_pair(self) -> tuple[LoadedMesh, npt.NDArray[np.bool_]]:
+        """The mesh as a pair of teeth runs along its path, and where that is, see `transmission_error`."""
+        return along_one_pair(self.solved.carrying_flanks, self.solved.static)
 
     @property
     def largest_pressure(self) -> tuple[float, float] | None:

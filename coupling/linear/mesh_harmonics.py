@@ -127,7 +127,7 @@ def causes_in_words(
 ) -> list[str]:
     """Return each mesh harmonic of a line in words, with the turns of carriers that the line is off it.
 
-    Meshes of the planets of one carrier that have one harmonic are told together.
+    Meshes of the planets of one carrier that have one harmonic are told together. Those of the fewest turns come first.
 
     Parameters
     ----------
@@ -140,7 +140,8 @@ def causes_in_words(
         Whether meshes have the names of the contacts, which say which flanks touch, or of the gears alone.
     """
     together: dict[tuple[int, str | None, str], list[str]] = {}
-    for (number, harmonic), sideband in zip(causes, sidebands or [Sideband()] * len(causes), strict=True):
+    rows = zip(causes, sidebands or [Sideband()] * len(causes), strict=True)
+    for (number, harmonic), sideband in sorted(rows, key=lambda row: sum(abs(turns) for _, turns in row[1].turns)):
         mesh = machine.meshes[machine.flanks(number)[0]]
         name = machine.system.contacts[number].name if of_flanks else mesh.name
         together.setdefault((harmonic, mesh.carrier, sideband.words), []).append(name)

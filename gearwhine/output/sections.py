@@ -266,6 +266,11 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
+def significant(number: float, digits: int = 3) -> str:
+    """Return a number of some significant digits without a power of ten, but for very small and very large ones."""
+    return f"{float(f'{number:.{digits}g}'):.10g}"
+
+
 def rms_of_band(limits: Iterable[float | None]) -> str:
     """Name rms values by their band, above 0 Hz and up to the limit that all have [Hz], such as ``rms 0–2000 Hz``."""
     different = set(limits)

@@ -2,18 +2,19 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from textwrap import wrap
-from typing import Any
+from typing import Any, Literal
 
 from rich.box import SIMPLE_HEAD
 from rich.cells import cell_len
 from rich.console import Console
+from rich.constrain import Constrain
 from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from gearwhine.output.sections import Document, Section, Table, is_number
+from gearwhine.output.sections import Column, Document, Section, Table, arrowed, is_number
 
-_WIDTH = 120
+_WIDTH, _WIDEST = 120, 10_000  # of a table that is not on a terminal, and where its words are longer
 _MOST_LISTED_FILES = 12  # largest number of files that are named
 _BETWEEN = 3  # columns between the cells of a table
 _NARROWEST = 20  # least number of columns of a wrapped text
@@ -25,8 +26,8 @@ def open_console() -> Console:
     console = Console(highlight=False, markup=False, emoji=False)
     if console.is_terminal:
         return console
-    # Where there is no terminal, lines are not cut at the 80 columns that rich then assumes.
-    return Console(highlight=False, markup=False, emoji=False, width=_WIDTH, soft_wrap=True)
+    # Where there is no terminal, lines are not cut at the 80 columns that rich then assumes, nor words at any.
+    return Console(highlight=False, markup=False, emoji=False, width=_WIDEST, soft_wrap=True)
 
 
 def shown_by(
@@ -63,11 +64,13 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
     for item in section.content:
         if isinstance(item, Table):
             if item.caption:
-                console.print(f"{' ' * indent}{item.caption}")
+                console.print(f"{' ' * indent}{arrowed(item.caption)}")
             for grid in _fitting(console, item, indent):
-                console.print(Padding(grid, (0, 0, 1, indent), expand=False))
+                least = 1 + sum(_BETWEEN + (column.min_width or 0) for column in grid.columns)
+                padded = Padding(grid, (0, 0, 1, indent), expand=False)
+                console.print(padded if console.is_terminal else Constrain(padded, max(_WIDTH, indent + least)))
         else:
-            console.print(f"{' ' * indent}{_hanging(console, str(item), indent)}")
+            console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}")
     for inner in section.inner:
         show_section(console, inner, indent)
 
@@ -102,11 +105,16 @@ def show_origin(console: Console, document: Document) -> None:
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 
 
+def _filled(table: Table) -> tuple[tuple[Column, ...], list[list[str]]]:
+    columns, rows = table.filled()
+    return columns, [[arrowed(cell) for cell in row] for row in rows]
+
+
 def _fitting(console: Console, table: Table, indent: int) -> list[Grid]:
     """Return a table as it fits a terminal: its rows become columns, a few beside each other, where it is too wide."""
-    columns, rows = table.filled()
+    columns, rows = _filled(table)
     if not console.is_terminal:
-        return [_grid(table)]
+        return [_grid(table, breaks_words=False)]
     headings = [column.heading for column in columns]
     room = console.width - indent
 
@@ -134,13 +142,17 @@ def _turned(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
     return grid
 
 
-def _grid(table: Table) -> Grid:
-    columns, rows = table.filled()
+def _grid(table: Table, *, breaks_words: bool = True) -> Grid:
+    """Return a table in rows; where words are not broken it may be wider than the console."""
+    columns, rows = _filled(table)
     grid = Grid(box=SIMPLE_HEAD, show_edge=False)
     for place, column in enumerate(columns):
         numbers = any(is_number(row[place]) for row in rows)
         # Key paths have no spaces to wrap at; what would be cut off is what they differ in.
-        grid.add_column(column.heading, justify="right" if numbers else "left", overflow="fold")
+        words = " ".join([column.heading, *(row[place] for row in rows)]).split()
+        least = None if breaks_words else max(map(cell_len, words), default=None)
+        justify: Literal["left", "right"] = "right" if numbers else "left"
+        grid.add_column(column.heading, justify=justify, overflow="fold", min_width=least)
     for row in rows:
         grid.add_row(*row)
     return grid

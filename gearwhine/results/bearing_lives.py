@@ -1,7 +1,7 @@
 """Rated lives of rolling bearings: quantities of any analysis that loads them, and lives in words."""
 
 from gearwhine.output.quantity import Quantity
-from gearwhine.output.sections import Document
+from gearwhine.output.sections import Document, significant
 
 LONGEST_LIFE = 1e6
 """Life above which the bearing is hardly loaded, and only this bound is shown [h]."""
@@ -11,7 +11,7 @@ def life_in_words(hours: float | None) -> str:
     """Return a life for a table, three digits; empty where there is none."""
     if hours is None:
         return ""
-    return f"{hours:.3g}" if hours <= LONGEST_LIFE else f"> {LONGEST_LIFE:.0e}".replace("e+0", "e")
+    return significant(hours) if hours <= LONGEST_LIFE else f"> {LONGEST_LIFE:.0e}".replace("e+0", "e")
 
 
 def life_quantities(rated: str, name: str, headings: tuple[str, str]) -> tuple[Quantity, ...]:

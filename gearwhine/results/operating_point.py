@@ -230,7 +230,7 @@ SHAFT = (
     Quantity("name", "name", "deflected_shaft", heading="shaft"),
     Quantity("largest_deflection_m", "largest.0", heading="largest [µm]", shown=".4g"),
     Quantity("largest_deflection_at_m", "largest.1", heading="at, from its left end [mm]", shown=".4g"),
-    Quantity("twist_rad", heading="twist [µrad]", shown=".4g"),
+    Quantity("twist_rad", heading="twist [µrad]", shown=".0f"),
     in_file("shaft_position", _PLACE, "at", unit="m"),
     in_file("shaft_z", _PLACE, "z", unit="m"),
     in_file(
@@ -727,12 +727,12 @@ def load_part(solved: "SolvedLoad") -> dict[str, Any]:
 def brief(load: Document) -> Iterator[str]:
     """Yield the operating point in sentences, for the terminal of another analysis."""
     forces = ", ".join(
-        f"{bearing['name']} {math.hypot(*bearing['force_n'][:2]):.4g} N"
+        f"{bearing['name']}: {math.hypot(*bearing['force_n'][:2]):.4g} N"
         for bearing in load["bearings"][:_MOST_BEARINGS]
     )
     more = len(load["bearings"]) - _MOST_BEARINGS
     others = f" and of {more} more bearings" if more > 0 else ""
-    yield f"Operating point {_seats(load)}: radial loads of {forces}{others}"
+    yield f"Operating point {_seats(load)}: radial loads {forces}{others}"
     yield from _misalignments(load)
 
 
@@ -834,9 +834,9 @@ _INFLUENCE_COLUMNS = (
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", _short_step),
     Column("pair", "pair"),
-    Column("misaligned\n[µrad]", "misalignment_rad", "+.3f"),
-    Column("K_Hβ", "k_h_beta", "+.4f"),
-    Column("TE p-p\n[nm]", "transmission_error_peak_to_peak_m", "+.2f"),
+    Column("misaligned\n[µrad]", "misalignment_rad", "+z.3f"),
+    Column("K_Hβ", "k_h_beta", "+z.4f"),
+    Column("TE p-p\n[nm]", "transmission_error_peak_to_peak_m", "+z.2f"),
 )
 
 
@@ -872,10 +872,10 @@ _LINE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", "step_words"),
-    Column("level\n[dB]", "level_db", "+.2f"),
+    Column("level\n[dB]", "level_db", "+z.2f"),
     Column("first order\n[dB]", "first_order_db", shown=_first_order),
     Column("reverse", "reverse_words"),
-    Column("level\n[dB]", "reverse_level_db", "+.2f"),
+    Column("level\n[dB]", "reverse_level_db", "+z.2f"),
 )
 _OFF_NOTE = (
     "(off): the level at a step differs from the first order by more than 1 dB, or by more than 0.3 dB and in sign, "

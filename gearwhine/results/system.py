@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Getter, Part, Quantity, Rows, document_of, in_file
-from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import (
+    Column,
+    Curves,
+    Document,
+    Picture,
+    Section,
+    Table,
+    columns_of,
+    counted,
+    significant,
+    table_of,
+)
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
 from gearwhine.results.mesh_lines import LINE_LIMITS, line_content
@@ -831,7 +842,7 @@ def _peaks(response: Document, modes: list[Document]) -> Iterator[str | Table]:
             rows.append({"what": quantity, "name": name, "peaks": sorted(scaled, key=lambda peak: peak["undamped"])})
 
     def words(peak: Document) -> str:
-        height = "undamped" if peak["undamped"] else f"{peak['amplitude']:.3g}"
+        height = "undamped" if peak["undamped"] else significant(peak["amplitude"])
         return f"{peak['frequency_hz']:.0f} ({height})"
 
     columns = (

@@ -1,6 +1,8 @@
 """Names of lines whose frequency several causes are near."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,7 +10,10 @@ from coupled_cases import coupled
 from reducer_case import reducer
 
 from gearwhine.case import load_case
+from gearwhine.coupling.linear.carrier_sidebands import Sideband
+from gearwhine.coupling.linear.mesh_harmonics import causes_in_words
 from gearwhine.coupling.signals.line_names import line_names
+from gearwhine.figures.machine.system import _place_beside_harmonic
 
 WAVES = np.random.default_rng(2).normal(size=56)
 OUTPUT, STAGE = 19 * 21 / 72 / 56, 19 * 21 / 72
@@ -39,6 +44,18 @@ def test_a_whole_order_of_another_shaft_beside_a_sideband_has_its_own_name(
     machine = coupled(load_case(str(place), [f"gear.{key}.errors.pitch={one}" for key, one in listed.items()]).case)
     (found,) = line_names(machine, [50.0 * order], 4.0)
     assert found.name == name
+
+
+def test_the_harmonic_that_a_line_is_the_fewest_turns_off_comes_first() -> None:
+    names = ("a -> b", "c -> d")
+    meshes = [SimpleNamespace(carrier=None, name=name) for name in names]
+    machine: Any = SimpleNamespace(meshes=meshes, system=SimpleNamespace(contacts=meshes), flanks=lambda n: (n, 0))
+    sidebands = [Sideband((("carrier", turns),)) for turns in (5.0, -1.0)]
+    expected = ["2× c -> d - 1× carrier", "8× a -> b + 5× carrier"]
+    causes = [(0, 8), (1, 2)]
+    assert causes_in_words(machine, causes, sidebands) == expected
+    line: Any = SimpleNamespace(causes=causes, sidebands=sidebands)
+    assert _place_beside_harmonic(line) == "2 -1"
 
 
 def test_of_two_meshes_the_much_nearer_one_is_named_and_both_where_neither_is(tmp_path: Path) -> None:

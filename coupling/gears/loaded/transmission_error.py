@@ -388,6 +388,21 @@ _AT_ONCE = 1000
 _DIGITS = 2.0**40
 
 
+def along_one_pair(contact: ToothContact, mesh: LoadedMesh) -> tuple[LoadedMesh, npt.NDArray[np.bool_]]:
+    """Return the mesh as a pair of teeth runs along its whole path, and where in it that pair is, shape (n, m).
+
+    Where all pairs are alike, those of one mesh period stand for one along its path; else the pairs before and behind
+    have other pitches, and it is the pair that enters at phase 0 of a mesh under the same load.
+    """
+    if contact.hunting_period == 1:
+        return mesh, contact.pairs(mesh.phases).present
+    start, end = contact.contact_range
+    periods = np.arange(math.floor(start), math.ceil(end))
+    phases = (periods[:, None] + mesh.phases % 1.0).ravel()
+    places = contact.pair_positions(phases)
+    return loaded_transmission_error(contact, mesh.force, phases), places.present & (places.entered == 0)
+
+
 def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -> LoadedMesh:
     """Equilibrium of the mesh under a load over the hunting period.
 

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
@@ -70,7 +71,10 @@ def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
         # Over a face it has a picture of its own.
         pressure = pair.pressure if pair.pressure is not None and pair.pressure.ndim == 2 else None
         along = f"{name}: along the path of contact"
-        sheet = draw_contact_path(along, geometry, contact, solved.static, pressure)
+        mesh = pair.along_one_pair[0]
+        if pressure is not None and mesh is not solved.static:
+            pressure = mesh_pressure(geometry, contact, mesh)
+        sheet = draw_contact_path(along, geometry, contact, pair.along_one_pair, pressure)
         yield "path", sheet
     if solved.static.line_loads is not None and loaded:
         sheet = draw_contact_pattern(f"{name}: contact pattern", geometry, contact, solved.static)

@@ -37,7 +37,11 @@ _STEEPEST = 4.0  # specific sliding beyond this is cut off: it has no bound towa
 
 
 def draw_contact_path(
-    title: str, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh, pressure: FloatArray | None = None
+    title: str,
+    pair: GearPairGeometry,
+    contact: ToothContact,
+    along: tuple[LoadedMesh, npt.NDArray[np.bool_]],
+    pressure: FloatArray | None = None,
 ) -> Figure:
     """Draw share of the load, Hertzian pressure and specific sliding over the driver's roll angle.
 
@@ -47,12 +51,12 @@ def draw_contact_path(
         Title of the sheet.
     pair : GearPairGeometry
     contact : ToothContact
-    mesh : LoadedMesh
-        Statics under a load, over one mesh period.
+    along : (LoadedMesh, ndarray of bool, shape (n, m))
+        As of `gearwhine.coupling.gears.loaded.transmission_error.along_one_pair`.
     pressure : ndarray, shape (n, m), or None
-        Pressure of the pairs of `mesh` [Pa], NaN where it has no meaning; None leaves its panel out.
+        Pressure of the pairs of the mesh [Pa], NaN where it has no meaning; None leaves its panel out.
     """
-    present = contact.pairs(mesh.phases).present
+    mesh, present = along
     order = np.argsort(mesh.positions[present], kind="stable")
     positions = mesh.positions[present][order]
     rolls = np.degrees(pair.driver_roll_angle(positions))
@@ -64,7 +68,7 @@ def draw_contact_path(
     if contact.contact_range[0] < 0.0:
         note += "; beyond A and E " + ("the face's other parts" if contact.faces is not None else "corners touch")
     if contact.hunting_period > 1:
-        note += "; of the pairs of the first mesh period, which differ by their pitch"
+        note += "; of teeth 0 of both gears: pairs differ by their pitch"
     figure = sheet(HEAD + _LETTERS + _SHARE + _BETWEEN + middle + _SLIDING + FOOT, title, note)
     share = panel(figure, below + middle, _SHARE)
     share.plot(rolls, 100.0 * mesh.load_shares[present][order], color=BLUE, lw=1.4, label="_share")

@@ -315,7 +315,7 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
             if len(named) == _NAMED_LINES or heights[place] <= least:
                 break
             # Names of lines below and above a harmonic lean apart; one that would stand in another is left out.
-            turns = sum(number for _, number in lines[place].sidebands[0].turns)
+            turns = sum(number for _, number in _nearest_harmonic(lines[place])[1])
             side = 0 if turns == 0 else 1 if turns > 0 else -1
             gap = _NAMES_APART * (high - low)
             if any(abs(frequencies[place] - at) < gap * (1 if side == other else 0.5) for other, at in named):
@@ -340,8 +340,14 @@ def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -
 
 def _place_beside_harmonic(line: ResponseParts) -> str:
     """Mesh harmonic of a line and the turns of carriers that it is off it, such as ``1 +3``."""
-    turns = "".join(f" {number:+g}" for _, number in line.sidebands[0].turns)
-    return f"{line.causes[0][1]}{turns}"
+    harmonic, turns = _nearest_harmonic(line)
+    return f"{harmonic}{''.join(f' {number:+g}' for _, number in turns)}"
+
+
+def _nearest_harmonic(line: ResponseParts) -> tuple[int, tuple[tuple[str, float], ...]]:
+    """Mesh harmonic that a line is the fewest turns of carriers off, and these."""
+    rows = [(harmonic, one.turns) for (_, harmonic), one in zip(line.causes, line.sidebands, strict=True)]
+    return min(rows, key=lambda row: sum(abs(number) for _, number in row[1]))
 
 
 def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:

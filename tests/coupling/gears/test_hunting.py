@@ -19,6 +19,7 @@ from gearwhine.coupling.gears import (
 )
 from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.gears.loaded.transmission_error import (
+    along_one_pair,
     different_periods,
     hunting_period_mesh,
     mesh_period_phases,
@@ -53,6 +54,26 @@ def test_every_phase_is_that_of_the_mesh_by_itself(helix: float, pitched: bool) 
         values = getattr(expected, name)
         np.testing.assert_allclose(getattr(found, name), values, rtol=1e-7, atol=1e-9 * np.abs(values).max())
     assert found.line_loads is None
+
+
+def test_the_load_of_one_pair_has_no_jump_along_its_path() -> None:
+    """Corners take it up and hand it over; the pairs of one mesh period, which differ by their pitch, do not join."""
+    contact = replace(contact_of(), pitch_gaps=6e-6 * np.sin(np.arange(17 * 22)))
+    mesh = loaded_transmission_error(contact, FORCE, mesh_period_phases(contact, 2000))
+    along, own = along_one_pair(contact, mesh)
+    jumps = []
+    for statics, present in ((along, own), (mesh, contact.pairs(mesh.phases).present)):
+        order = np.argsort(statics.positions[present])
+        jumps.append(np.abs(np.diff(statics.load_shares[present][order])).max())
+    assert jumps[0] < 0.02 < 0.05 < jumps[1]
+    shares = along.load_shares[own]
+    assert shares[[0, -1]] == pytest.approx(0.0, abs=1e-3)
+    # At every phase it is what the law gives it there.
+    for phase in (0.3, 1.2, 1.5):
+        states = contact.pairs([phase])
+        alone = loaded_transmission_error(contact, FORCE, [phase])
+        expected = alone.load_shares[states.entered == 0]
+        assert np.interp(phase, along.positions[own], shares) == pytest.approx(expected.item(), abs=2e-3)
 
 
 def test_damage_makes_few_mesh_periods_differ() -> None:

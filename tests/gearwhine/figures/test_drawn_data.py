@@ -16,6 +16,7 @@ from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.analyses.signature import SolvedSignature, solve_signature
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.gears.loaded.transmission_error import along_one_pair
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
@@ -258,7 +259,7 @@ def test_the_driver_slides_backwards_where_it_begins() -> None:
     (pair,) = solve_gears(case.parts)
     mesh = pair.static
     pressure = mesh_pressure(pair.geometry, pair.contact, mesh)
-    figure = draw_contact_path("p", pair.geometry, pair.contact, mesh, pressure)
+    figure = draw_contact_path("p", pair.geometry, pair.contact, along_one_pair(pair.contact, mesh), pressure)
     _, press, sliding = figure.axes
     curves = {line.get_label(): np.asarray(line.get_ydata(), dtype=float) for line in sliding.get_lines()}
     driver, driven = (curve[np.isfinite(curve)] for curve in (curves["driver"], curves["driven gear"]))

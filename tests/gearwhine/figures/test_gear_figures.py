@@ -27,6 +27,7 @@ from gearwhine.coupling.gears import (
 )
 from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.gears.loaded.transmission_error import along_one_pair
 from gearwhine.figures import draw_gear_pairs, save, save_all
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern, over_flank
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
@@ -161,8 +162,9 @@ def test_a_harris_map_has_a_curve_for_each_torque() -> None:
 
 
 def test_along_the_path(tmp_path: Path) -> None:
-    pressure = mesh_pressure(PAIR, contact(corners=True), mesh(corners=True))
-    figure = draw_contact_path("p", PAIR, contact(corners=True), mesh(corners=True), pressure)
+    law = contact(corners=True)
+    pressure = mesh_pressure(PAIR, law, mesh(corners=True))
+    figure = draw_contact_path("p", PAIR, law, along_one_pair(law, mesh(corners=True)), pressure)
     share, press, sliding = figure.axes
     ((rolls, shares),) = lines(share, "_share")
     assert (np.diff(rolls) >= 0.0).all()
@@ -176,7 +178,7 @@ def test_along_the_path(tmp_path: Path) -> None:
         assert float(np.interp(pitch, x, y)) == pytest.approx(0.0, abs=1e-4)
     assert "corners" in note(figure)
     assert [text.get_text() for text in share.texts] == list("ABCDE")
-    assert len(draw_contact_path("p", PAIR, contact(), mesh()).axes) == 2
+    assert len(draw_contact_path("p", PAIR, contact(), along_one_pair(contact(), mesh())).axes) == 2
     assert (tmp_path / save(figure, tmp_path / "path.png")).stat().st_size > 20_000
 
 

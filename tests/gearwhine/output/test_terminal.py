@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from gearwhine.output.sections import Column, Section, Table, rms_of_band
+from gearwhine.output.sections import Column, Section, Table, rms_of_band, significant
 from gearwhine.output.terminal import show_section, shown_by
 from gearwhine.results import comparison, housing, run, system
 
@@ -64,6 +64,8 @@ def _comparison(gap: float | None) -> Document:
 def test_brackets_are_printed_as_they_stand() -> None:
     told = _said(run.sections, _run(), timed=True)
     assert "rms [m/s²]" in told
+    assert "s → p" in _said(lambda _: (Section("", ("s -> p",)),), {})
+    assert (significant(2824.0), significant(0.01234)) == ("2820", "0.0123")
     assert rms_of_band([900.0, 800.0]) == "rms"
     assert "rms 0–1500 Hz [m/s²]" in _said(run.sections, _run() | {"trusted_below_hz": 1500.0})
     assert "case [bold] :warning: [/nothing]" in told
@@ -189,6 +191,10 @@ def test_rows_of_a_table_too_wide_for_the_terminal_become_columns() -> None:
         assert isinstance(console.file, io.StringIO)
         return console.file.getvalue().splitlines()
 
+    # A file has whole words, however many columns they take; a terminal its own width.
+    many = Table(tuple(Column(f"displacement {number}", "name") for number in range(12)), rows)
+    lines = _said(lambda _: (Section("", (many,)),), {}).splitlines()
+    assert (lines[0].split().count("displacement"), lines[3].split()) == (12, 12 * ["pinion"])
     wide, narrow = drawn(200), drawn(80)
     assert sum("quantity 0 [mm]" in line and "quantity 7 [mm]" in line for line in wide) == 1
     assert not any("…" in line or len(line.rstrip()) > 80 for line in narrow)

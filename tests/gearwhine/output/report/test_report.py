@@ -293,7 +293,7 @@ def test_a_machine_that_turns_the_other_way_drives_with_the_same_power(speed: in
     assert f"{speed * torque * 71.77:+.4g} N·m on input" in sentence
 
 
-@pytest.mark.parametrize(("hours", "said"), [(None, ""), (9.1234e5, "9.12e+05"), (2e44, "> 1e6"), (40.0, "40")])
+@pytest.mark.parametrize(("hours", "said"), [(None, ""), (9.1234e5, "912000"), (2e44, "> 1e6"), (40.0, "40")])
 def test_a_life_of_a_bearing_without_load_is_no_number(hours: float | None, said: str) -> None:
     assert life_in_words(hours) == said
 
