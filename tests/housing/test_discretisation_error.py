@@ -64,6 +64,7 @@ def test_rigid_modes_have_no_error_and_fixtures_bear_tractions(block_of: BlockOf
     assert errors is not None
     assert (errors[:6] == 0.0).all()
     assert (errors[6:] > 0.0).all()
+    assert errors == pytest.approx(_estimates(mesh, free.modes), rel=1e-6)
     low = ((-1.0, -1.0, -1.0), (1e-6, 1.0, 1.0))
     clamped = Housing(mesh, STEEL, fixtures=[Support("wall", box=low, fixed=(True, True, True))])
     whole, bare = clamped.matrices(), clamped.free_matrices()
