@@ -64,6 +64,23 @@ def arrays(result: TransientResult) -> dict[str, Any]:
     return {name: getattr(result, name) for name in (*names, "contact_loss")}
 
 
+def test_bit_for_bit() -> None:
+    system = two_masses(pair_contact(1.6, damping=0.05), 0.45, errors=((0.2, 0.3, 0.1),))
+    one, two = (simulate(system, SETTINGS, all_rows(system)) for _ in range(2))
+    for name, values in arrays(one).items():
+        np.testing.assert_array_equal(values, arrays(two)[name], err_msg=name)
+    assert one.energy == two.energy
+    assert (one.steps, one.rejected, one.error) == (two.steps, two.rejected, two.error)
+
+
+def test_does_not_touch_its_arguments() -> None:
+    system = two_masses(pair_contact(1.6), 0.45)
+    start = (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
+    kept = [array.copy() for array in start]
+    simulate(system, SETTINGS, all_rows(system), initial=start)
+    np.testing.assert_array_equal(start, kept)
+
+
 def test_grid() -> None:
     system = two_masses(pair_contact(1.6), 0.45)
     for duration, interval, count in ((60.0, 0.1, 400), (60.0, 7.0, 6), (60.0, 40.0, 1), (60.0, 41.0, 1)):
@@ -75,6 +92,16 @@ def test_grid() -> None:
             assert getattr(result, name).shape == (count, 2)
         assert result.force.shape == result.compression.shape == (count, 1)
         assert result.mean_force.shape == result.peak_force.shape == result.contact_loss.shape == (1,)
+
+
+def test_samples_do_not_depend_on_where_they_start() -> None:
+    """The rows of a later record are those of an earlier one, to the tolerance of the steps."""
+    system = two_masses(pair_contact(1.6), 0.45)
+    late = simulate(system, SETTINGS, all_rows(system))
+    early = simulate(system, replace(SETTINGS, record_from=0.0), all_rows(system))
+    np.testing.assert_allclose(early.times[200:], late.times, rtol=1e-12)
+    np.testing.assert_allclose(early.displacement[200:], late.displacement, atol=2e-3 * np.abs(late.displacement).max())
+    np.testing.assert_allclose(early.velocity[200:], late.velocity, atol=2e-2 * np.abs(late.velocity).max())
 
 
 def test_samples_fit_each_other() -> None:

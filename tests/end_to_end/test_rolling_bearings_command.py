@@ -57,6 +57,13 @@ def friswell(journal: str = "50 mm", **bearing: Any) -> dict[str, Any]:
     return document
 
 
+def test_the_iso_bearing_under_a_case() -> None:
+    case = parse_case(friswell("30 mm", stiffness={"rolling": ISO}, load={"x": "1 kN"}))
+    state = case.parts.rolling_states[case.bearing[0].name]
+    assert state is not None
+    assert 1e6 * state.displacement[0] == pytest.approx(15.110, rel=1e-4)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "rolling",
@@ -192,6 +199,15 @@ def test_a_rolling_bearing_stands_on_a_pedestal_with_damping_over_speed() -> Non
     turning = bearing.at_speed(1000.0)
     np.testing.assert_array_equal(turning.spatial_stiffness, state.stiffness)
     np.testing.assert_array_equal(turning.radial_damping, np.diag([300.0, 50.0]))
+
+
+def test_damping_by_matrix_damps_tilting() -> None:
+    matrix = np.diag([1e6, 1e6, 0.0, 1e4, 1e4])
+    tilting = np.diag([0.0, 0.0, 0.0, 50.0, 50.0])
+    case = parse_case(friswell(stiffness={"matrix": matrix.tolist()}, damping={"matrix": tilting.tolist()}))
+    assert case.parts.bearings_on("shaft")[0].spatial_damping[4, 4] == 50.0
+    (solved,) = solve_rotors(case)
+    assert solved.whirl[0].damping_ratios.min() > 0.0
 
 
 def test_a_bearing_that_its_load_does_not_hold_is_the_users_to_mend(

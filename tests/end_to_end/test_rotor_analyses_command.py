@@ -6,6 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
+
+from gearwhine.output.manifest import opened_dataset
+
+pytestmark = pytest.mark.rendered
 
 # A slender shaft, almost without inertia, between two discs; either end stands in a soft bearing.
 SHAFT = """
@@ -107,6 +112,27 @@ def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(solve
     expected = 3.0 * RIGHT / (LEFT + RIGHT) / 0.02
     assert response["probes"][0]["largest_torque_n_m"] == pytest.approx(expected, rel=1e-2)
     assert solved_rotor(shaft)["torsional_response"] is None
+
+
+@pytest.mark.slow
+def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_path: Path) -> None:
+    settings = ("--set", f"rotor_analysis.torsional_response={{{TORQUE},{RANGE}}}")
+    outcome = gearwhine("rotors", shaft, "-o", "out", *settings)
+    assert outcome.code == 0, outcome.err
+    assert "Response to torques from 10 to 100 Hz" in outcome.out
+    with opened_dataset("out/results.nc") as data:
+        assert data.torsion_angle.dims == ("torsion_probe", "torsion_step")
+        assert data.torsion_torque.attrs["units"] == "N m"
+        assert data.torsion_frequency.values[0] == pytest.approx(np.linspace(10.0, 100.0, 10))
+        assert data.torsion_angle.sel(torsion_probe="shaft: torque 1").values[0] == pytest.approx(
+            abs(two_discs(10.0, 0.01)[0]), rel=1e-4
+        )
+        # Of whirl, the moment at a free end vanishes, and that of the first mode does not in the middle.
+        moment = data.rotor_whirl_moment.values[0]
+        assert moment.shape == (4, 101)
+        assert np.abs(moment[:, 50]).min() > 0.0
+    with Image.open(tmp_path / "out" / "rotor-shaft-torsional-response.png") as image:
+        assert len(image.convert("RGB").getcolors(maxcolors=1 << 24) or ()) > 50
 
 
 def test_orders_meet_whirl_at_their_own_speeds(solved_rotor: Any, rotor_curves: Any, shaft: str) -> None:

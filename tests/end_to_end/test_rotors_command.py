@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
+from gearwhine.output.manifest import opened_dataset
 
 RPM = math.pi / 30.0
 
@@ -166,6 +167,45 @@ def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(
     assert solved_rotor(jeffcott)["unbalance_response"] is None
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_clockwise_rotor_lags_as_its_mirror_image(solved_rotor: Any, jeffcott: str, sense: int) -> None:
+    """The mirrored disc's unbalance and probe stand at the negative angles: its probe reads the same at all times."""
+    response = solved_rotor(
+        jeffcott,
+        f"operation.speed={2000 * sense} rpm",
+        f"rotor.shaft.unbalance=[{{at='50 mm', moment='1e-4 kg*m', phase='{30 * sense} deg'}}]",
+        "rotor_analysis.unbalance_response={probes=[{name='x', rotor='shaft', at='50 mm'}, "
+        f"{{name='y', rotor='shaft', at='50 mm', angle='{90 * sense} deg'}}]}}",
+    )["unbalance_response"]
+    speed = 2000.0 * RPM
+    motion = 1.0 / complex(2 * 2e6 - MASS * speed**2, 2 * 200.0 * speed)
+    lag = -math.degrees(np.angle(motion)) - 30.0
+    lags = [probe["operation_phase_lag_deg"] for probe in response["probes"]]
+    assert lags == pytest.approx([lag % 360.0, (lag + 90.0) % 360.0], abs=0.01)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_response_over_speed_is_in_the_sense_of_operation(solved_rotor: Any, jeffcott: str, sense: int) -> None:
+    """m e Ω² / (2k − M Ω² + 2i (c Ω − q)): cross-coupling q feeds forward whirl of one sense, and damps the other's."""
+    q = 2e4
+    stiffness = f"{{xx='2e6 N/m', yy='2e6 N/m', xy='{q} N/m', yx='{-q} N/m'}}"
+    (probe,) = solved_rotor(
+        jeffcott,
+        f"operation.speed={5500 * sense} rpm",
+        "bearing.*.speeds=",
+        f"bearing.*.stiffness={stiffness}",
+        "rotor.shaft.unbalance=[{at='50 mm', moment='1e-4 kg*m'}]",
+        "rotor_analysis.unbalance_response={speed=['5500 rpm', '500 rpm'], "
+        "probes=[{name='x', rotor='shaft', at='50 mm'}]}",
+    )["unbalance_response"]["probes"]
+    speed = sense * 5500.0 * RPM
+    motion = 1e-4 * speed**2 / complex(2 * 2e6 - MASS * speed**2, 2.0 * (200.0 * speed - q))
+    assert probe["operation_amplitude_m"] == pytest.approx(abs(motion), rel=1e-3)
+    assert probe["largest_amplitude_m"] == pytest.approx(abs(motion), rel=1e-3)
+    assert probe["largest_at_rpm"] == pytest.approx(sense * 5500.0)
+
+
 @pytest.mark.parametrize("sense", [1, -1])
 def test_phase_of_a_clockwise_rotor_in_the_system_is_that_of_its_signal(
     tmp_path: Path, jeffcott: str, sense: int
@@ -218,6 +258,41 @@ def test_the_stiffness_map_of_a_rigid_rotor_rises_with_the_root_of_the_stiffness
     assert solved_rotor(jeffcott)["stiffness_map"] is None
 
 
+def test_the_results_file_holds_diagram_and_response_with_units(gearwhine: Any) -> None:
+    quick = ("--set", "rotor_analysis.modes=3", "--set", "sweep={speed=['0 rpm', '1000 rpm', '2000 rpm']}")
+    document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out", *quick).document
+    (rotor,) = document["rotors"]
+    with opened_dataset("out/results.nc") as data:
+        assert data.campbell_frequency.dims == ("rotor", "campbell_step", "whirl_branch")
+        assert data.campbell_frequency.attrs["units"] == "Hz"
+        # The document has the frequencies at each speed, rising; the diagram has them by branch.
+        for whirl, row in zip(rotor["whirl"][-3:], data.campbell_frequency.values[0], strict=True):
+            assert np.sort(row)[:3] == pytest.approx(whirl["frequency_hz"], rel=1e-6)
+        reading, told = data.sel(probe="shaft: unbalance 1"), rotor["unbalance_response"]["probes"][1]
+        assert float(reading.probe_amplitude.max()) == told["largest_amplitude_m"]
+        largest = int(np.argmax(reading.probe_amplitude.values))
+        assert float(reading.response_speed[largest]) == told["largest_at_rpm"]
+
+
+def test_margins_are_of_the_critical_speeds_beside_operation(solved_rotor: Any) -> None:
+    rotor = solved_rotor("friswell-rotor")
+    expected = np.array(rotor["critical_speeds_rpm"]) / 4000.0 - 1.0
+    assert rotor["critical_margins"] == pytest.approx(expected.tolist(), rel=1e-9)
+    assert solved_rotor("friswell-rotor", "operation=")["critical_margins"] is None
+
+
+def test_as_many_lateral_modes_are_shown_as_are_asked_for(solved_rotor: Any) -> None:
+    rotor = solved_rotor("friswell-rotor", "rotor_analysis.modes=4")
+    assert len(rotor["lateral_hz"]) == len(rotor["whirl"][0]["frequency_hz"]) == 4
+    assert rotor["certificate"]["complete"] is True
+
+
+def test_a_bow_is_for_the_coupled_system_too(gearwhine: Any) -> None:
+    bow = ("--set", "rotor.shaft.bow=[{at='0.5 m', amplitude='10 um'}, {at='0 m', amplitude=0}]")
+    for command in ("check", "rotors", "system"):
+        assert gearwhine(command, "friswell-rotor", "-q", *bow).code == 0
+
+
 def test_the_coupled_system_keeps_what_the_rotor_says(gearwhine: Any) -> None:
     def coordinates(*settings: str) -> int:
         changes = [part for setting in settings for part in ("--set", setting)]
@@ -228,6 +303,24 @@ def test_the_coupled_system_keeps_what_the_rotor_says(gearwhine: Any) -> None:
     # The shaft's bending modes lie at 1.4, 3.1, 4.2, 7.3, 12.6 kHz, its elastic torsional ones at 8.0 and 9.1 kHz.
     low, high = (coordinates(f"rotor.input.frequency_limit='{limit} kHz'") for limit in (12, 14))
     assert high - low == 2
+
+
+def test_the_overhung_fan_has_all_of_it(solved_rotor: Any) -> None:
+    """Its bearings carry what it weighs, the fan side's more than the impeller; its modes are all found."""
+    few = (
+        "rotor_analysis.speed=['1000 rpm', '1400 rpm', '1800 rpm']",
+        "rotor_analysis.stiffness_map.points=2",
+        "rotor_analysis.unbalance_response.speed=['1000 rpm', '2000 rpm']",
+        "rotor_analysis.modes=4",
+    )
+    fan = solved_rotor("overhung-fan", *few)
+    loads = {bearing["name"]: bearing["load_n"][1] for bearing in fan["static"]["bearings"]}
+    assert sum(loads.values()) == pytest.approx(-fan["mass_kg"] * 9.80665, rel=1e-9)
+    assert loads["fan side"] < -250.0 * 9.80665
+    assert fan["static"]["largest_deflection_at_m"] == 0.0
+    assert fan["certificate"]["complete"] is True
+    assert [len(row) for row in fan["stiffness_map"]["forward_critical_speeds_rpm"]] == [4, 4]
+    assert len(fan["unbalance_response"]["probes"]) == 5
 
 
 def test_check_says_what_a_rotor_and_its_bearings_are_made_of(gearwhine: Any) -> None:
