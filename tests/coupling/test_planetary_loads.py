@@ -160,16 +160,16 @@ def test_a_planet_that_loses_contact_leaves_its_load_to_the_others() -> None:
     assert np.count_nonzero(coupled_modes(system).frequencies_hz < 1e-3) == 2
 
 
-def _under_a_force() -> Machine:
-    """A slow set whose carrier is pulled down; bearings of carrier and sun are stiffer across than along the pull."""
-    base, softer = _machine(3, shafts=STIFF), np.diag([1.0, 0.3, 1.0, 1.0, 1.0])
+def _under_a_force(shafts: ShaftMaterial = STIFF, speed: float = 10.0) -> Machine:
+    """A set whose carrier is pulled down; bearings of carrier and sun are stiffer across than along the pull."""
+    base, softer = _machine(3, shafts=shafts), np.diag([1.0, 0.3, 1.0, 1.0, 1.0])
     bearings = [
         replace(one, bearing=replace(one.bearing, stiffness=softer * one.bearing.stiffness))
         if one.rotor in ("carrier", "sun")
         else one
         for one in base.bearings
     ]
-    return replace(base, bearings=bearings, forces=[ShaftForce("carrier", 0.05, (0.0, -6000.0, 0.0))], speed=10.0)
+    return replace(base, bearings=bearings, forces=[ShaftForce("carrier", 0.05, (0.0, -6000.0, 0.0))], speed=speed)
 
 
 def test_mean_forces_are_the_means_of_statics_over_a_turn_of_the_carrier() -> None:
@@ -200,3 +200,15 @@ def test_mean_sharing_over_time_is_that_of_statics(count: int, floating: bool) -
     motion = machine.simulate(revolutions=12, discard=6)
     means = np.array([force.mean() for name, force in motion.histories.mesh_force.items() if name.startswith("sun")])
     assert means / means.sum() == pytest.approx(_shares(machine), rel=0.01)
+
+
+@pytest.mark.slow
+def test_mean_forces_of_a_motion_past_a_force_are_those_of_linear_analyses() -> None:
+    """Over two turns of the carrier, from the equilibrium at its first angle on."""
+    machine = _under_a_force(STEEL, 150.0)
+    forces = machine.simulate(revolutions=9, discard=0, points_per_revolution=512).histories.mesh_force
+    means = [mean.force for mean in mean_meshes(machine.assembled.system) if mean]
+    drive = [force for name, force in forces.items() if "back" not in name]
+    assert [force.mean() for force in drive] == pytest.approx(means, rel=2e-3)
+    start = [pair.force for pair in machine.operating_point().pairs]
+    assert [force[0] for force in drive] == pytest.approx(start, rel=0.01)
