@@ -149,13 +149,13 @@ class _RitzSpace:
 
     def extend(self, block: FloatArray) -> bool:
         """Extend the space by the part of a block of shape (n, width) outside it; return whether there is any."""
-        basis = self._vectors[:, : self.size]
+        basis, algebra = self._vectors[:, : self.size], self._algebra
         block = block / np.linalg.norm(block, axis=0)
         for _ in range(2):
-            self._algebra.subtract(block, basis, self._algebra.products(basis, block))
-            values, turn = linalg.eigh(self._algebra.products(block, block))
+            algebra.subtract(block, basis, algebra.products(basis, block))
+            values, turn = linalg.eigh(algebra.products(block, block))
             outside = values > _WITHIN
-            block = self._algebra.combined(block, turn[:, outside] / np.sqrt(values[outside]))
+            block = algebra.combined(block, turn[:, outside] / np.sqrt(values[outside]))
             if not outside.any():
                 return False
             if values[0] > _WELL_OUTSIDE:
@@ -169,11 +169,10 @@ class _RitzSpace:
     def _multiply(self, columns: slice) -> None:
         """Products of some vectors with those before them and with themselves."""
         vectors = self._vectors[:, : columns.stop]
-        for gram, product in zip(self._gram, self._products(vectors[:, columns]), strict=True):
-            shares = self._algebra.products(vectors, product)
-            own = shares[columns]
-            shares[columns] = 0.5 * (own + own.T)
-            gram[: columns.stop, columns], gram[columns, : columns.stop] = shares, shares.T
+        shares = self._algebra.products(vectors, *self._products(vectors[:, columns]))
+        for gram, share in zip(self._gram, np.hsplit(shares, 2), strict=True):
+            share[columns] = 0.5 * (share[columns] + share[columns].T)
+            gram[: columns.stop, columns], gram[columns, : columns.stop] = share, share.T
 
     def shrink(self, count: int) -> None:
         """Keep the 2 ``count`` lowest Ritz vectors, and what rounding takes from the first ``count`` of them."""
