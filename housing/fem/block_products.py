@@ -144,7 +144,9 @@ class BlockProduct:
         for few in pieces:
             motions[self._free[few], :width] = columns[few]
         forces, inertia = np.empty_like(motions), np.empty_like(motions)
-        at_once([partial(_write_products, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
+        arguments: list[tuple[Any, ...]] = [(*share, *self._blocks, motions, forces, inertia) for share in self._shares]
+        at_once([partial(_write_products, *each) for each in arguments])
+        del arguments
         for product in (forces, inertia):
             # The free degrees of freedom ascend: none is overwritten before it is read.
             for few in pieces:

@@ -88,8 +88,13 @@ def davidson_modes(
     for _ in range(_STEPS + 8 * count // width):
         if space.is_full(block.shape[1]):
             space.shrink(count)
-        if not space.extend(solve_approximately(block)):
+        block = solve_approximately(block)  # the forces are given up: each block counts in the peak of the memory
+        outside = space.outside(block)
+        del block
+        if not outside.shape[1]:
             break
+        space.extend(outside)
+        del outside
         values, mixture = space.ritz(count)
         scales = np.abs(values) + abs(values[-1]) + floor
         block = np.empty((size, 0))
@@ -147,24 +152,26 @@ class _RitzSpace:
         """V y, shape (n, columns of y)."""
         return self._algebra.combined(self._vectors[:, : self.size], mixture)
 
-    def extend(self, block: FloatArray) -> bool:
-        """Extend the space by the part of a block of shape (n, width) outside it; return whether there is any."""
+    def outside(self, block: FloatArray) -> npt.NDArray[np.float32]:
+        """Orthonormal basis of the part of a block, shape (n, width), outside the space; the block is overwritten."""
         basis, algebra = self._vectors[:, : self.size], self._algebra
-        block = block / np.linalg.norm(block, axis=0)
-        for _ in range(2):
+        block /= np.linalg.norm(block, axis=0)
+        for last in (False, True):
             algebra.subtract(block, basis, algebra.products(basis, block))
             values, turn = linalg.eigh(algebra.products(block, block))
-            outside = values > _WITHIN
-            block = algebra.combined(block, turn[:, outside] / np.sqrt(values[outside]))
-            if not outside.any():
-                return False
-            if values[0] > _WELL_OUTSIDE:
+            chosen = values > _WITHIN
+            mixture = turn[:, chosen] / np.sqrt(values[chosen])
+            if last or not chosen.any() or values[0] > _WELL_OUTSIDE:
                 break
-        kept = slice(self.size, self.size + block.shape[1])
-        self._vectors[:, kept] = block
-        self.size = kept.stop
-        self._multiply(kept)
-        return True
+            block = algebra.combined(block, mixture)
+        return algebra.combined(block, mixture).astype(np.float32)
+
+    def extend(self, vectors: npt.NDArray[np.float32]) -> None:
+        """Extend the space by orthonormal vectors outside it, shape (n, r)."""
+        added = slice(self.size, self.size + vectors.shape[1])
+        self._vectors[:, added] = vectors
+        self.size = added.stop
+        self._multiply(added)
 
     def _multiply(self, columns: slice) -> None:
         """Products of some vectors with those before them and with themselves."""
