@@ -146,13 +146,9 @@ _ROWS_AT_ONCE = 2**12  # rows converted to double precision
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
-def _double(rows: npt.NDArray[Any]) -> FloatArray:
-    return np.asarray(rows, dtype=np.float64)
-
-
-def _pieces(rows: slice, block: npt.NDArray[Any]) -> list[slice]:
-    """Rows of a block, a few at a time where they are converted to double precision."""
-    if block.dtype == np.float64:
+def _pieces(rows: slice, block: npt.NDArray[Any], other: npt.NDArray[Any]) -> list[slice]:
+    """Rows of a block, a few at a time where they are converted to the precision of its factor."""
+    if block.dtype == other.dtype:
         return [rows]
     begins = range(rows.start, rows.stop, _ROWS_AT_ONCE)
     return [slice(begin, min(begin + _ROWS_AT_ONCE, rows.stop)) for begin in begins]
@@ -161,7 +157,7 @@ def _pieces(rows: slice, block: npt.NDArray[Any]) -> list[slice]:
 class BlockAlgebra:
     """Products of block vectors, matrices with many rows and few columns, by shares of their rows.
 
-    The left factors, bases of many columns, may be in single precision; sums and products are in double.
+    A basis may be in single precision; sums and products are in the precision of its factor.
 
     The number of shares does not depend on the threads, so that sums over the rows are rounded alike.
 
@@ -178,31 +174,35 @@ class BlockAlgebra:
         self._threads = min(threads, _SHARES) if rows > _ROWS_WORTH_A_THREAD else 1
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
-    def products(self, left: npt.NDArray[Any], right: FloatArray) -> FloatArray:
-        """LᵀR, shape (columns of L, columns of R)."""
+    def products(self, left: npt.NDArray[Any], *right: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """LᵀR, shape (columns of L, columns of R); of several R side by side."""
 
-        def multiply(rows: slice) -> FloatArray:
-            return sum((_double(left[few]).T @ right[few] for few in _pieces(rows, left)), np.zeros(()))
+        def multiply(rows: slice) -> Any:
+            total: Any = 0.0
+            for few in _pieces(rows, left, right[0]):
+                both = right[0][few] if len(right) == 1 else np.concatenate([one[few] for one in right], axis=1)
+                total = total + np.asarray(left[few], dtype=both.dtype).T @ both
+            return total
 
         return np.asarray(sum(self._each(multiply)))
 
-    def subtract(self, block: FloatArray, basis: npt.NDArray[Any], parts: FloatArray) -> None:
+    def subtract(self, block: npt.NDArray[Any], basis: npt.NDArray[Any], parts: npt.NDArray[Any]) -> None:
         """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
-            for few in _pieces(rows, basis):
+            for few in _pieces(rows, basis, parts):
                 # One column after another: half the time of basis[few] @ parts.
-                block[few] -= (parts.T @ _double(basis[few]).T).T
+                block[few] -= (parts.T @ np.asarray(basis[few], dtype=parts.dtype).T).T
 
         self._each(take)
 
-    def combined(self, block: npt.NDArray[Any], mixture: FloatArray) -> FloatArray:
+    def combined(self, block: npt.NDArray[Any], mixture: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """B m, shape (rows, columns of m)."""
-        result = np.empty((len(block), mixture.shape[1]))
+        result = np.empty((len(block), mixture.shape[1]), dtype=mixture.dtype)
 
         def multiply(rows: slice) -> None:
-            for few in _pieces(rows, block):
-                result[few] = _double(block[few]) @ mixture
+            for few in _pieces(rows, block, mixture):
+                result[few] = np.asarray(block[few], dtype=mixture.dtype) @ mixture
 
         self._each(multiply)
         return result
@@ -214,8 +214,8 @@ class BlockAlgebra:
         """
 
         def mix(rows: slice) -> None:
-            for few in _pieces(rows, block):
-                mixed = _double(block[few]) @ mixture
+            for few in _pieces(rows, block, mixture):
+                mixed = block[few].astype(np.float64) @ mixture
                 block[few, : mixed.shape[1]] = mixed
                 mixed[:, :fine] -= block[few, :fine]
                 block[few, mixed.shape[1] : mixed.shape[1] + fine] = 2.0**24 * mixed[:, :fine]

@@ -16,10 +16,9 @@ The Ritz vectors are V y, with
 
     (VᵀK V) y = θ (VᵀM V) y,
 
-where both matrices are products in double precision of the vectors as they are kept, so that V need not be orthonormal.
-It is well enough conditioned: r is orthogonal to S, and F⁻¹ r is so in the product of F. A block that yet lies almost
-in S is orthogonalised. Where S is full, it keeps the lowest Ritz vectors; the rounding of the wanted ones to single
-precision is kept in vectors of its own.
+where both matrices are products in double precision of the vectors as they are kept. These are orthonormal but for
+their rounding, without M, which is enough for the small problem to be well conditioned. Where S is full, it keeps the
+lowest Ritz vectors; the rounding of the wanted ones to single precision is kept in vectors of its own.
 
 A block has sixteen columns, since the direct solver takes as long for eight.
 """
@@ -37,9 +36,8 @@ from gearwhine.numerics.arrays import FloatArray
 _BLOCK = 16
 _STEPS = 40  # beside those of eight times the number of modes
 _CLOSE = 1e-7  # residual below which every correction gains, unless rounding ends it
-_WELL_OUTSIDE = 1e-6  # least squared part of a block outside the space, and outside itself, that is taken as it is
-_DEPENDENT = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
-_TIMES = 3  # a block is orthogonalised before it counts as lying in the space
+_WITHIN = 1e-12  # squared length of a vector outside the space, below which it is the rounding of a solution
+_WELL_OUTSIDE = 1e-8  # the same, above which one projection leaves it orthogonal enough
 
 
 def davidson_modes(
@@ -90,8 +88,13 @@ def davidson_modes(
     for _ in range(_STEPS + 8 * count // width):
         if space.is_full(block.shape[1]):
             space.shrink(count)
-        if not space.extend(solve_approximately(block)):
+        block = solve_approximately(block)  # the forces are given up: each block counts in the peak of the memory
+        outside = space.outside(block)
+        del block
+        if not outside.shape[1]:
             break
+        space.extend(outside)
+        del outside
         values, mixture = space.ritz(count)
         scales = np.abs(values) + abs(values[-1]) + floor
         block = np.empty((size, 0))
@@ -143,52 +146,44 @@ class _RitzSpace:
     def ritz(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Lowest Ritz values, up to ``count`` of them, and their vectors in terms of V, one in each column."""
         stiffness, mass = self._gram[:, : self.size, : self.size]
-        # As if every vector were of length 1.
-        scale = 1.0 / np.sqrt(mass.diagonal())
-        both = np.outer(scale, scale)
-        values, mixture = linalg.eigh(stiffness * both, mass * both, subset_by_index=(0, min(count, self.size) - 1))
-        return values, scale[:, None] * mixture
+        return linalg.eigh(stiffness, mass, subset_by_index=(0, min(count, self.size) - 1))
 
     def combined(self, mixture: FloatArray) -> FloatArray:
         """V y, shape (n, columns of y)."""
         return self._algebra.combined(self._vectors[:, : self.size], mixture)
 
-    def extend(self, block: FloatArray) -> bool:
-        """Extend the space by a block of shape (n, width), or the part of it outside; return whether there is any."""
-        basis, mass = self._vectors[:, : self.size], self._gram[1, : self.size, : self.size]
-        for _ in range(_TIMES):
-            block = block / np.linalg.norm(block, axis=0)
-            kept = slice(self.size, self.size + block.shape[1])
-            self._vectors[:, kept] = block
-            self._multiply(kept)
-            within, own = self._gram[1, : self.size, kept], self._gram[1, kept, kept]
-            parts = linalg.solve(mass, within, assume_a="pos") if self.size else within
-            lengths = np.sqrt(own.diagonal())
-            if np.linalg.eigvalsh((own - within.T @ parts) / np.outer(lengths, lengths))[0] > _WELL_OUTSIDE:
-                self.size = kept.stop
-                return True
-            block = self._vectors[:, kept].astype(np.float64)
-            self._algebra.subtract(block, basis, parts)
-            lengths = np.linalg.norm(block, axis=0)
-            block = block[:, lengths > 0.0] / lengths[lengths > 0.0]
-            values, turn = np.linalg.eigh(self._algebra.products(block, block))
-            block = self._algebra.combined(block, turn[:, values > _DEPENDENT])
-            if not block.shape[1]:
+    def outside(self, block: FloatArray) -> npt.NDArray[np.float32]:
+        """Orthonormal basis of the part of a block, shape (n, width), outside the space; the block is overwritten."""
+        basis, algebra = self._vectors[:, : self.size], self._algebra
+        block /= np.linalg.norm(block, axis=0)
+        for last in (False, True):
+            algebra.subtract(block, basis, algebra.products(basis, block))
+            values, turn = linalg.eigh(algebra.products(block, block))
+            chosen = values > _WITHIN
+            mixture = turn[:, chosen] / np.sqrt(values[chosen])
+            if last or not chosen.any() or values[0] > _WELL_OUTSIDE:
                 break
-        return False
+            block = algebra.combined(block, mixture)
+        return algebra.combined(block, mixture).astype(np.float32)
+
+    def extend(self, vectors: npt.NDArray[np.float32]) -> None:
+        """Extend the space by orthonormal vectors outside it, shape (n, r)."""
+        added = slice(self.size, self.size + vectors.shape[1])
+        self._vectors[:, added] = vectors
+        self.size = added.stop
+        self._multiply(added)
 
     def _multiply(self, columns: slice) -> None:
         """Products of some vectors with those before them and with themselves."""
         vectors = self._vectors[:, : columns.stop]
-        for gram, product in zip(self._gram, self._products(vectors[:, columns]), strict=True):
-            shares = self._algebra.products(vectors, product)
-            own = shares[columns]
-            shares[columns] = 0.5 * (own + own.T)
-            gram[: columns.stop, columns], gram[columns, : columns.stop] = shares, shares.T
+        shares = self._algebra.products(vectors, *self._products(vectors[:, columns]))
+        for gram, share in zip(self._gram, np.hsplit(shares, 2), strict=True):
+            share[columns] = 0.5 * (share[columns] + share[columns].T)
+            gram[: columns.stop, columns], gram[columns, : columns.stop] = share, share.T
 
     def shrink(self, count: int) -> None:
         """Keep the 2 ``count`` lowest Ritz vectors, and what rounding takes from the first ``count`` of them."""
-        mixture = self.ritz(2 * count)[1]
+        mixture = np.linalg.qr(self.ritz(2 * count)[1])[0]
         self._algebra.replace(self._vectors[:, : self.size], mixture, count)
         self.size = mixture.shape[1] + count
         for begin in range(0, self.size, _BLOCK):
