@@ -4,7 +4,6 @@ On a large mesh the assembled matrix is a good part of the memory beside the fac
 are multiplied at once, each row by one thread. Importing this module imports numba.
 """
 
-from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -145,14 +144,9 @@ class BlockProduct:
         for few in pieces:
             motions[self._free[few], :width] = columns[few]
         forces, inertia = np.empty_like(motions), np.empty_like(motions)
-<<<<<<< HEAD
-        write: Callable[..., None] = _write_products
-        at_once([partial(write, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
-=======
         arguments: list[tuple[Any, ...]] = [(*share, *self._blocks, motions, forces, inertia) for share in self._shares]
         at_once([partial(_write_products, *each) for each in arguments])
         del arguments
->>>>>>> 06a7a5da5c89f4c1504a774cad450d3971c959a9
         for product in (forces, inertia):
             # The free degrees of freedom ascend: none is overwritten before it is read.
             for few in pieces:
