@@ -537,9 +537,7 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
         yield from _check_each_shaft(draft, operation)
         return
     if train is not None and train.pairs and operation.torque and not operation.output and not train.output_shafts:
-        expected = (
-            "an output where the torque leaves, as each shaft takes it in, drives one, is held or is a planet"
-        )
+        expected = "an output where the torque leaves, as each shaft takes it in, drives one, is held or is a planet"
         yield Finding(("operation", "output"), expected, NOTHING)
         return
     imbalances = list(_check_balance(operation, train or train_of_pairs((), shafts))) if operation.output else []
