@@ -199,7 +199,7 @@ def _gears(transient: SolvedTransient) -> Iterator[MonitoredGear]:
             elif frequencies[name] + turn > transient.trusted_limit:
                 reason = (
                     f"its mesh frequency, {frequencies[name]:.4g} Hz, with sidebands is beyond the trusted limit of "
-                    f"{transient.trusted_limit:.4g} Hz"
+                    f"{transient.trusted_limit:.4g} Hz; raise the housing's frequency_limit, or take a lower speed"
                 )
             yield MonitoredGear(name, shaft, teeth, others, turn, 0, reason)
 

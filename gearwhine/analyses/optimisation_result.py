@@ -13,7 +13,13 @@ import numpy as np
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
-from gearwhine.analyses.variation_result import in_solved_housing, limits_of, sampled_points, wanted_of
+from gearwhine.analyses.variation_result import (
+    in_solved_housing,
+    limits_of,
+    sampled_points,
+    sensor_problems,
+    wanted_of,
+)
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
 from gearwhine.case.errors import NOTHING, UNSAID, Refusal
 from gearwhine.case.model import lacking
@@ -110,6 +116,8 @@ def solve_optimisation(
     refusal.add(*value_problems(plain, inputs))
     good = {} if case.variation is None else case.variation.limit
     refusal.add(*statistic_problems(optimisation.aim, optimisation.limit, optimisation.robust, good))
+    names = {("optimisation", "aim"): [*optimisation.aim], ("optimisation", "limit"): [*optimisation.limit]}
+    refusal.add(*sensor_problems(case.housing or case.reduced_housing, names))
     variation = None if optimisation.robust is None else case.variation
     with refusal:
         scatter = _scatter(optimisation.robust, variation, plain, inputs)

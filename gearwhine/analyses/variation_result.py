@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,10 +16,12 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
 from gearwhine.case.analysis_speeds import with_sense_of
-from gearwhine.case.errors import UNSAID, Refusal
+from gearwhine.case.errors import UNSAID, Refusal, key_of
+from gearwhine.case.housing import Housing
 from gearwhine.case.model import lacking
 from gearwhine.case.operation import Operation
 from gearwhine.case.optimisation import Optimisation
+from gearwhine.case.reduced_housing import ReducedHousing
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
@@ -27,11 +29,13 @@ from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
+from gearwhine.numerics.names import one_of
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems, staging
 from gearwhine.output.files import MODE_CACHE_FILE
+from gearwhine.output.named_quantities import statistic_of
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.acoustics import acoustics_of
@@ -104,6 +108,7 @@ def solve_variation(
     refusal, plain = Refusal(), source.without("variation")
     inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
     refusal.add(*_median_problems(plain, inputs))
+    refusal.add(*sensor_problems(case.housing or case.reduced_housing, {("variation", "limit"): variation.limit}))
     with refusal:
         correlation_matrix(inputs, variation)
     with refusal:
@@ -385,6 +390,26 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
     speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
     over_speed = {"lines", "sound"} & set(analyses)
     return Wanted(analyses, with_sense_of(case.operation, speeds) if over_speed else (), names=names)
+
+
+def sensor_problems(
+    housing: Housing | ReducedHousing | None, named: Mapping[tuple[str, str], Iterable[str]]
+) -> Iterator[Problem]:
+    """Yield names of quantities at sensors that no gearbox has, before the housing is solved for them."""
+    sensors = [one.name for one in (housing.sensor if housing else ())]
+    for table, names in named.items():
+        for name in names:
+            quantity = statistic_of(name)[1]
+            of_sensor = quantity.removeprefix("sensor.")
+            if of_sensor == quantity or "*" in quantity:
+                continue
+            if not any(of_sensor.startswith(f"{one}.") for one in sensors):
+                expected = one_of("a sensor of this case", of_sensor.partition(".")[0], sensors)
+                yield Problem(key_of((*table, name)), UNSAID, expected)
+            elif analysis_of(quantity) is None:
+                yield Problem(
+                    key_of((*table, name)), UNSAID, "level_db, motion_level_db or loudest_speed_rpm at its end"
+                )
 
 
 def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:

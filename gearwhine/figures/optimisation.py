@@ -136,7 +136,7 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
         axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
         of, _, unit = _label(optimised, place).partition(" [")
         axes.set_ylabel(unit.removesuffix("]"), size=TICK)
-        panel_title(axes, of)
+        panel_title(axes, of, 80)
     return figure
 
 

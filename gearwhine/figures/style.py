@@ -126,11 +126,9 @@ def name_lowest(panels: Sequence[Axes], text: str) -> None:
     panels[-1].set_xlabel(text)
 
 
-def panel_title(axes: Axes, text: str) -> None:
+def panel_title(axes: Axes, text: str, most: int = _PANEL_TITLE) -> None:
     """Write the title of a panel at its upper left, with a user's names unchanged."""
-    axes.set_title(
-        shortened(arrowed(text), _PANEL_TITLE), fontsize=LABEL, color=INK, loc="left", pad=3.0, parse_math=False
-    )
+    axes.set_title(shortened(arrowed(text), most), fontsize=LABEL, color=INK, loc="left", pad=3.0, parse_math=False)
 
 
 def degree_axis(axes: Axes) -> None:

@@ -18,6 +18,7 @@ from gearwhine.figures.style import (
     PALE,
     RED,
     TICK,
+    cut_within,
     name_lowest,
     panel,
     panel_pair,
@@ -167,7 +168,7 @@ def _bars(axes: Axes, one: QuantityStatistics) -> None:
         axes.barh(places, values, height=0.62, color=BLUE)
         axes.hlines(places, interval[:, 0], interval[:, 1], color=INK, lw=0.9)
         axes.set_xlim(0.0, max(1.0, float(interval.max())))
-    axes.set_yticks(places, [shortened(name, 40) for name in names], fontsize=TICK)
+    axes.set_yticks(places, [cut_within(name, 40) for name in names], fontsize=TICK)
     axes.set_ylim(-0.6, len(names) - 0.4)
     axes.grid(visible=False, axis="y")
     panel_title(axes, f"{part_of(one.name)}: {shown_quantity(one.name)[0].partition(' [')[0]}")
@@ -188,7 +189,7 @@ def _widening(title: str, varied: VariedResult) -> Figure:
     axes.barh(places, changes[:, 0], height=0.62, color=BLUE)
     axes.hlines(places, changes[:, 1], changes[:, 2], color=INK, lw=0.9)
     axes.axvline(0.0, color=GREY, lw=0.8)
-    axes.set_yticks(places, [shortened(one.name, 40) for one in rows], fontsize=TICK)
+    axes.set_yticks(places, [cut_within(one.name, 40) for one in rows], fontsize=TICK)
     axes.set_ylim(-0.6, len(rows) - 0.4)
     axes.grid(visible=False, axis="y")
     axes.set_xlabel("change of the yield [percentage points]")
@@ -220,7 +221,7 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
             axes.plot(scale * one.inputs[mask, place], of_quantity, ".", color=colour, ms=2.2, alpha=0.6)
         for end in _limits_near(one, factor * one.values[chosen], factor):
             axes.axhline(end, color=RED, lw=0.8)
-        axes.set_xlabel(shortened(f"{name} [{unit}]" if unit else name, 44))
+        axes.set_xlabel(f"{cut_within(name, 36)} [{unit}]" if unit else cut_within(name, 44))
         if of_input.words:
             shown = range(len(of_input.words))
             axes.set_xticks(list(shown), [shortened(word, 12) for word in of_input.words])
@@ -234,7 +235,7 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
 def _over_speed(title: str, varied: VariedResult) -> Figure:
     curves = list(varied.nominal.curves)[:_MOST_CURVES]
     note = f"{_begins(title, 40)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest."
-    figure, panels = stacked(len(curves), 34.0, 8.0, "Levels over speed", note)
+    figure, panels = stacked(len(curves), 34.0, 8.0, "Levels over speed", note, first=HEAD - STYLE_HEAD)
     rpm = np.abs(varied.speeds) * 30.0 / np.pi
     order = np.argsort(rpm)
     for name, axes in zip(curves, panels, strict=True):

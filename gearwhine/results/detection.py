@@ -1,5 +1,6 @@
 """Detectability of a fault by sensor and indicator, as tables."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -187,7 +188,13 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_best_columns(document), rows, best)
     for row in rows:
         if row.get("alike"):
-            yield f"As small a fault at {row['sensor']} as {INDICATORS[row['indicator']].title} see: {row['alike']}."
+            title = INDICATORS[row["indicator"]].title
+            yield f"Others that see as small a fault at {row['sensor']} as {title}: {row['alike']}."
+    if unbounded := [row for row in document["detectability"] if row["a90"] is not None and row["a90_95"] is None]:
+        yield (
+            f"Without a90/95: {_where(unbounded)}. The gearboxes with the fault are too few for a confidence of 95 %; "
+            "take more `faulty` ones, or more sizes. At one size alone it takes 29 of 29."
+        )
     if contradicted := [row for row in document["detectability"] if row["contradicted"]]:
         yield (
             f"Hits contradict the fitted curve of {_where(contradicted)}: fewer are found from its a90 on than 0.9 of "
@@ -237,9 +244,12 @@ def _best_columns(document: Document) -> tuple[Column, ...]:
         return text(lambda row: f"{row['found'][place]['found']}/{row['found'][place]['total']}")
 
     def threshold(row: Document) -> str:
-        limit = row["threshold"]
-        low, high = (f"{limit[key]:.3g}" if limit[key] is not None else "∞" for key in ("low", "high"))
-        return f"{limit['value']:.4g} ({low} to {high})"
+        value, *ends = (row["threshold"][key] for key in ("value", "low", "high"))
+        # As many digits as tell both ends from the threshold.
+        apart = [abs(end / value - 1.0) for end in ends if end is not None and value and end != value]
+        digits = max([4, *(2 - math.floor(math.log10(one)) for one in apart)])
+        low, high = (f"{end:.{digits - 1}g}" if end is not None else "∞" for end in ends)
+        return f"{value:.{digits}g} ({low} to {high})"
 
     return (
         Column("sensor", "sensor"),

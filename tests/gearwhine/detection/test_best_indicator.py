@@ -13,9 +13,11 @@ SIZES = (0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3, 2e-3)
 SAMPLES = np.repeat(SIZES, 8)
 
 
-def _part(indicator: str, hits: tuple[int, ...], a90: float | None, a90_95: float | None) -> Detectability:
+def _part(
+    indicator: str, hits: tuple[int, ...], a90: float | None, a90_95: float | None, step: float = 0.01
+) -> Detectability:
     """An indicator of eight gearboxes of each size with these hits, and the sizes that its curve is said to have."""
-    healthy = 1.0 + 0.01 * np.arange(20.0)
+    healthy = 1.0 + step * np.arange(20.0)
     responses = np.concatenate([np.repeat([9.0, 0.5], [hit, 8 - hit]) for hit in hits])
     found = detectability("roof", indicator, healthy, SAMPLES, responses, 0.01, "log-normal")
     shares = tuple(Share(size, hit, 8) for size, hit in zip(SIZES, hits, strict=True))
@@ -60,8 +62,24 @@ def test_the_criterion_and_a_contradiction_are_said_and_equal_indicators_named()
     columns, ((*row,),) = table.filled()
     named = dict(zip([column.heading for column in columns], row, strict=True))
     assert named["indicator"] == "NA4"
-    assert "As small a fault at roof as NA4 see: change rms." in map(str, content)
+    assert "Others that see as small a fault at roof as NA4: change rms." in map(str, content)
     assert any("Hits contradict the fitted curve of rms at roof" in str(one) for one in content)
+
+
+def test_a_bound_that_the_hits_leave_open_is_explained_and_thresholds_show_their_interval() -> None:
+    """Of 28 gearboxes that are all found the probability may be below 0.9: 0.9²⁸ = 0.052, 0.9²⁹ = 0.047."""
+    assert 0.9**28 > 0.05 > 0.9**29
+    open_bound = _part("na4", (0, 8, 8, 8, 8), 0.74e-3, None, 1e-6)
+    content = sections(detection_document(_result(open_bound, SURER)))[0].content
+    (said,) = [str(one) for one in content if str(one).startswith("Without a90/95")]
+    assert "NA4 at roof. " in said
+    assert "29 of 29" in said
+    content = sections(detection_document(_result(open_bound)))[0].content
+    (table,) = [one for one in content if isinstance(one, Table) and one.caption.startswith("Best indicator")]
+    columns, ((*row,),) = table.filled()
+    cell = dict(zip([column.heading for column in columns], row, strict=True))["threshold (95 %)"]
+    value, low, high = (float(text.strip("()")) for text in str(cell).replace("to ", "").split())
+    assert low < value < high
 
 
 def test_the_picture_draws_the_indicator_of_its_heading_and_tells_equal_curves_apart() -> None:

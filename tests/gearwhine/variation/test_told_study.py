@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coupled_cases import sensor_level
+from matplotlib.text import Text
 from scipy import stats
 
 import gearwhine as gw
@@ -218,3 +219,18 @@ def test_the_case_of_the_worst_gearbox_has_the_level_of_its_title_when_it_is_ope
     assert abs(study.case.operation.speed) * RPM == pytest.approx(worst["speed_rpm"])
     assert f"{worst['value']:.6g} at {worst['speed_rpm']:.5g} rpm" in study.case.title
     assert f"{worst['speed_rpm']:.5g} rpm" in study.case.notes
+
+
+def test_pictures_keep_titles_off_the_note_and_the_ends_of_long_keys() -> None:
+    x = sobol_points(64, 1, 1)
+    study = told(np.array([80.0, 90.0, 85.0]) + 5.0 * x, x)
+    key = "bearing.in-front.stiffness.rolling.catalogue.clearance"
+    figures = dict(draw_variation("By hand", replace(study, inputs=(replace(study.inputs[0], name=key),))))
+    (scatter,) = figures["vary-scatter-1"].axes
+    assert scatter.get_xlabel().startswith("bearing.in-front")
+    assert scatter.get_xlabel().endswith("clearance [µm]")
+    over_speed = figures["vary-speeds"]
+    over_speed.canvas.draw()
+    (axes,) = over_speed.axes
+    (title,) = [one for one in axes.get_children() if isinstance(one, Text) and one.get_text().startswith("sensor")]
+    assert not any(title.get_window_extent().overlaps(note.get_window_extent()) for note in over_speed.texts)

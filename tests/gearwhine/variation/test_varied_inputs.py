@@ -8,8 +8,9 @@ import pytest
 from scipy import stats
 
 import gearwhine as gw
+from gearwhine.analyses.variation_result import sensor_problems
 from gearwhine.case import CaseError
-from gearwhine.case.load import bundled_case
+from gearwhine.case.load import bundled_case, load_case
 from gearwhine.variation.inputs import Input, varied_inputs
 
 HELIX = "errors.helix.slope"
@@ -195,3 +196,31 @@ def test_tables_that_hold_no_distribution_are_refused(tmp_path: Path, content: s
     (tmp_path / "measured.csv").write_text(content)
     with pytest.raises(CaseError, match=said):
         _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv" } }')
+
+
+def test_names_of_sensors_are_refused_before_the_housing_is_solved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    meant = "did you mean 'top'?"
+    wrong = {"sensor.tpo.level_db": meant, "mean of sensor.tpo.level_db": meant, "sensor.top.level": "level_db"}
+    right = ["sensor.top.level_db", "quantile 0.95 of sensor.top.level_db", "sensor.*.level_db", "machine.mass_kg"]
+    case = load_case("small-gearbox").case
+    problems = list(sensor_problems(case.housing, {("variation", "limit"): [*right, *wrong]}))
+    assert [one.key for one in problems] == [f"variation.limit.'{name}'" for name in wrong]
+    assert all(said in one.expected for one, said in zip(problems, wrong.values(), strict=True))
+
+    for module in ("variation_result", "optimisation_result"):
+        monkeypatch.setattr(f"gearwhine.analyses.{module}.in_solved_housing", lambda *_: pytest.fail("solved"))
+    varied = {"operation.torque": {"uniform": ["40 N*m", "60 N*m"]}}
+    designed = {"operation.torque": {"range": ["40 N*m", "60 N*m"]}}
+    limits = {"sensor.tpo.level_db": {"at_most": 150}}
+    aim = {"machine.mass_kg": {"sense": "least"}}
+    changes = {
+        "variation": {"vary": varied, "limit": limits},
+        "optimisation": {"design": designed, "aim": aim, "limit": limits},
+    }
+    study = gw.load("small-gearbox", changes)
+    with pytest.raises(CaseError, match=r"variation\.limit.*did you mean 'top'"):
+        study.vary(2, folder=tmp_path)
+    with pytest.raises(CaseError, match=r"optimisation\.limit.*did you mean 'top'"):
+        study.optimise(2, folder=tmp_path)
