@@ -14,7 +14,7 @@ import gearwhine as gw
 from gearwhine.coupling import CoupledMachine, TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.gears import GearError
-from gearwhine.coupling.gears.loaded.transmission_error import phasors_between, polygon_phasors
+from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, phasors_between, polygon_phasors
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.lines_over_speed import housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
@@ -255,3 +255,13 @@ def test_faint_lines_are_left_out_of_the_sound() -> None:
     assert solved == [3, 1, 1]
     assert weighted == pytest.approx(10.0 * np.log10(10.0 ** (6.0 - 3.94) + 10.0**2), abs=0.05)
     assert radiated.levels(hertz[:1], rates[:1]) == (-np.inf, -np.inf)
+
+
+def test_mesh_that_a_contact_keeps_is_that_of_its_force_and_points() -> None:
+    contact = uneven_machine().system.contacts[0].contact
+    hunting_period_mesh(contact, 1500.0)
+    for force, points in ((1500.01, 60), (1500.0, 20)):
+        found, anew = (hunting_period_mesh(one, force, points) for one in (contact, replace(contact)))
+        assert found.force == force
+        np.testing.assert_array_equal(found.transmission_error, anew.transmission_error)
+    assert hunting_period_mesh(contact, 1500.0 * (1.0 + 1e-12), 20) is found

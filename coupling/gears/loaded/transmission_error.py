@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -387,6 +388,9 @@ _AT_ONCE = 1000
 
 _DIGITS = 2.0**40
 
+_SAME_FORCE = 1e-9  # relative difference of forces that differ by rounding
+_solved_periods: WeakKeyDictionary[ToothContact, tuple[int, LoadedMesh]] = WeakKeyDictionary()
+
 
 def along_one_pair(contact: ToothContact, mesh: LoadedMesh) -> tuple[LoadedMesh, npt.NDArray[np.bool_]]:
     """Return the mesh as a pair of teeth runs along its whole path, and where in it that pair is, shape (n, m).
@@ -418,13 +422,24 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
     -------
     LoadedMesh
         Result of `loaded_transmission_error` at the phases of ``contact.hunting_period`` mesh periods, without the
-        loads over the face.
+        loads over the face. The last one of a contact is kept, and serves for forces that differ by rounding: an
+        analysis asks some times for a mesh that takes seconds.
 
     Raises
     ------
     GearError, ContactAccuracyError
         See `loaded_transmission_error`.
     """
+    known = _solved_periods.get(contact)
+    if known is not None and known[0] == points and abs(known[1].force - force) <= _SAME_FORCE * force:
+        return known[1]
+    mesh = _over_hunting_period(contact, force, points)
+    _solved_periods[contact] = points, mesh
+    return mesh
+
+
+def _over_hunting_period(contact: ToothContact, force: float, points: int) -> LoadedMesh:
+    """Solve as `hunting_period_mesh` does."""
     # Of so many binary digits that phases of later mesh periods are exact: the places of the pairs return in each.
     period = np.round(_DIGITS * mesh_period_phases(contact, points)) / _DIGITS
     first, which = different_periods(contact)
