@@ -8,10 +8,12 @@ import numpy as np
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
+from gearwhine.coupling.linear.carriers.floquet_exponents import floquet_exponents
+from gearwhine.coupling.linear.carriers.frozen_directions import FROZEN_MODES, frozen_warnings
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.coupling.linear.complex_modes import CoupledModes, Stability, coupled_modes
 from gearwhine.coupling.linear.complex_modes import stability as coupled_stability
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
-from gearwhine.coupling.linear.floquet_exponents import floquet_exponents
 from gearwhine.coupling.linear.frequency_response import (
     FrequencyResponse,
     mesh_error_responses,
@@ -19,9 +21,7 @@ from gearwhine.coupling.linear.frequency_response import (
     touching_meshes,
     unbalance_responses,
 )
-from gearwhine.coupling.linear.frozen_directions import FROZEN_MODES, frozen_warnings
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
-from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent

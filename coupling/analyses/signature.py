@@ -10,7 +10,7 @@ from gearwhine.coupling import signals as signature
 from gearwhine.coupling.analyses.recording import Signals
 from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.assembly import CoupledMachine
-from gearwhine.coupling.linear.carrier_sidebands import forced_sidebands
+from gearwhine.coupling.linear.carriers.carrier_sidebands import forced_sidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.excitation_orders import excited_shaft_orders, in_carrier
 from gearwhine.coupling.signals.peaks import SpectralPeaks

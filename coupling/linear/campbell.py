@@ -16,7 +16,8 @@ ten digits.
 
 Where directions turn with planet carriers, branches and crossings are those of frozen carriers. Beside them stand, at
 some of the speeds, the Floquet exponents of the machine as it turns
-(:mod:`gearwhine.coupling.linear.floquet_exponents`), and the frequencies at which fixed sensors see their motions.
+(:mod:`gearwhine.coupling.linear.carriers.floquet_exponents`), and the frequencies at which fixed sensors see their
+motions.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,12 +29,12 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.carriers.floquet_exponents import floquet_exponents, observed_frequencies
+from gearwhine.coupling.linear.carriers.frozen_directions import frozen_warnings
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.eigenpairs import pair_residuals, refine_pair
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
-from gearwhine.coupling.linear.floquet_exponents import floquet_exponents, observed_frequencies
-from gearwhine.coupling.linear.frozen_directions import frozen_warnings
-from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.numerics.arrays import ComplexArray, FloatArray, IndexArray
 from gearwhine.numerics.branch_following import (

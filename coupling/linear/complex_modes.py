@@ -25,10 +25,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.linear.carriers.frozen_directions import FROZEN_MODES, frozen_warnings
+from gearwhine.coupling.linear.carriers.planetary_modes import planetary_kinds
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from gearwhine.coupling.linear.frozen_directions import FROZEN_MODES, frozen_warnings
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE
-from gearwhine.coupling.linear.planetary_modes import planetary_kinds
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
@@ -239,9 +239,9 @@ class CoupledModes:
         All 2n eigenpairs, for superposition.
     planetary : tuple of str
         Kind of each mode in a planetary set, such as ``rotational: carrier``, see
-        :mod:`gearwhine.coupling.linear.planetary_modes`; empty for modes of other parts.
+        :mod:`gearwhine.coupling.linear.carriers.planetary_modes`; empty for modes of other parts.
     warnings : tuple of dict
-        Warnings: that they are those of frozen carriers, see :mod:`gearwhine.coupling.linear.frozen_directions`.
+        That they are those of frozen carriers, see :mod:`gearwhine.coupling.linear.carriers.frozen_directions`.
     """
 
     eigenvalues: ComplexArray

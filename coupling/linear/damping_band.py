@@ -20,11 +20,11 @@ import numpy as np
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import ModesError
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from gearwhine.coupling.linear.frequency_response import excitations
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
-from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray

@@ -13,7 +13,7 @@ from typing import Literal
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.linear.carrier_sidebands import Sideband
+from gearwhine.coupling.linear.carriers.carrier_sidebands import Sideband
 from gearwhine.coupling.machine.base_motion import BaseHarmonic
 from gearwhine.coupling.machine.driving_frequencies import element_passes as passing_frequencies
 from gearwhine.coupling.machine.driving_frequencies import spall_strikes
@@ -107,8 +107,8 @@ def excitation_lines(
         those by a gear and by its carrier together among them. By default those of each rotor alone are.
     by_carriers : sequence of Sideband, optional
         Sidebands that each excitation has by the turning of carriers, as of
-        :func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`; those of the mean load are orders of the
-        carriers. By default each mesh of planets has ``sidebands`` by its own carrier.
+        :func:`gearwhine.coupling.linear.carriers.carrier_sidebands.forced_sidebands`; those of the mean load are orders
+        of the carriers. By default each mesh of planets has ``sidebands`` by its own carrier.
 
     Raises
     ------

@@ -34,11 +34,11 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError, ModesError
-from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands
+from gearwhine.coupling.linear.carriers.carrier_sidebands import CarrierSidebands
+from gearwhine.coupling.linear.carriers.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
-from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
@@ -108,7 +108,7 @@ def response(
     """Coordinates H(iw) f under loads f of shape (f, i, n): shape (f, i, n). See :func:`receptance`.
 
     Of a machine whose directions turn they are the motions at w, without the sidebands beside it
-    (:mod:`gearwhine.coupling.linear.turning_response`).
+    (:mod:`gearwhine.coupling.linear.carriers.turning_response`).
     """
     w = np.asarray(frequencies, dtype=np.float64)
     if not np.all(np.isfinite(w)) or np.any(w == 0.0):

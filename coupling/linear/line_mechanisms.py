@@ -20,7 +20,7 @@ s the row of a sensor, f_m the load of the mechanism m:
 - ``unbalance``, ``shaft_bow``, ``torque_ripple``, ``base_motion``: as given.
 
 Where directions turn with carriers, an excitation at ω_e moves a sensor at all ω_e + m f too, so that a line is made by
-all excitations that are so many turns off it (:mod:`gearwhine.coupling.linear.turning_response`).
+all excitations that are so many turns off it (:mod:`gearwhine.coupling.linear.carriers.turning_response`).
 
 The parts add up with their phases to the line of the linear model. A motion has other lines than that where flanks
 part and where a bearing's law bends within the motion.
@@ -35,10 +35,10 @@ from scipy import linalg
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, polygon_phasors
+from gearwhine.coupling.linear.carriers.turning_response import Excitation, Order, TurningResponse
+from gearwhine.coupling.linear.carriers.turning_stiffness import TurningStiffnessForce
 from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero, sum_by_order
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
-from gearwhine.coupling.linear.turning_response import Excitation, Order, TurningResponse
-from gearwhine.coupling.linear.turning_stiffness import TurningStiffnessForce
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.numerics.arrays import ComplexArray, FloatArray

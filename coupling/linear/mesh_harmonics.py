@@ -12,8 +12,8 @@ with it, and their phases are those of one mesh period: at a harmonic they add a
 above another at a sensor. A transmissibility by transmission error alone misses the others.
 
 Where directions turn with planet carriers, the force k e acts along d(t) and the moments turn with the mesh, and the
-motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carrier_sidebands`), each a response of its own here. So
-has g (:mod:`gearwhine.coupling.linear.turning_stiffness`).
+motion has lines at ω + m f_c (:mod:`gearwhine.coupling.linear.carriers.carrier_sidebands`), each a response of its own
+here. So has g (:mod:`gearwhine.coupling.linear.carriers.turning_stiffness`).
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -34,11 +34,11 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
     polygon_phasors,
     transmission_error_phasors,
 )
-from gearwhine.coupling.linear.carrier_sidebands import CarrierSidebands, Sideband
+from gearwhine.coupling.linear.carriers.carrier_sidebands import CarrierSidebands, Sideband
+from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
+from gearwhine.coupling.linear.carriers.turning_stiffness import TurningStiffnessForce, turning_stiffness_forces
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
 from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
-from gearwhine.coupling.linear.turning_response import Order, TurningResponse
-from gearwhine.coupling.linear.turning_stiffness import TurningStiffnessForce, turning_stiffness_forces
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce, stiffness_forces
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad

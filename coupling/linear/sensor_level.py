@@ -30,7 +30,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import LoadedMesh, ToothContact
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
 from gearwhine.coupling.gears.loaded.transmission_error import loaded_transmission_error
-from gearwhine.coupling.linear.frozen_directions import frozen_warnings
+from gearwhine.coupling.linear.carriers.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, harmonic_compressions, varying_mesh
 from gearwhine.coupling.machine.mesh_face import MeshFace

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwhine.coupling.linear.frozen_directions import frozen_warnings
+from gearwhine.coupling.linear.carriers.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.line_sensitivity import Line
 from gearwhine.coupling.load_analysis.line_model import SolvedLines
 from gearwhine.numerics.arrays import FloatArray

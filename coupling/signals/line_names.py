@@ -5,8 +5,8 @@ low order of a shaft, a harmonic torque or motion of the base, the passing of th
 law follows them, a sideband, any other whole order, a sum or difference of harmonics of two meshes, by which the motion
 in one mesh modulates the force of the other. One that is much nearer to the line goes before a simpler one; causes that
 are about as near and as simple are named together. Sidebands by the turning of planet carriers are those that the
-machine forces (:func:`gearwhine.coupling.linear.carrier_sidebands.forced_sidebands`), and those of the mean load are
-orders of the carrier. Orders of a shaft and their sidebands count where something excites them
+machine forces (:func:`gearwhine.coupling.linear.carriers.carrier_sidebands.forced_sidebands`), and those of the mean
+load are orders of the carrier. Orders of a shaft and their sidebands count where something excites them
 (:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to the line. A
 line at none of these is free vibration, named after its mode. Either may be near a mode, which is given apart from the
 cause. A line that is near no mode either, whole turns of a carrier off a harmonic of its planets' meshes, is one of
@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.linear.carrier_sidebands import forced_sidebands
+from gearwhine.coupling.linear.carriers.carrier_sidebands import forced_sidebands
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.excitation_orders import (
     ExcitedOrders,

@@ -7,8 +7,8 @@ other frequencies than that of the point has the peaks that the points pass by
 (:mod:`gearwhine.coupling.sweep.missed_peaks`).
 
 Where directions turn with carriers, each line n f_m + k f_c is one of its own, of the order that it has over the first
-driver (:mod:`gearwhine.coupling.linear.carrier_sidebands`). The modes are those with the carriers frozen, and the lines
-are solved about those that are near them, by harmonic balance; about others they are taken as silent.
+driver (:mod:`gearwhine.coupling.linear.carriers.carrier_sidebands`). The modes are those with the carriers frozen, and
+the lines are solved about those that are near them, by harmonic balance; about others they are taken as silent.
 """
 
 from __future__ import annotations

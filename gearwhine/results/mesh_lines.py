@@ -47,8 +47,8 @@ def _meshes(solved: "SolvedSystem") -> list[dict[str, Any]]:
 
 def _carriers(solved: "SolvedSystem") -> list[dict[str, Any]] | object:
     """Return each carrier whose turns lines are off, how many are followed, and what the outermost lines still have."""
-    from gearwhine.coupling.linear.carrier_sidebands import farthest_turns, forced_sidebands
-    from gearwhine.coupling.linear.planet_phasing import PlanetPhasing
+    from gearwhine.coupling.linear.carriers.carrier_sidebands import farthest_turns, forced_sidebands
+    from gearwhine.coupling.linear.carriers.planet_phasing import PlanetPhasing
 
     machine = solved.machine
     carried, rows = PlanetPhasing(machine).carried, list(machine.sensor_rows.values())

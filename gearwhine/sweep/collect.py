@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
-from gearwhine.coupling.linear.frozen_directions import FROZEN_CARRIER
+from gearwhine.coupling.linear.carriers.frozen_directions import FROZEN_CARRIER
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
 from gearwhine.output.dataset import PHASE_CONVENTION

@@ -10,9 +10,9 @@ from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.assembly import assemble_machine
 from gearwhine.coupling.linear import campbell
 from gearwhine.coupling.linear.campbell import system_campbell
+from gearwhine.coupling.linear.carriers.floquet_exponents import floquet_exponents, observed_frequencies
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.coupling.linear.complex_modes import coupled_modes
-from gearwhine.coupling.linear.floquet_exponents import floquet_exponents, observed_frequencies
-from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem

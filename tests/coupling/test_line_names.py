@@ -10,7 +10,7 @@ from coupled_cases import coupled
 from reducer_case import reducer
 
 from gearwhine.case import load_case
-from gearwhine.coupling.linear.carrier_sidebands import Sideband
+from gearwhine.coupling.linear.carriers.carrier_sidebands import Sideband
 from gearwhine.coupling.linear.mesh_harmonics import causes_in_words
 from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.figures.machine.system import _place_beside_harmonic

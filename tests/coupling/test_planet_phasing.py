@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearwhine.coupling.linear.planet_phasing import CarriedPlanets, PlanetPhasing
+from gearwhine.coupling.linear.carriers.planet_phasing import CarriedPlanets, PlanetPhasing
 from tests.machines.turning_set import TEETH, turning_machine
 
 

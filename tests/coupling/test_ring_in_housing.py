@@ -7,10 +7,10 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
-from gearwhine.coupling.linear.carrier_sidebands import farthest_turns, forced_sidebands
+from gearwhine.coupling.linear.carriers.carrier_sidebands import farthest_turns, forced_sidebands
+from gearwhine.coupling.linear.carriers.turning_response import SIDEBANDS, TurningResponse
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
-from gearwhine.coupling.linear.turning_response import SIDEBANDS, TurningResponse
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.coupling.signals.transfer_paths import housing_connections, housing_paths

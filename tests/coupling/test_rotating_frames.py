@@ -20,9 +20,9 @@ from gearwhine.coupling import (
 )
 from gearwhine.coupling.analyses import modes_and_responses
 from gearwhine.coupling.assembly import assemble_machine
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.coupling.linear.complex_modes import coupled_modes, stability
 from gearwhine.coupling.linear.frequency_response import response
-from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.machine.base_motion import BaseHistory, BaseMotion
 from gearwhine.coupling.machine.components import RotorComponent, rotor_component
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from gearwhine.coupling.linear.carrier_sidebands import Sideband
+from gearwhine.coupling.linear.carriers.carrier_sidebands import Sideband
 from gearwhine.coupling.linear.line_outputs import SoundPower
 from gearwhine.coupling.linear.mesh_harmonics import Response
 from gearwhine.coupling.sound.acoustics import Acoustics

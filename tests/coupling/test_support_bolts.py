@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from gearwhine.coupling import CouplingError, Machine, MountedBearing, SupportBolt, TorqueSupport
-from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.coupling.statics.operating_point import OperatingPoint, SupportLoad
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium

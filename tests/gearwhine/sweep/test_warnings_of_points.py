@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
-from gearwhine.coupling.linear.frozen_directions import FROZEN_CARRIER
+from gearwhine.coupling.linear.carriers.frozen_directions import FROZEN_CARRIER
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.sweep.collect import _warnings
 from gearwhine.sweep.solution import PointResult

@@ -3,8 +3,8 @@
 Where all that stands still is alike all round, the coordinates turn with the carrier and no directions do
 (:mod:`gearwhine.coupling.machine.planets`): modes and Campbell diagrams are exact. Elsewhere a machine has periodic
 coefficients, and a table of modes or a diagram is that of a frozen picture. How far off it is say the exponents of
-:mod:`gearwhine.coupling.linear.floquet_exponents`. Lines and responses are solved with all sidebands
-(:mod:`gearwhine.coupling.linear.turning_response`) and need no warning.
+:mod:`gearwhine.coupling.linear.carriers.floquet_exponents`. Lines and responses are solved with all sidebands
+(:mod:`gearwhine.coupling.linear.carriers.turning_response`) and need no warning.
 """
 
 from typing import Any

@@ -3,9 +3,10 @@
 The meshes of planets circle with their carrier at f_c. A sensor that stands still sees the motion at the harmonic n of
 their mesh frequency f_m, in the carrier's frame, at n f_m + k f_c. How large k is follows from what turns: a shaft in a
 housing of rigid bores has k = ±1, the rim of a ring that follows a bore by its orders up to m has k = ±m, and parts
-that hand a motion on to each other have sums of these (:mod:`gearwhine.coupling.linear.turning_response`, which all
-analyses follow). Equal planets add in some of the lines and cancel in the others
-(:mod:`gearwhine.coupling.linear.planet_phasing`); errors, loads and stiffness that differ between planets leave a part.
+that hand a motion on to each other have sums of these (:mod:`gearwhine.coupling.linear.carriers.turning_response`,
+which all analyses follow). Equal planets add in some of the lines and cancel in the others
+(:mod:`gearwhine.coupling.linear.carriers.planet_phasing`); errors, loads and stiffness that differ between planets
+leave a part.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,8 +18,8 @@ import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.description.parts import bolted_rotors
-from gearwhine.coupling.linear.planet_phasing import PlanetPhasing
-from gearwhine.coupling.linear.turning_response import Order, TurningResponse
+from gearwhine.coupling.linear.carriers.planet_phasing import PlanetPhasing
+from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.frames import Frames

@@ -2,11 +2,12 @@
 
 A free motion of a machine with periodic coefficients is e^{λt} Σ_m q_m e^{im·ft} (Floquet): it has the frequency of its
 exponent λ and all sidebands of that, and λ + im·f are exponents of the same motion. They are the roots of Hill's
-infinite determinant, here that of the harmonic balance of :mod:`gearwhine.coupling.linear.turning_response` at complex
-frequencies ω = λ / i. Its receptance from a load b at the order 0 to a motion c at the order 0, g(ω) = cᵀ A⁻¹(ω) b, has
-its poles there. Of a mode of the machine with its carriers frozen, with the eigenvalue λ₀ and the vectors b right and c
-left, the secant method finds the zero of 1/g from λ₀ / i: the exponent of the family of this mode that is nearest, as b
-and c hardly meet the others. It is the mode's own where the machine turns slowly or is nearly alike all round.
+infinite determinant, here that of the harmonic balance of :mod:`gearwhine.coupling.linear.carriers.turning_response` at
+complex frequencies ω = λ / i. Its receptance from a load b at the order 0 to a motion c at the order 0, g(ω) = cᵀ
+A⁻¹(ω) b, has its poles there. Of a mode of the machine with its carriers frozen, with the eigenvalue λ₀ and the vectors
+b right and c left, the secant method finds the zero of 1/g from λ₀ / i: the exponent of the family of this mode that is
+nearest, as b and c hardly meet the others. It is the mode's own where the machine turns slowly or is nearly alike all
+round.
 
 A fixed observer sees the motion of an exponent at all frequencies Im λ + m·f, in proportion to the parts q_m that its
 sensors have of it. Next to its pole the response is that motion, whatever the load.
@@ -16,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.carriers.turning_response import TurningResponse
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent
 

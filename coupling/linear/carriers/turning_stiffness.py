@@ -3,7 +3,7 @@ r"""Parametric stiffness of meshes that turn: forces by stiffness that varies, a
 As of :mod:`gearwhine.coupling.linear.parametric_stiffness` the stiffness κ of a mesh varies with its phase, of
 frequency Ω. Where directions turn with carriers at rates f, a mesh is compressed at all nΩ + m·f: what stands still is
 not alike all round. With h the force that the stiffness adds along the mesh and S(n) the compressions at nΩ + m·f by
-unit forces at nΩ + m'·f (:meth:`gearwhine.coupling.linear.turning_response.TurningResponse.compressions`),
+unit forces at nΩ + m'·f (:meth:`gearwhine.coupling.linear.carriers.turning_response.TurningResponse.compressions`),
 
     h_{n,m} = -Σ_j κ_{n-j} u_{j,m},      u_{n,m} = u°_{n,m} + Σ_m' S_{m m'}(n) h_{n,m'},
 
@@ -20,8 +20,8 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
-from gearwhine.coupling.linear.turning_response import Order, TurningResponse
 from gearwhine.numerics.arrays import ComplexArray
 
 _TOLERANCE = 1e-10  # of the compressions, relative

@@ -1,0 +1,1 @@
+"""Machines whose planets turn with carriers: sidebands, harmonic balance over the turning, phasing, exponents."""
