@@ -1,7 +1,7 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
 from collections.abc import Callable, Iterable, Sequence
-from textwrap import wrap
+from textwrap import fill, wrap
 from typing import Any, Literal
 
 from rich.box import SIMPLE_HEAD
@@ -113,10 +113,8 @@ def _filled(table: Table) -> tuple[tuple[Column, ...], list[list[str]]]:
 def _fitting(console: Console, table: Table, indent: int) -> list[Grid]:
     """Return a table as it fits a terminal: its rows become columns, a few beside each other, where it is too wide."""
     columns, rows = _filled(table)
-    if not console.is_terminal:
-        return [_grid(table, breaks_words=False)]
     headings = [column.heading for column in columns]
-    room = console.width - indent
+    room = (console.width if console.is_terminal else _WIDTH) - indent
 
     def width(cells: Sequence[str]) -> int:
         return _BETWEEN + max((cell_len(line) for cell in cells for line in cell.split("\n")), default=0)
@@ -124,6 +122,8 @@ def _fitting(console: Console, table: Table, indent: int) -> list[Grid]:
     whole = sum(width([heading, *(row[place] for row in rows)]) for place, heading in enumerate(headings))
     first = width(headings)
     widest = max((width(row) for row in rows), default=0)
+    if not console.is_terminal:
+        return [_grid(table, breaks_words=whole <= room)]
     if whole <= room or first + widest > room:  # nothing is won where not even one row fits beside the headings
         return [_grid(table)]
     beside = (room - first) // widest
@@ -152,7 +152,10 @@ def _grid(table: Table, *, breaks_words: bool = True) -> Grid:
         words = " ".join([column.heading, *(row[place] for row in rows)]).split()
         least = None if breaks_words else max(map(cell_len, words), default=None)
         justify: Literal["left", "right"] = "right" if numbers else "left"
-        grid.add_column(column.heading, justify=justify, overflow="fold", min_width=least)
+        # A column of words alone is as wide as the longest; else the widest would be cut first, words or not.
+        whole = not breaks_words and not any(" " in row[place] for row in rows)
+        heading = fill(column.heading, least, break_long_words=False) if whole and least else column.heading
+        grid.add_column(heading, justify=justify, overflow="fold", min_width=least, no_wrap=whole)
     for row in rows:
         grid.add_row(*row)
     return grid

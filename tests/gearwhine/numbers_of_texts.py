@@ -156,6 +156,8 @@ def _is_known(one: Shown, known: defaultdict[str, list[float]]) -> bool:
     dimension, size = _UNITS[one.unit]
     mantissa, _, exponent = one.number.partition("e")
     step = size * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    if mantissa.isdigit() and not mantissa[3:].strip("0"):  # of three significant digits
+        step *= 10.0 ** len(mantissa[3:])
     value = size * float(one.number)
     if "⌀" in one.text:
         value, step = 0.5 * value, 0.5 * step

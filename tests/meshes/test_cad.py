@@ -257,7 +257,9 @@ def test_a_reader_is_given_time_by_the_size_of_its_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("stage", ["reading it", "meshing it"])
 def test_the_file_size_limits_reading_and_not_meshing(stage: str, tmp_path: Path) -> None:
     (tmp_path / "stage").write_text(stage, encoding="utf-8")
-    slow = [sys.executable, "-c", "import sys, time; time.sleep(1.5); sys.stderr.write('done')"]
+    works = "[(time.sleep(0.3), spent.write_text(str(0.3 * n))) for n in range(5)]; sys.stderr.write('done')"
+    program = f"import pathlib, sys, time; spent = pathlib.Path(sys.argv[1], 'spent'); {works}"
+    slow = [sys.executable, "-c", program, str(tmp_path)]
     with subprocess.Popen(slow, stderr=subprocess.PIPE) as worker:
         if stage == "meshing it":
             assert _errors_of(worker, tmp_path, 0.1, 60.0) == b"done"

@@ -64,7 +64,7 @@ def test_check_says_what_shares_of_a_power_split_assume(split: gw.CaseStudy) -> 
     assert abs(found[0] - found[1]) > 0.03 * sum(found)
     # Gear pairs in a machine have the law of their own share, and so have its linear analyses, in which the tangent of
     # the tilted face stands for the face.
-    pairs = split.gears(without=("harris-map", "relief", "pictures")).document["pairs"]
+    pairs = split.gears(without=("harris-map", "relief")).document["pairs"]
     assert [pair["mean_force_from"] for pair in pairs] == ["operating point"] * 2
     assert [pair["mean_force_n"] for pair in pairs] == pytest.approx(found, rel=1e-9)
     tilted = replace(split.machine, gear_pairs=[replace(one, misalignment=None) for one in split.machine.gear_pairs])
