@@ -73,9 +73,12 @@ def radiate() -> None:
 
 
 def multiply() -> None:
-    """Product of the stiffness of one node, as of a large housing, by its blocks."""
+    """Products of stiffness and mass of one node, as of a large housing, by its blocks."""
     node = np.zeros(1, dtype=np.int32)
-    BlockProduct(np.array([0, 1], dtype=np.int32), node, np.eye(3)[None], np.ones(1), np.arange(3)) @ np.ones((3, 1))
+    product = BlockProduct(np.array([0, 1], dtype=np.int32), node, np.eye(3)[None], np.ones(1), np.arange(3))
+    for columns in (1, 16):
+        product @ np.ones((3, columns))
+    product.with_inertia(np.ones((3, 1)))
 
 
 def motions() -> None:

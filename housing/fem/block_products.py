@@ -4,6 +4,7 @@ On a large mesh the assembled matrix is a good part of the memory beside the fac
 are multiplied at once, each row by one thread. Importing this module imports numba.
 """
 
+from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -18,65 +19,77 @@ from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
 
-_COLUMNS = 16  # columns multiplied at once; a fixed number
 _ROWS_AT_ONCE = 2**14  # rows moved in place
 
 
-@_compiled
-def _write_products(
-    first: int,
-    last: int,
-    pointer: npt.NDArray[np.int32],
-    neighbors: npt.NDArray[np.int32],
-    lower_pointer: npt.NDArray[np.int32],
-    lower_neighbors: npt.NDArray[np.int32],
-    lower_places: npt.NDArray[np.int32],
-    entries: FloatArray,
-    node_mass: FloatArray,
-    motions: FloatArray,
-    forces: FloatArray,
-    inertia: FloatArray,
-) -> None:
-    """Write K u to forces and (m ⊗ I₃) u to inertia, of _COLUMNS columns, at nodes ``first`` to ``last`` - 1.
+def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
+    """Kernel that multiplies so many columns at once, a number known to the compiler, with the mass or without."""
 
-    Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node. The lower pattern
-    has the places of blocks below the diagonal, which are kept above it, transposed.
-    """
-    own = np.empty((6, _COLUMNS))
-    for i in range(first, last):
-        own[:] = 0.0
-        for place in range(pointer[i], pointer[i + 1]):
-            other = 3 * neighbors[place]
-            xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
-            yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
-            zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
-            m = node_mass[place]
-            for k in range(_COLUMNS):
-                x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
-                own[0, k] += xx * x + xy * y + xz * z
-                own[1, k] += yx * x + yy * y + yz * z
-                own[2, k] += zx * x + zy * y + zz * z
-                own[3, k] += m * x
-                own[4, k] += m * y
-                own[5, k] += m * z
-        for number in range(lower_pointer[i], lower_pointer[i + 1]):
-            other, place = 3 * lower_neighbors[number], lower_places[number]
-            xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
-            yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
-            zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
-            m = node_mass[place]
-            for k in range(_COLUMNS):
-                x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
-                own[0, k] += xx * x + yx * y + zx * z
-                own[1, k] += xy * x + yy * y + zy * z
-                own[2, k] += xz * x + yz * y + zz * z
-                own[3, k] += m * x
-                own[4, k] += m * y
-                own[5, k] += m * z
-        for component in range(3):
-            for k in range(_COLUMNS):
-                forces[3 * i + component, k] = own[component, k]
-                inertia[3 * i + component, k] = own[3 + component, k]
+    @_compiled
+    def write_products(
+        first: int,
+        last: int,
+        pointer: npt.NDArray[np.int32],
+        neighbors: npt.NDArray[np.int32],
+        lower_pointer: npt.NDArray[np.int32],
+        lower_neighbors: npt.NDArray[np.int32],
+        lower_places: npt.NDArray[np.int32],
+        entries: FloatArray,
+        node_mass: FloatArray,
+        motions: FloatArray,
+        forces: FloatArray,
+        inertia: FloatArray,
+    ) -> None:
+        """Write K u to forces and (m ⊗ I₃) u to inertia at nodes ``first`` to ``last`` - 1.
+
+        Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node. The lower
+        pattern has the places of blocks below the diagonal, which are kept above it, transposed.
+        """
+        own = np.empty((6, columns))
+        for i in range(first, last):
+            own[:] = 0.0
+            for place in range(pointer[i], pointer[i + 1]):
+                other = 3 * neighbors[place]
+                xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
+                yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
+                zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
+                m = node_mass[place]
+                for k in range(columns):
+                    x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                    own[0, k] += xx * x + xy * y + xz * z
+                    own[1, k] += yx * x + yy * y + yz * z
+                    own[2, k] += zx * x + zy * y + zz * z
+                    if has_mass:
+                        own[3, k] += m * x
+                        own[4, k] += m * y
+                        own[5, k] += m * z
+            for number in range(lower_pointer[i], lower_pointer[i + 1]):
+                other, place = 3 * lower_neighbors[number], lower_places[number]
+                xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
+                yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
+                zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
+                m = node_mass[place]
+                for k in range(columns):
+                    x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                    own[0, k] += xx * x + yx * y + zx * z
+                    own[1, k] += xy * x + yy * y + zy * z
+                    own[2, k] += xz * x + yz * y + zz * z
+                    if has_mass:
+                        own[3, k] += m * x
+                        own[4, k] += m * y
+                        own[5, k] += m * z
+            for component in range(3):
+                for k in range(columns):
+                    forces[3 * i + component, k] = own[component, k]
+                    if has_mass:
+                        inertia[3 * i + component, k] = own[3 + component, k]
+
+    return write_products
+
+
+_ALONE = {4: _products_of(4, has_mass=False), 16: _products_of(16, has_mass=False)}
+_BOTH = {16: _products_of(16, has_mass=True)}
+"""Kernels of K alone, and of K and M, by the number of columns that they multiply at once."""
 
 
 class BlockProduct:
@@ -122,33 +135,36 @@ class BlockProduct:
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply by one vector or by many, shape (n, m)."""
-        return self.with_inertia(vectors)[0]
+        return self._products(vectors, has_mass=False)[0]
 
     def with_inertia(self, vectors: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
         """Products of the matrix and of m ⊗ I₃ with one vector or with many, in single or double precision."""
-        columns = vectors.reshape(len(vectors), -1)
-        if columns.shape[1] <= _COLUMNS:
-            forces, inertia = self._products(columns)
-        else:
-            forces, inertia = np.empty(columns.shape), np.empty(columns.shape)
-            for begin in range(0, columns.shape[1], _COLUMNS):
-                few = slice(begin, begin + _COLUMNS)
-                forces[:, few], inertia[:, few] = self._products(columns[:, few])
-        return forces.reshape(vectors.shape), inertia.reshape(vectors.shape)
+        forces, inertia = self._products(vectors, has_mass=True)
+        return forces, inertia
 
-    def _products(self, columns: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-        """Multiply _COLUMNS columns or fewer."""
+    def _products(self, vectors: npt.NDArray[Any], *, has_mass: bool) -> list[FloatArray]:
+        columns = vectors.reshape(len(vectors), -1)
+        found = [np.empty(columns.shape) for _ in range(1 + has_mass)]
+        at_most = max(_ALONE)
+        for begin in range(0, columns.shape[1], at_most):
+            few = slice(begin, begin + at_most)
+            for whole, part in zip(found, self._few_products(columns[:, few], has_mass=has_mass), strict=True):
+                whole[:, few] = part
+        return [product.reshape(vectors.shape) for product in found]
+
+    def _few_products(self, columns: npt.NDArray[Any], *, has_mass: bool) -> list[FloatArray]:
+        """Multiply as many columns as a kernel takes, or fewer."""
         n, width = columns.shape
-        motions = np.zeros((self._order, _COLUMNS))
+        at_most, write = next(one for one in (_BOTH if has_mass else _ALONE).items() if one[0] >= width)
+        motions = np.zeros((self._order, at_most))
         pieces = [slice(first, min(first + _ROWS_AT_ONCE, n)) for first in range(0, n, _ROWS_AT_ONCE)]
         for few in pieces:
             motions[self._free[few], :width] = columns[few]
-        forces, inertia = np.empty_like(motions), np.empty_like(motions)
-        arguments: list[tuple[Any, ...]] = [(*share, *self._blocks, motions, forces, inertia) for share in self._shares]
-        at_once([partial(_write_products, *each) for each in arguments])
-        del arguments
-        for product in (forces, inertia):
+        forces, inertia = np.empty_like(motions), np.empty_like(motions if has_mass else motions[:0])
+        at_once([partial(write, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
+        products = [forces, inertia] if has_mass else [forces]
+        for product in products:
             # The free degrees of freedom ascend: none is overwritten before it is read.
             for few in pieces:
                 product[few] = product[self._free[few]]
-        return forces[:n, :width], inertia[:n, :width]
+        return [product[:n, :width] for product in products]
