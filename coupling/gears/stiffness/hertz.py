@@ -81,9 +81,6 @@ class LineContact:
 
     def secant_compliance(self, force: npt.ArrayLike) -> FloatArray:
         """Approach over force [m/N]."""
-        return self._compliance(force, 0.0)
-
-    def _compliance(self, force: npt.ArrayLike, less: float) -> FloatArray:
         strip = self.half_width(force)
         if np.any(2.0 * strip > self.depths):
             raise GearError(
@@ -92,7 +89,7 @@ class LineContact:
                 f"({1e3 * self.depths.min():.3g} mm); lower the load"
             )
         nu = self.poisson_ratios[:, None]
-        parts = np.log(2.0 * self.depths / strip) - 0.5 * nu / (1.0 - nu) - less
+        parts = np.log(2.0 * self.depths / strip) - 0.5 * nu / (1.0 - nu)
         return np.asarray(2.0 / (math.pi * self.width) * (self.yielding @ parts), dtype=np.float64)
 
 
