@@ -430,5 +430,5 @@ def test_level_has_the_power_of_what_differs_between_teeth() -> None:
 def test_stiffness_that_is_not_found_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(turning_stiffness, "_STEPS", 2)
     machine = turning_machine(ANISOTROPIC, ripple=STRONG_RIPPLE)
-    with pytest.raises(CouplingError, match="varies at 917.351 Hz: GMRES has not settled in 2 steps"):
+    with pytest.raises(CouplingError, match=r"varies at 917\.351 Hz: GMRES has not settled in 2 steps"):
         MeshHarmonicModel(machine).parts(LIMIT)
