@@ -1,7 +1,7 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
 from collections.abc import Callable, Iterable, Sequence
-from textwrap import fill, wrap
+from textwrap import wrap
 from typing import Any, Literal
 
 from rich.box import SIMPLE_HEAD
@@ -148,14 +148,17 @@ def _grid(table: Table, *, breaks_words: bool = True) -> Grid:
     grid = Grid(box=SIMPLE_HEAD, show_edge=False)
     for place, column in enumerate(columns):
         numbers = any(is_number(row[place]) for row in rows)
-        # Key paths have no spaces to wrap at; what would be cut off is what they differ in.
-        words = " ".join([column.heading, *(row[place] for row in rows)]).split()
+        cells = [row[place] for row in rows]
+        # A key path has no spaces to wrap at; what would be cut off is what the paths differ in.
+        words = " ".join([column.heading, *cells]).split()
         least = None if breaks_words else max(map(cell_len, words), default=None)
         justify: Literal["left", "right"] = "right" if numbers else "left"
-        # A column of words alone is as wide as the longest; else the widest would be cut first, words or not.
-        whole = not breaks_words and not any(" " in row[place] for row in rows)
-        heading = fill(column.heading, least, break_long_words=False) if whole and least else column.heading
-        grid.add_column(heading, justify=justify, overflow="fold", min_width=least, no_wrap=whole)
+        # A column of paths keeps its width, else the widest is cut first. A column whose heading is wider
+        # than its cells may wrap the heading instead.
+        widest = max(map(cell_len, cells), default=0)
+        is_path = not any(" " in cell for cell in cells) and widest >= cell_len(column.heading)
+        whole = is_path and not breaks_words
+        grid.add_column(column.heading, justify=justify, overflow="fold", min_width=least, no_wrap=whole)
     for row in rows:
         grid.add_row(*row)
     return grid
