@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 from gearwhine.case import Case
 from gearwhine.case.checks.whole_case import warnings_of
+from gearwhine.commands import COMMANDS
 from gearwhine.failures import DamagedResultsError
 from gearwhine.housing.storage.netcdf import Variables, write_netcdf
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output import COMMANDS, finite, json_text, staging
+from gearwhine.output import finite, json_text, staging
 from gearwhine.output.files import finish_moves
 from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings

@@ -10,7 +10,8 @@ from cyclopts import App, CycloptsError
 
 from gearwhine import __version__
 from gearwhine.cli import folder_commands, import_command
-from gearwhine.cli.study_commands import STUDY_COMMANDS, made_command
+from gearwhine.cli.study_commands import made_command
+from gearwhine.commands import STUDY_COMMANDS
 from gearwhine.failures import explain
 from gearwhine.interruption import INTERRUPTED, ended_when_deaf, interruptible, was_interrupted
 

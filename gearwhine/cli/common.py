@@ -54,17 +54,6 @@ CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a b
 
 _LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take; the path leaves room for file names
 _LONGEST_SHOWN = 60
-_ALWAYS_WRITING = (
-    "detect",
-    "mesh",
-    "optimise",
-    "render",
-    "run",
-    "survey",
-    "sweep",
-    "update",
-    "vary",
-)  # commands that need no --output to write
 _RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".vtu")
 
 
@@ -76,6 +65,7 @@ def on_case(
     command: str,
     *,
     writes: Sequence[str] = (),
+    always_writes: bool = False,
 ) -> dict[str, Any]:
     """Read the case, do the work under a progress display, hand the result over and return it.
 
@@ -85,7 +75,9 @@ def on_case(
     command : str
         Name of the command.
     writes : sequence of str
-        Names of files that it writes beside those of :data:`gearwhine.output.own_files.OUTPUTS`.
+        Names of files that it writes beside those of its declaration, see :mod:`gearwhine.commands`.
+    always_writes : bool
+        Whether it writes without ``--output``, too.
     """
     from gearwhine.case import load_case
     from gearwhine.output.quantity import add_warnings
@@ -94,7 +86,7 @@ def on_case(
     loaded = load_case(name, common.settings)
     if common.output is not None:
         _check_folder(common.output)
-    folder = _default_folder(name) if common.output is None and command in _ALWAYS_WRITING else common.output
+    folder = _default_folder(name) if common.output is None and always_writes else common.output
     if folder is not None:
         _check_files(command, folder, loaded, writes)
     for warning in loaded.warnings:
@@ -156,7 +148,7 @@ def _check_files(command: str, folder: Path, loaded: "LoadedCase", writes: Seque
 def _check_folder(folder: Path) -> None:
     """Refuse a folder that cannot hold results, before the work begins and without creating it."""
     from gearwhine.case import CaseError, Problem
-    from gearwhine.output import COMMANDS
+    from gearwhine.commands import COMMANDS
 
     if any(len(os.fsencode(part)) > _LONGEST_NAME for part in folder.parts) or len(os.fsencode(folder)) > _LONGEST_PATH:
         short_name = f"{str(folder)[:_LONGEST_SHOWN]}…"

@@ -1,4 +1,4 @@
-"""Commands on a case: each is made of the method of a study that has its name.
+"""Commands on a case, declared in :mod:`gearwhine.commands`, each made of the method of a study that has its name.
 
 The parameters of the method are the options of the command, their texts and the first paragraphs of its docstring the
 help. The methods stand in :mod:`gearwhine.study`, those that only a case has in :mod:`gearwhine.case_study`.
@@ -6,7 +6,6 @@ help. The methods stand in :mod:`gearwhine.study`, those that only a case has in
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, Required, Unpack, get_args, get_origin, get_type_hints
 
@@ -15,6 +14,7 @@ from docstring_parser.numpydoc import parse
 
 from gearwhine.case_study import CaseStudy
 from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, on_case, results_folder, written
+from gearwhine.commands import STUDY_COMMANDS, Command
 from gearwhine.failures import PartlyFailedError
 from gearwhine.numerics.findings import Number
 
@@ -23,107 +23,20 @@ if TYPE_CHECKING:
     from gearwhine.numerics.progress import Progress
     from gearwhine.output.sections import Document
 
-_FRESH_MODES = "Solve the housing's modes again, even if OUT holds them."
-_FRESH_RUN = "Start again, even if OUT holds the housing's modes or an interrupted transient."
-_FRESH_POINTS = "Solve again the points and modes that OUT holds."
-_FRESH_SAMPLES = "Solve again the gearboxes and modes that OUT holds."
-_FRESH_DESIGNS = "Solve again the designs and modes that OUT holds."
 _MOST_FAILED = 0.5
 """Part of the gearboxes of a varied case that may fail."""
 _OUT = "Results go to OUT (default: ./<case>-results)."
-
-
-@dataclass(frozen=True)
-class StudyCommand:
-    """A command that is made of a method of a study.
-
-    Attributes
-    ----------
-    name : str
-        Name of the command.
-    sections : str
-        Module of :mod:`gearwhine.results` and function in it that compose what the terminal shows; empty for files
-        alone.
-    method : str
-        Method of :class:`gearwhine.case_study.CaseStudy`; that of the command's name by default.
-    longer : tuple of str
-        Option that shows more, and the module and function that compose it.
-    always_writes : bool
-        Whether results are written without ``--output``, too.
-    writes_with : str
-        Option with which they are.
-    stores : bool
-        Whether the method takes the folder and stores the result itself.
-    names : mapping of str to str
-        Options by another name than that of the parameter.
-    without : sequence of str
-        Parameters that are no options.
-    fresh : str
-        Help of ``--fresh``; empty where there is no such option.
-    timed : bool
-        Whether the terminal shows the time.
-    draws : bool
-        Whether pictures are written beside the data, and may be left out.
-    """
-
-    name: str
-    sections: str = ""
-    method: str = ""
-    longer: tuple[str, str] = ("", "")
-    always_writes: bool = False
-    writes_with: str = ""
-    stores: bool = False
-    names: Mapping[str, str] = field(default_factory=dict)
-    without: Sequence[str] = ()
-    fresh: str = ""
-    timed: bool = False
-    draws: bool = True
-
-    @property
-    def function(self) -> Callable[..., Any]:
-        """Method of the study."""
-        return getattr(CaseStudy, self.method or self.name)  # type: ignore[no-any-return]
-
-
-_OF_MANY: dict[str, Any] = {"always_writes": True, "without": ("folder", "fresh"), "timed": True}
-"""Of a study of many solutions, which keeps them in the folder, see :class:`gearwhine.study_folder.FolderOptions`."""
-
-STUDY_COMMANDS = (
-    StudyCommand(
-        "run",
-        "run.sections",
-        "run_into",
-        always_writes=True,
-        stores=True,
-        without=("folder",),
-        fresh=_FRESH_RUN,
-        timed=True,
-    ),
-    StudyCommand("check", "check.summary", longer=("verbose", "check.sections"), draws=False),
-    StudyCommand("mesh", "mesh.sections", always_writes=True, names={"suffix": "format"}, draws=False),
-    StudyCommand("modes", "modes.sections", longer=("detail", "modes.detailed_sections"), fresh=_FRESH_MODES),
-    StudyCommand("rotors", "rotors.sections", writes_with="write_ross"),
-    StudyCommand("gears", "gears.sections", without=("aims",)),
-    StudyCommand("load", "operating_point.sections", "operating_point", fresh=_FRESH_MODES),
-    StudyCommand("system", "system.sections", fresh=_FRESH_MODES),
-    StudyCommand("steady", "steady_state.sections", fresh=_FRESH_MODES),
-    StudyCommand("sound", "sound.sections", without=("acoustics",), fresh=_FRESH_MODES),
-    StudyCommand("sweep", "sweep.sections", fresh=_FRESH_POINTS, **_OF_MANY),
-    StudyCommand("vary", "variation.sections", names={"samples": "n"}, fresh=_FRESH_SAMPLES, **_OF_MANY),
-    StudyCommand("detect", "detection.sections", fresh=_FRESH_SAMPLES, **_OF_MANY),
-    StudyCommand("optimise", "optimisation.sections", names={"evaluations": "n"}, fresh=_FRESH_DESIGNS, **_OF_MANY),
-    StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
-    StudyCommand("survey", "survey.sections", always_writes=True, fresh=_FRESH_MODES),
-    StudyCommand("update", "update.sections", always_writes=True, draws=False),
-    StudyCommand("render", always_writes=True, names={"mode_format": "format"}, fresh=_FRESH_MODES, draws=False),
-)
-"""Commands on a case, in the order of the help."""
 
 # Options that are of the terminal alone.
 _SHOWN = {"verbose": ("-v", "Show every part, with the origin of its values.")}
 
 
-def made_command(entry: StudyCommand) -> Callable[..., None]:
+def method_of(entry: Command) -> Callable[..., Any]:
+    """Return the method of a study that a command is made of."""
+    return getattr(CaseStudy, entry.method or entry.name)  # type: ignore[no-any-return]
+
+
+def made_command(entry: Command) -> Callable[..., None]:
     """Return the function of a command, with the signature and the help that its method gives."""
     shown = [] if entry.longer[0] not in _SHOWN else [_shown_option(entry.longer[0])]
     options = [*_method_options(entry), *_pictures_option(entry), *shown, *_fresh_option(entry)]
@@ -141,9 +54,9 @@ def made_command(entry: StudyCommand) -> Callable[..., None]:
     return command
 
 
-def _described(entry: StudyCommand) -> str:
+def _described(entry: Command) -> str:
     """Return the help of a command: the summary of its method, where the results go, and what else the method says."""
-    documented = parse(entry.function.__doc__ or "")
+    documented = parse(method_of(entry).__doc__ or "")
     summary = f"{documented.short_description} {_OUT if entry.always_writes else ''}".strip()
     return f"{summary}\n\n{documented.long_description or ''}".strip()
 
@@ -167,9 +80,9 @@ def _documented_parameters(function: Callable[..., Any]) -> Iterator[tuple[inspe
                 yield inspect.Parameter(name, parameter.KEYWORD_ONLY, default=default, annotation=kind), texts[name]
 
 
-def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
+def _method_options(entry: Command) -> Iterator[inspect.Parameter]:
     """Yield the parameters of a method as options."""
-    for parameter, text in _documented_parameters(entry.function):
+    for parameter, text in _documented_parameters(method_of(entry)):
         if parameter.name in entry.without:
             continue
         kind, rules = parameter.annotation, list[Number]()
@@ -213,7 +126,7 @@ def _shown_option(name: str) -> inspect.Parameter:
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Annotated[bool, marker])
 
 
-def _fresh_option(entry: StudyCommand) -> Iterator[inspect.Parameter]:
+def _fresh_option(entry: Command) -> Iterator[inspect.Parameter]:
     if entry.fresh:
         marker = Parameter(name="--fresh", negative=(), help=entry.fresh)
         yield inspect.Parameter(
@@ -221,14 +134,14 @@ def _fresh_option(entry: StudyCommand) -> Iterator[inspect.Parameter]:
         )
 
 
-def _pictures_option(entry: StudyCommand) -> Iterator[inspect.Parameter]:
+def _pictures_option(entry: Command) -> Iterator[inspect.Parameter]:
     """Yield the option of the method that stores its own results, for the others that draw."""
     if entry.draws and not entry.stores:
         (stores,) = (one for one in STUDY_COMMANDS if one.stores)
         yield from (one for one in _method_options(stores) if one.name == "pictures")
 
 
-def _perform(entry: StudyCommand, case: str, common: Common, given: dict[str, Any]) -> None:
+def _perform(entry: Command, case: str, common: Common, given: dict[str, Any]) -> None:
     """Make a study of the case, call its method, and show the result."""
     from gearwhine.output.terminal import shown_by
 
@@ -241,14 +154,14 @@ def _perform(entry: StudyCommand, case: str, common: Common, given: dict[str, An
         folder = results_folder(case, common) if writes else common.output
         study = CaseStudy(loaded, progress, folder=folder, fresh=fresh)
         to_folder = {"folder": folder} if "folder" in entry.without else {}
-        result = entry.function(study, **given, **to_folder)
+        result = method_of(entry)(study, **given, **to_folder)
         document: dict[str, Any] = result.document if entry.stores else written(result, folder, progress, **drawn)
         return document
 
     composed_by = entry.longer[1] if shows_more else entry.sections
     show = shown_by(_sections(composed_by) if composed_by else lambda document: (), timed=entry.timed)
     files = (f"mesh.{given['suffix']}", "mesh.h5") if "suffix" in given else ()
-    _require_whole(on_case(case, common, work, show, entry.name, writes=files))
+    _require_whole(on_case(case, common, work, show, entry.name, writes=files, always_writes=entry.always_writes))
 
 
 def _sections(place: str) -> Callable[["Document"], Any]:

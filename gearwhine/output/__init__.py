@@ -7,10 +7,9 @@
 * :mod:`~gearwhine.output.files`: files that appear whole or not at all.
 """
 
-from gearwhine.output.files import COMMANDS, SUMMARY, file_stems, finite, json_text, listed_files, read_summary, staging
+from gearwhine.output.files import SUMMARY, file_stems, finite, json_text, listed_files, read_summary, staging
 
 __all__ = [
-    "COMMANDS",
     "SUMMARY",
     "file_stems",
     "finite",

@@ -16,6 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from gearwhine.commands import COMMANDS
 from gearwhine.failures import DamagedResultsError
 from gearwhine.interruption import cleared_at_the_end, uninterrupted
 from gearwhine.output.manifest import MANIFEST, file_digest, listed_digests, manifest_text
@@ -94,6 +95,7 @@ def texts_in(value: Any) -> set[str]:
 
 PRESENTATION = (
     "gearwhine.cli",
+    "gearwhine.commands",
     "gearwhine.drawing_process",
     "gearwhine.figures",
     "gearwhine.mode_pictures",
@@ -117,31 +119,6 @@ def _inner(value: Any) -> list[Any]:
 MODE_CACHE_FILE = "modes.nc"
 """Modes of the housing, which the commands of a results folder share."""
 SUMMARY = "summary.json"
-COMMANDS = (
-    "run",
-    "simulate",
-    "check",
-    "modes",
-    "rotors",
-    "gears",
-    "load",
-    "system",
-    "steady",
-    "sound",
-    "sweep",
-    "vary",
-    "detect",
-    "optimise",
-    "compare",
-    "survey",
-    "update",
-    "render",
-)
-"""Analyses that leave results in the output folder: the commands, and `simulate` of Python."""
-
-ADDING = ("render",)
-"""Commands whose pictures are added to their earlier ones."""
-
 _STAGING, _COMPLETE = ".partial-", ".complete-"  # beginnings of the names of folders of staged files
 _DRAWN = (".png", ".glb", ".vtu", ".toml")
 _JSON_LINE = 160  # letters of a document's line that holds a whole list or object
@@ -279,11 +256,12 @@ def _superseded(place: Path, folder: Path, summary: Path) -> list[Path]:
     ones; and files of another command, which stand in its own sub-folder now.
     """
     new, old = read_summary(place / summary.parent) or {}, read_summary(folder / summary.parent) or {}
-    if new.get("command") in ADDING:
+    command = COMMANDS.get(str(new.get("command")))
+    if command is not None and command.adds:
         return []
     earlier = [file for file in listed_files(folder, summary.parent) if file.as_posix() not in new.get("files", ())]
     owner = old.get("command")
-    if owner == new.get("command") or owner not in COMMANDS:
+    if owner == new.get("command") or str(owner) not in COMMANDS:
         return [file for file in earlier if file.suffix in _DRAWN]
     own = Path(str(owner))
     return [file for file in earlier if (folder / own / file.name).is_file() or (place / own / file.name).is_file()]
@@ -315,9 +293,7 @@ def json_text(document: Mapping[str, Any]) -> str:
 def _json_lines(value: Any, margin: str) -> str:
     """Return a value of a document as JSON, its further lines behind a margin."""
     text = json.dumps(value, ensure_ascii=False, allow_nan=False)
-    inner = (
-        list(value.values()) if isinstance(value, Mapping) else list(value) if isinstance(value, list | tuple) else []
-    )
+    inner = _inner(value)
     nested = any(isinstance(item, Mapping | list | tuple) for item in inner)
     if not inner or len(margin) + len(text) <= _JSON_LINE or not (nested or isinstance(value, Mapping)):
         return text

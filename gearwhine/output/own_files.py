@@ -1,9 +1,9 @@
 """Files that a command would write over: none that its case reads, and none but those of earlier runs.
 
 A file is ours where the folder's manifest lists it (:mod:`gearwhine.output.manifest`) or, in folders of versions
-without one, the summary of a command's results. What a command will write is known by the patterns of
-:data:`OUTPUTS`, so that it is refused before the work; the files themselves are checked again before they move
-(:func:`require_own`).
+without one, the summary of a command's results. What a command will write is known by the patterns of its declaration
+(:mod:`gearwhine.commands`), so that it is refused before the work; the files themselves are checked again before they
+move (:func:`require_own`).
 """
 
 import json
@@ -11,45 +11,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from gearwhine.commands import COMMANDS
 from gearwhine.failures import DamagedResultsError, ForeignFileError
 from gearwhine.output.manifest import MANIFEST, listed_digests
 
 _SUMMARY, _FOREMOST = "summary.json", "run"
-_CASE = ("case.toml", _SUMMARY)
-_MODES = (*_CASE, "modes.nc")
-_DATA = (*_MODES, "results.nc")
-_SHAPES = (
-    "modes.png",
-    *(f"{kind}Hz.{ending}" for kind in ("mode-[0-9]*", "line-[0-9]*") for ending in ("png", "glb", "gif", "mp4")),
-)
-_COMPARED = ("comparison.csv", "comparison.png", "mac.*", "auto-mac.png", "cross-orthogonality.png", "comac.*")
-_LOAD, _SYSTEM, _SOUND = "load-*.png", ("system*.png", "transmissibility-*.png"), "sound-*.png"
-OUTPUTS: dict[str, tuple[str, ...]] = {
-    "check": _CASE,
-    "modes": (*_DATA, "modes.vtu"),
-    "compare": (*_MODES, *_COMPARED, "comparison.nc", "frac.csv"),
-    "survey": (*_MODES, "survey.uff", "survey.csv"),
-    "update": (*_CASE, "update.nc", "updated.toml"),
-    "render": (*_MODES, *_SHAPES, "measured-and-model.png"),
-    "rotors": (*_CASE, "results.nc", "rotor-*.png"),
-    "gears": (*_DATA, "gears-*.png"),
-    "load": (*_DATA, _LOAD),
-    "system": (*_DATA, *_SYSTEM),
-    "steady": (*_DATA, "steady-*.png"),
-    "sound": (*_DATA, _SOUND),
-    "sweep": (*_DATA, "sweep-*.png", "waterfall-*.png"),
-    "detect": (*_MODES, "detect.nc", "detection-*.png"),
-    "vary": (*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
-    "optimise": (*_CASE, "optimise.nc", "optimise-*.png", "best.toml", "nearest.toml", "front-*.toml"),
-    "run": (
-        *(*_DATA, "modes.vtu", *_SHAPES, *_COMPARED, _LOAD, *_SYSTEM, _SOUND),
-        *("gears-*.png", "rotor-*.png", "run-up-*.png", "spectrum.png", "contributions.png", "mesh-force.png"),
-        *("orbits.png", "modal-coordinates.png"),
-    ),
-    "mesh": (),
-    "report": (),
-}
-"""Patterns of the names of the files that each command writes."""
 
 
 def require_own(folder: Path, names: Iterable[str]) -> None:
@@ -78,7 +44,7 @@ def require_free(command: str, folder: Path, inputs: Sequence[Path], more: Seque
     Parameters
     ----------
     command : str
-        One of :data:`OUTPUTS`.
+        Name of a command.
     folder : path
         Output folder, which need not exist.
     inputs : sequence of path
@@ -94,7 +60,7 @@ def require_free(command: str, folder: Path, inputs: Sequence[Path], more: Seque
     if not folder.is_dir():
         return
     place = _place_of(folder, command)
-    patterns = (*OUTPUTS[command], *more)
+    patterns = (*(COMMANDS[command].files if command in COMMANDS else ()), *more)
     names = [
         (place / path.name).as_posix()
         for path in sorted((folder / place).iterdir() if (folder / place).is_dir() else ())
@@ -122,7 +88,7 @@ def _is_same(first: Path, second: Path) -> bool:
 def _place_of(folder: Path, command: str) -> Path:
     """Return the place of a command's results relative to the folder, see :mod:`gearwhine.output.store`."""
     summary = _summary(folder)
-    beside = summary is not None and summary.get("command") != command and command not in (_FOREMOST, "mesh", "report")
+    beside = summary is not None and summary.get("command") != command and command in COMMANDS and command != _FOREMOST
     return Path(command) if beside else Path()
 
 
@@ -132,11 +98,9 @@ def _own_names(folder: Path) -> set[str]:
         names = {*listed_digests(folder), MANIFEST}
     except DamagedResultsError:  # what it listed is unknown; the summaries list most
         names = {MANIFEST}
-    for place in (Path(), *(path.relative_to(folder) for path in folder.iterdir() if path.name in OUTPUTS)):
+    for place in (Path(), *(path.relative_to(folder) for path in folder.iterdir() if path.name in COMMANDS)):
         summary = _summary(folder / place)
-        files = (
-            None if summary is None or summary.get("command") not in (*OUTPUTS, "simulate") else summary.get("files")
-        )
+        files = None if summary is None or str(summary.get("command")) not in COMMANDS else summary.get("files")
         if isinstance(files, list):
             names |= {name for name in files if isinstance(name, str)}
     return names

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, dump_case
+from gearwhine.commands import COMMANDS
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf
 from gearwhine.output.files import (
-    COMMANDS,
     MODE_CACHE_FILE,
     SUMMARY,
     finite,
@@ -154,7 +154,7 @@ def store_results(
     Parameters
     ----------
     command : str
-        One of `gearwhine.output.COMMANDS`.
+        One of :data:`gearwhine.commands.COMMANDS`.
     document : dict
         Document that is stored as the summary; it gains the command, the time, the input files as they were read, and
         the files written.

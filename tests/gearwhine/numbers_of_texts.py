@@ -172,7 +172,8 @@ def _is_known(one: Shown, known: defaultdict[str, list[float]]) -> bool:
 @cache
 def _composers() -> dict[str, list[Callable[[Any], Iterable[Section]]]]:
     """Functions that compose the texts of each command."""
-    from gearwhine.cli.study_commands import STUDY_COMMANDS, _sections
+    from gearwhine.cli.study_commands import _sections
+    from gearwhine.commands import STUDY_COMMANDS
     from gearwhine.results import chapters_of
 
     longer = {"check": "check.sections"}  # of what every document holds

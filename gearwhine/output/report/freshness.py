@@ -7,28 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case.input_files import file_contents
+from gearwhine.commands import COMMANDS, Command
 
 _DIFFERENCES = 6  # largest number of keys of the case that are named
 _REMARKS = "provenance."  # beginning of keys that give the sources of values, and change no value
 _TITLES = ("title", "notes")
-_HOUSING = ("modes", "compare", "survey", "update", "render")
-_READERS: dict[str, tuple[str, ...]] = {
-    "acoustics": ("check", "load", "run", "simulate", "sound", "sweep"),
-    "measured": ("check", "compare", "render", "run", "update"),
-    "rotor_analysis": ("check", "rotors", "run"),
-    "sweep": ("check", "rotors", "run", "steady", "sweep", "system", "vary", "optimise"),
-    "update": ("check", "load", "update"),
-    "variation": ("detect", "vary", "optimise"),
-    "detection": ("detect",),
-    "optimisation": ("optimise",),
-}
-"""Commands that read a table of the case; other tables are read by all, but for those of :data:`_UNREAD`."""
-_UNREAD: dict[str, tuple[str, ...]] = {
-    "gears": ("transient",),
-    "rotors": ("transient", "gear_pair"),
-    **dict.fromkeys(_HOUSING, ("transient", "gear", "gear_pair")),
-}
-"""Tables that a command does not read, of those that have no list of readers."""
+_CHOSEN = frozenset(table for command in COMMANDS.values() for table in command.reads)
+"""Tables of the case that not all commands read."""
 
 
 def moment(text: object) -> str:
@@ -55,10 +40,8 @@ def mismatches(place: Path, document: Mapping[str, Any], present: Mapping[str, A
 
 def _reads(command: str, key: str) -> bool:
     """Whether a command reads a key of the case; one that is not known reads all."""
-    table = key.partition(".")[0]
-    return table not in _TITLES and (
-        command in _READERS[table] if table in _READERS else table not in _UNREAD.get(command, ())
-    )
+    table, declared = key.partition(".")[0], COMMANDS.get(command, Command(command))
+    return table not in _TITLES and (table in declared.reads if table in _CHOSEN else table not in declared.unread)
 
 
 def _has_sound(document: Mapping[str, Any], *cases: Mapping[str, Any]) -> bool:

@@ -7,7 +7,8 @@ import pytest
 
 from gearwhine.case_study import CaseStudy
 from gearwhine.cli import run_command
-from gearwhine.cli.study_commands import STUDY_COMMANDS, StudyCommand, made_command
+from gearwhine.cli.study_commands import made_command, method_of
+from gearwhine.commands import STUDY_COMMANDS, Command
 
 CALLS: list[tuple[str, str, list[str], dict[str, Any]]] = [
     (
@@ -82,9 +83,9 @@ def test_the_study_knows_the_folder_and_whether_to_begin_anew(
 
 
 @pytest.mark.parametrize("entry", STUDY_COMMANDS, ids=[entry.name for entry in STUDY_COMMANDS])
-def test_every_parameter_of_a_method_is_an_option_with_a_text(entry: StudyCommand) -> None:
+def test_every_parameter_of_a_method_is_an_option_with_a_text(entry: Command) -> None:
     options = inspect.signature(made_command(entry)).parameters
-    parameters = inspect.signature(entry.function).parameters
+    parameters = inspect.signature(method_of(entry)).parameters
     named = {
         name
         for name, parameter in parameters.items()
