@@ -50,7 +50,8 @@ if TYPE_CHECKING:
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.updating import SolvedUpdate
-    from gearwhine.sweep.run import SweptPoint
+    from gearwhine.sweep.grid import SweptPoint
+    from gearwhine.sweep.points import Point
     from gearwhine.variation.statistics import VariedResult
 
 # Tables that a command needs of a case.
@@ -625,7 +626,7 @@ class CaseStudy(Study):
 
     def sweep(  # type: ignore[override]  # a case is swept over its keys, with files and workers
         self, over: Sequence[str] = (), **options: Unpack[FolderOptions]
-    ) -> "Result[Sequence[SweptPoint]]":
+    ) -> "Result[Sequence[SweptPoint[Point]]]":
         """Parallel transients over the speeds of [sweep] or over any keys; a sweep in the same folder is resumed.
 
         Parameters

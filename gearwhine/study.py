@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-    from gearwhine.sweep.machine_sweep import SweptSpeed
+    from gearwhine.sweep.grid import SweptPoint
+    from gearwhine.sweep.points import GridPoint
 
 
 SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
@@ -316,7 +317,7 @@ class Study(StudiedMachine):
 
     def sweep(
         self, speeds: Sequence[float] = (), plan: "TransientPlan | None" = None
-    ) -> "Result[Sequence[SweptSpeed]]":
+    ) -> "Result[Sequence[SweptPoint[GridPoint]]]":
         """Integrate the motion over time at each of several speeds, one after the other.
 
         The sound of the motions is no part of it; :meth:`sound` finds that at one speed.

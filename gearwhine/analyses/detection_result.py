@@ -32,12 +32,13 @@ from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.results.detection import DETECTION, detection_document
 from gearwhine.rotors.rolling_bearings import BearingDamage
+from gearwhine.solutions import Failure
 from gearwhine.solve.machine import plan_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
 from gearwhine.variation.quantities import Evaluation, Wanted
 from gearwhine.variation.run import run_samples
-from gearwhine.variation.samples import Failure, Outcome, VariedCase
+from gearwhine.variation.samples import Outcome, VariedCase
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -55,11 +55,12 @@ from gearwhine.output.named_quantities import statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solve.machine import plan_of
 from gearwhine.solve.radiated_power import Radiations
+from gearwhine.solutions import Failure, duration
 from gearwhine.study_folder import StudyFolder
-from gearwhine.variation.cost import cost_of_study, duration
+from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.inputs import varied_inputs
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
-from gearwhine.variation.samples import Failure, outcome_of
+from gearwhine.variation.samples import outcome_of
 from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:

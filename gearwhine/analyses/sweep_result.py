@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
@@ -19,19 +19,18 @@ from gearwhine.output.quantity import add_warnings
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.study_folder import StudyFolder
 from gearwhine.sweep import collected_sweep, missed_peaks, run_sweep, sweep_document, sweep_points
-from gearwhine.sweep.grid import Solved
-from gearwhine.sweep.machine_sweep import SweptSpeed, sweep_speeds
+from gearwhine.sweep.grid import AnyPoint, SweptPoint
+from gearwhine.sweep.machine_sweep import sweep_speeds
+from gearwhine.sweep.points import GridPoint, Point
 from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.sweep.run import SweptPoint
-
 
 def solve_sweep(
     origin: Origin, source: CaseSource, keys: Sequence[SweptKey], folder: StudyFolder
-) -> Result[Sequence[SweptPoint]]:
+) -> Result[Sequence[SweptPoint[Point]]]:
     """Integrate the transient at every point of a sweep, in parallel.
 
     Parameters
@@ -72,7 +71,7 @@ def solve_speed_sweep(
     origin: Origin,
     warnings: Sequence[ResultWarning] = (),
     progress: Progress = silent,
-) -> Result[Sequence[SweptSpeed]]:
+) -> Result[Sequence[SweptPoint[GridPoint]]]:
     """Integrate the motion of a machine of Python at each of several speeds, in this process.
 
     ``warnings`` are those of what is left out; the other parameters are those of
@@ -83,18 +82,15 @@ def solve_speed_sweep(
     return _result(origin, keys, swept, start, warnings=warnings)
 
 
-AnySolved = TypeVar("AnySolved", bound=Solved)
-
-
 def _result(
     origin: Origin,
     keys: Sequence[SweptKey],
-    swept: Sequence[AnySolved],
+    swept: Sequence[SweptPoint[AnyPoint]],
     start: float,
     radiated: RadiatedLevel | None = None,
     warnings: Sequence[ResultWarning] = (),
     workers: int | None = None,
-) -> Result[Sequence[AnySolved]]:
+) -> Result[Sequence[SweptPoint[AnyPoint]]]:
     """Return the result of solved points, with the peaks between them."""
     peaks = missed_peaks(keys, swept, radiated)
     dataset = collected_sweep(origin.case, keys, swept, peaks, origin.title)

@@ -13,8 +13,8 @@ from gearwhine.case.units import split_quantity
 from gearwhine.detection.records import indicator_values, watched_signal
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.detection_probability import Detection, DetectionError, Law, Threshold, detection, threshold
+from gearwhine.solutions import Failure
 from gearwhine.variation.quantities import Evaluation
-from gearwhine.variation.samples import Failure
 
 
 @dataclass(frozen=True)

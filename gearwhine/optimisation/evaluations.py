@@ -12,10 +12,11 @@ import numpy as np
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.optimisation.design import ProposedCase
+from gearwhine.solutions import Failure
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.run import outcomes_as_they_end
-from gearwhine.variation.samples import Failure, Outcome, Record, solve_samples
+from gearwhine.variation.samples import Outcome, Record, solve_samples
 from gearwhine.workers import called, code_digest, default_workers
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from gearwhine.optimisation.design import AS_WRITTEN, DesignInput
 from gearwhine.optimisation.goals import Goals, LimitEnd, Worse
 from gearwhine.optimisation.search import FAILED, Ended, balanced, excess_of, pareto_front
 from gearwhine.optimisation.verification import Verification
+from gearwhine.solutions import Failure
 from gearwhine.variation.inputs import Input
-from gearwhine.variation.samples import Failure
 
 MOST_SHOWN = 20
 """Largest number of designs of a front that are written as cases."""

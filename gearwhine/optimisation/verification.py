@@ -21,8 +21,8 @@ from gearwhine.coupling.linear.lines_over_speed import lines_over_speed, sensor_
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.solutions import Failure
 from gearwhine.variation.quantities import level_of
-from gearwhine.variation.samples import Failure
 
 Levels = Mapping[str, float]
 DOUBT = 1.0

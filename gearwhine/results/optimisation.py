@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gearwhine.optimisation.goals import LimitEnd
     from gearwhine.optimisation.optimised import Optimised
     from gearwhine.optimisation.verification import Motion, Verification
-    from gearwhine.variation.samples import Failure
+    from gearwhine.solutions import Failure
 
 _MOST_FAILURES = 3  # told one by one
 _MOST_FRONT = 12  # rows of the front on the page
@@ -138,7 +138,7 @@ def _verification(checked: "Verification") -> dict[str, Any]:
 
 
 def _motion(motion: "Motion | Failure") -> dict[str, Any]:
-    from gearwhine.variation.samples import Failure
+    from gearwhine.solutions import Failure
 
     if isinstance(motion, Failure):
         return {"failure": motion.message}

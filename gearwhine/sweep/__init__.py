@@ -10,14 +10,14 @@ A point is identified by its content (:mod:`gearwhine.sweep.points`), is solved 
 """
 
 from gearwhine.sweep.collect import collected_sweep, sweep_document
+from gearwhine.sweep.grid import SweptPoint
 from gearwhine.sweep.points import Point, axis_name, sweep_points
 from gearwhine.sweep.resolution import missed_peaks
-from gearwhine.sweep.run import SweptPoint, run_sweep
-from gearwhine.sweep.solution import PointFailure, PointResult
+from gearwhine.sweep.run import run_sweep
+from gearwhine.sweep.solution import PointResult
 
 __all__ = [
     "Point",
-    "PointFailure",
     "PointResult",
     "SweptPoint",
     "axis_name",

@@ -18,10 +18,11 @@ from gearwhine.output.quantity import Quantity, document_of
 from gearwhine.results.operating_point import SWEPT_PAIR
 from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
-from gearwhine.sweep.grid import Solved
-from gearwhine.sweep.points import axis_name
+from gearwhine.solutions import Failure
+from gearwhine.sweep.grid import SweptPoint
+from gearwhine.sweep.points import GridPoint, axis_name
 from gearwhine.sweep.resolution import over_with, peak_warnings
-from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
+from gearwhine.sweep.solution import POINTS, PointResult
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +70,7 @@ _SOUND = (
 def collected_sweep(
     case: Case | None,
     keys: Sequence[SweptKey],
-    swept: Sequence[Solved],
+    swept: Sequence[SweptPoint[GridPoint]],
     peaks: Sequence[MissedPeak] = (),
     title: str = "",
 ) -> xr.Dataset:
@@ -123,7 +124,7 @@ def collected_sweep(
 
 
 def sweep_document(
-    keys: Sequence[SweptKey], swept: Sequence[Solved], peaks: Sequence[MissedPeak] = ()
+    keys: Sequence[SweptKey], swept: Sequence[SweptPoint[GridPoint]], peaks: Sequence[MissedPeak] = ()
 ) -> dict[str, Any]:
     """Return a sweep as the command's JSON, with the peaks that lie between its points."""
     rows = []
@@ -138,7 +139,7 @@ def sweep_document(
         }
         if swept_point.point.file:
             row["file"] = f"{POINTS}/{swept_point.point.file}"
-        if isinstance(swept_point.outcome, PointFailure):
+        if isinstance(swept_point.outcome, Failure):
             row |= {"status": "failed", "failure": swept_point.outcome.message}
             if swept_point.outcome.traceback:
                 row["traceback"] = swept_point.outcome.traceback
@@ -167,7 +168,7 @@ def sweep_document(
 class _Grid:
     """Grid of the swept keys, which is filled point by point."""
 
-    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[Solved]) -> None:
+    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[SweptPoint[GridPoint]]) -> None:
         self.names, self.shape, self.swept = names, shape, swept
 
     def results(self) -> list[PointResult]:
@@ -215,7 +216,7 @@ class _Grid:
                 values[swept_point.point.place][: len(texts)] = texts
         return ((*self.names, *dimensions), values.astype(str), attributes)
 
-    def filled(self, start: Any, of: Callable[[PointResult | PointFailure], Any]) -> Any:
+    def filled(self, start: Any, of: Callable[[PointResult | Failure], Any]) -> Any:
         values = np.full(self.shape, start, dtype=object if isinstance(start, str) else None)
         for swept_point in self.swept:
             values[swept_point.point.place] = of(swept_point.outcome)
@@ -446,15 +447,15 @@ def _entry(key: str) -> Callable[[PointResult], float]:
     return lambda result: result.document[key]
 
 
-def _failure(outcome: PointResult | PointFailure) -> str:
-    return outcome.message if isinstance(outcome, PointFailure) else ""
+def _failure(outcome: PointResult | Failure) -> str:
+    return outcome.message if isinstance(outcome, Failure) else ""
 
 
-def _settings(keys: Sequence[SweptKey], swept_point: Solved) -> dict[str, str]:
+def _settings(keys: Sequence[SweptKey], swept_point: SweptPoint[GridPoint]) -> dict[str, str]:
     return {key.key: text for key, text in zip(keys, swept_point.point.texts, strict=True)}
 
 
-def _warnings(swept: Sequence[Solved]) -> list[dict[str, Any]]:
+def _warnings(swept: Sequence[SweptPoint[GridPoint]]) -> list[dict[str, Any]]:
     """Warnings of the points' housings, each once; that of frozen carriers, whose figures follow the speed, too."""
     kept: dict[str, dict[str, Any]] = {}
     points: dict[str, int] = {}

@@ -1,50 +1,21 @@
-"""Grid of a sweep: what its results need to know of a point, of a case or of a machine of Python, and its outcome."""
+"""Grid of a sweep: a combination of the swept values, of a case or of a machine of Python, and its outcome."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Generic, TypeVar
 
-from gearwhine.sweep.solution import PointFailure, PointResult
+from gearwhine.solutions import Failure
+from gearwhine.sweep.points import GridPoint
+from gearwhine.sweep.solution import PointResult
 
-
-class GridPoint(Protocol):
-    """Combination of the swept values."""
-
-    @property
-    def place(self) -> tuple[int, ...]:
-        """Index along each swept key."""
-        ...
-
-    @property
-    def texts(self) -> tuple[str, ...]:
-        """Value of each swept key."""
-        ...
-
-    @property
-    def speed(self) -> float:
-        """Signed speed of the first driver [rad/s]."""
-        ...
-
-    @property
-    def file(self) -> str:
-        """Name of its file; empty where it is not on file."""
-        ...
+AnyPoint = TypeVar("AnyPoint", bound=GridPoint, covariant=True)
 
 
-class Solved(Protocol):
+@dataclass(frozen=True)
+class SweptPoint(Generic[AnyPoint]):
     """A point with its outcome, and whether that comes from an earlier run."""
 
-    @property
-    def point(self) -> GridPoint:
-        """The point."""
-        ...
-
-    @property
-    def outcome(self) -> PointResult | PointFailure:
-        """Motion at the point, or why there is none."""
-        ...
-
-    @property
-    def resumed(self) -> bool:
-        """Whether the outcome comes from an earlier run."""
-        ...
+    point: AnyPoint
+    outcome: PointResult | Failure
+    resumed: bool = False

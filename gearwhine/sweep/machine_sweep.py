@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from gearwhine.case import SPEED_KEY, SweptKey
 from gearwhine.case.units import to_rpm
@@ -13,31 +13,15 @@ from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.load_analysis.load_warnings import find_load
 from gearwhine.numerics.findings import FINITE
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.sweep.solution import PointFailure, PointResult, failure_of, solve_motion_of_point
-
-
-@dataclass(frozen=True)
-class SpeedOfMachine:
-    """A speed of a sweep, as :class:`gearwhine.sweep.grid.GridPoint` has it."""
-
-    place: tuple[int, ...]
-    texts: tuple[str, ...]
-    speed: float
-    file: str = ""
-
-
-@dataclass(frozen=True)
-class SweptSpeed:
-    """A speed with its outcome."""
-
-    point: SpeedOfMachine
-    outcome: PointResult | PointFailure
-    resumed: bool = False
+from gearwhine.solutions import Failure, failure_of
+from gearwhine.sweep.grid import SweptPoint
+from gearwhine.sweep.points import GridPoint
+from gearwhine.sweep.solution import PointResult, solve_motion_of_point
 
 
 def sweep_speeds(
     machine: Machine, speeds: Sequence[float], plan: TransientPlan, progress: Progress = silent
-) -> tuple[tuple[SweptKey], tuple[SweptSpeed, ...]]:
+) -> tuple[tuple[SweptKey], tuple[SweptPoint[GridPoint], ...]]:
     """Integrate the motion of a machine at each of several speeds.
 
     Parameters
@@ -52,7 +36,7 @@ def sweep_speeds(
     -------
     tuple of SweptKey
         The speed, as the swept key of a case.
-    tuple of SweptSpeed
+    tuple of SweptPoint
         Outcomes; a speed at which the motion cannot be followed has its failure.
 
     Raises
@@ -67,11 +51,11 @@ def sweep_speeds(
     swept = []
     for number, (speed, text) in enumerate(zip(speeds, texts, strict=True)):
         progress(f"sweep: {number} of {len(speeds)} points", number / len(speeds))
-        swept.append(SweptSpeed(SpeedOfMachine((number,), (text,), speed), _outcome(machine, speed, plan)))
+        swept.append(SweptPoint(GridPoint((number,), (text,), speed, ""), _outcome(machine, speed, plan)))
     return (SweptKey(SPEED_KEY, texts, rpms, "rpm"),), tuple(swept)
 
 
-def _outcome(machine: Machine, speed: float, plan: TransientPlan) -> PointResult | PointFailure:
+def _outcome(machine: Machine, speed: float, plan: TransientPlan) -> PointResult | Failure:
     begin = time.perf_counter()
     try:
         turning = replace(machine, speed=speed)

@@ -7,14 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-import gearwhine
-from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
+from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, require
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.housing.storage.netcdf import content_key
-from gearwhine.numerics.source_digest import installed
 from gearwhine.output import file_stems
-from gearwhine.output.files import with_contents
-from gearwhine.workers import code_digest
+from gearwhine.solutions import solution_key
 
 _WITHOUT_EFFECT = frozenset(
     {
@@ -30,11 +27,10 @@ _WITHOUT_EFFECT = frozenset(
     }
 )
 """Tables that no transient depends on."""
-_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 
 
 @dataclass(frozen=True)
-class Point:
+class GridPoint:
     """One combination of the swept values.
 
     Attributes
@@ -43,6 +39,24 @@ class Point:
         Index along each swept key.
     texts : tuple of str
         Value of each swept key, as ``--set`` takes it.
+    speed : float
+        Signed speed of the first driver [rad/s].
+    file : str
+        Name of its file; empty where it is not on file.
+    """
+
+    place: tuple[int, ...]
+    texts: tuple[str, ...]
+    speed: float
+    file: str
+
+
+@dataclass(frozen=True)
+class Point(GridPoint):
+    """One combination of the swept values of a case.
+
+    Attributes
+    ----------
     case : Case
         Case with these values.
     key : str
@@ -51,8 +65,6 @@ class Point:
         Key of the inputs of its housing's modes; None without a housing.
     housing_key : str or None
         Key of all that its machine takes of the housing, with damping and sensors.
-    file : str
-        Name of its file.
     duration : float
         Duration of its transient [s].
     refusal : str
@@ -60,21 +72,12 @@ class Point:
         sweep.
     """
 
-    place: tuple[int, ...]
-    texts: tuple[str, ...]
     case: Case
     key: str
     modes_key: str | None
     housing_key: str | None
-    file: str
     duration: float
     refusal: str = ""
-
-    @property
-    def speed(self) -> float:
-        """Signed speed of the first driver [rad/s]."""
-        assert self.case.operation is not None
-        return self.case.operation.speed
 
 
 def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, ...]:
@@ -127,18 +130,14 @@ def axis_name(key: str) -> str:
 
 
 def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str) -> Point:
-    document = {name: table for name, table in case_document(case).items() if name not in _WITHOUT_EFFECT}
-    key = content_key(
-        {
-            "case": with_contents(document, case.input_files.contents),
-            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-            "source": code_digest(),
-        }
-    )
+    assert case.transient is not None
+    assert case.operation is not None
+    key, speed = solution_key(case, _WITHOUT_EFFECT), case.operation.speed
     given = None if case.housing is None else given_housing(case)
     modes_key = None if given is None else content_key(given.cache_inputs())
     whole = None if given is None else housing_key(given)
-    return Point(place, texts, case, key, modes_key, whole, f"{stem}-{key[:12]}.nc", _duration(case))
+    duration = case.transient.build().duration(2.0 * math.pi / abs(speed))
+    return Point(place, texts, speed, f"{stem}-{key[:12]}.nc", case, key, modes_key, whole, duration)
 
 
 def _described(keys: Sequence[SweptKey], place: tuple[int, ...]) -> str:
@@ -149,10 +148,3 @@ def _of_the_sweep(problem: Problem, overrides: Sequence[str]) -> Problem:
     """Return a problem with a swept value as a problem of the sweep."""
     text = problem.source.removeprefix("--set ")
     return replace(problem, source=f"sweep, {text}") if text in overrides else problem
-
-
-def _duration(case: Case) -> float:
-    """Duration of a case's transient [s]."""
-    assert case.transient is not None
-    assert case.operation is not None
-    return case.transient.build().duration(2.0 * math.pi / abs(case.operation.speed))

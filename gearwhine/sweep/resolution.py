@@ -22,12 +22,13 @@ from gearwhine.coupling.sweep.missed_peaks import (
 )
 from gearwhine.coupling.sweep.resonances import SOUND
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.sweep.grid import Solved
+from gearwhine.sweep.grid import SweptPoint
+from gearwhine.sweep.points import GridPoint
 from gearwhine.sweep.solution import PointResult
 
 
 def missed_peaks(
-    keys: Sequence[SweptKey], swept: Sequence[Solved], radiated: RadiatedLevel | None = None
+    keys: Sequence[SweptKey], swept: Sequence[SweptPoint[GridPoint]], radiated: RadiatedLevel | None = None
 ) -> list[MissedPeak]:
     """Return the peaks between the points of a sweep over speed that are louder than all at both points.
 
@@ -36,7 +37,7 @@ def missed_peaks(
     Parameters
     ----------
     keys : sequence of SweptKey
-    swept : sequence of Solved
+    swept : sequence of SweptPoint
         Solved points, with the sound in their documents.
     radiated : callable, optional
         Returns the sound power level [dB] of a frequency [Hz] and the rates of the housing's coordinates, shape (n,).
@@ -45,7 +46,7 @@ def missed_peaks(
     along = next((number for number, key in enumerate(keys) if SPEED_KEY in key.keys), None)
     if along is None or not keys[along].is_numeric:
         return []
-    rows: dict[tuple[int, ...], list[tuple[SpeedPoint, Solved]]] = {}
+    rows: dict[tuple[int, ...], list[tuple[SpeedPoint, SweptPoint[GridPoint]]]] = {}
     for swept_point in swept:
         point, place = _speed_point(swept_point, radiated), swept_point.point.place
         if point is not None:
@@ -63,7 +64,7 @@ def missed_peaks(
     return sorted(peaks, key=lambda peak: -peak.rise_db)
 
 
-def over_with(keys: Sequence[SweptKey], swept: Sequence[Solved], speeds: Sequence[float]) -> str:
+def over_with(keys: Sequence[SweptKey], swept: Sequence[SweptPoint[GridPoint]], speeds: Sequence[float]) -> str:
     """Return the options of the command, quoted for a shell, for a sweep with further speeds [rpm]: old points stay."""
     along = next(number for number, key in enumerate(keys) if SPEED_KEY in key.keys)
     texts = {point.point.texts[along]: _speed(point) for point in swept}
@@ -94,12 +95,12 @@ def peak_warnings(peaks: Sequence[MissedPeak]) -> list[dict[str, Any]]:
     return [warning("sweep_resolution", f"{message}{more}; add {added}", speeds_rpm=speeds)]
 
 
-def _speed(swept_point: Solved) -> float:
+def _speed(swept_point: SweptPoint[GridPoint]) -> float:
     """Return the speed of a point in rpm, signed."""
     return float(f"{to_rpm(swept_point.point.speed):.12g}")
 
 
-def _speed_point(swept_point: Solved, radiated: RadiatedLevel | None) -> SpeedPoint | None:
+def _speed_point(swept_point: SweptPoint[GridPoint], radiated: RadiatedLevel | None) -> SpeedPoint | None:
     """Return a point as one of its row over speed; None where it has no resonances."""
     outcome = swept_point.outcome
     if not isinstance(outcome, PointResult) or outcome.motion.resonances is None:

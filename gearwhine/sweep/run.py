@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,13 +13,14 @@ from gearwhine.housing import HousingModes
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
+from gearwhine.solutions import Failure, duration
 from gearwhine.solve.acoustics import check_before_modes
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.study_folder import StudyFolder
+from gearwhine.sweep.grid import SweptPoint
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import (
-    PointFailure,
     PointResult,
     outdated_points,
     read_point,
@@ -33,19 +33,10 @@ from gearwhine.workers import as_they_end, await_workers, code_digest, connected
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-Outcome = PointResult | PointFailure
+Outcome = PointResult | Failure
 
 
-@dataclass(frozen=True)
-class SweptPoint:
-    """A point with its outcome, and whether that comes from an earlier run."""
-
-    point: Point
-    outcome: Outcome
-    resumed: bool
-
-
-def run_sweep(points: Sequence[Point], study: StudyFolder) -> tuple[SweptPoint, ...]:
+def run_sweep(points: Sequence[Point], study: StudyFolder) -> tuple[SweptPoint[Point], ...]:
     """Solve every point that the folder does not hold yet; each is written there as it ends.
 
     Points that failed before are tried again. Where all points share the housing's modes, these are solved here and
@@ -68,7 +59,7 @@ def run_sweep(points: Sequence[Point], study: StudyFolder) -> tuple[SweptPoint, 
         stored = ((number, read_point(folder, point)) for number, point in enumerate(points) if not point.refusal)
         outcomes = {number: outcome for number, outcome in stored if isinstance(outcome, PointResult)}
     resumed = frozenset(outcomes)
-    outcomes |= {number: PointFailure(point.refusal) for number, point in enumerate(points) if point.refusal}
+    outcomes |= {number: Failure(point.refusal) for number, point in enumerate(points) if point.refusal}
     todo = [number for number in range(len(points)) if number not in outcomes]
     if todo:
         from gearwhine.sweep.warm_up import WarmUp
@@ -160,9 +151,9 @@ def _outcomes_as_they_end(client: Client, futures: dict[Future[Any], int]) -> It
     """Yield each point's number and outcome as it comes."""
     for number, outcome in as_they_end(client, futures, "point"):
         if isinstance(outcome, WorkersError):
-            yield number, PointFailure(str(outcome))
+            yield number, Failure(str(outcome))
         elif isinstance(outcome, BaseException):
-            yield number, PointFailure(f"unexpected {type(outcome).__name__}: {outcome}")
+            yield number, Failure(f"unexpected {type(outcome).__name__}: {outcome}")
         else:
             yield number, outcome
 
@@ -174,13 +165,7 @@ def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None
     def report(count: int) -> None:
         done = before + count
         left = (time.perf_counter() - start) * (total - done) / count if count else None
-        text = "" if left is None or done == total else f", about {_duration(left)} left"
+        text = "" if left is None or done == total else f", about {duration(left)} left"
         progress(f"sweep: {done} of {total} points{text}", done / total)
 
     return report
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import os
 import time
-import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,7 +28,6 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, reduce_motion
 from gearwhine.coupling.sweep.resonances import Resonances
-from gearwhine.failures import explain
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.reduced_housing import reduced_component
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
@@ -41,11 +39,12 @@ from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
 from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
+from gearwhine.solutions import Failure, failure_of
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing
 from gearwhine.sweep.points import Point
-from gearwhine.workers import OtherCodeError, require_same_code
+from gearwhine.workers import require_same_code
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
@@ -70,35 +69,19 @@ class PointResult:
     motion: ReducedMotion
 
 
-@dataclass(frozen=True)
-class PointFailure:
-    """A point without a result.
-
-    Attributes
-    ----------
-    message : str
-        Sentence on the failure, with a remedy where one is known.
-    traceback : str
-        Traceback of an unexpected error; empty otherwise.
-    """
-
-    message: str
-    traceback: str = ""
-
-
-def solve_point(case: Case, housing: HousingComponent | PointFailure | None, code: str) -> PointResult | PointFailure:
+def solve_point(case: Case, housing: HousingComponent | Failure | None, code: str) -> PointResult | Failure:
     """Run the transient of a case whose housing is solved; errors are returned as failures, not raised.
 
     Parameters
     ----------
     case : Case
         Case of the point.
-    housing : HousingComponent, PointFailure or None
+    housing : HousingComponent, Failure or None
         Solved housing, where the case has one; a failure is returned.
     code : str
         Digest of the caller's code; other code on the worker could give other numbers.
     """
-    if isinstance(housing, PointFailure):
+    if isinstance(housing, Failure):
         return housing
     try:
         require_same_code(code)
@@ -146,21 +129,13 @@ def solve_motion_of_point(
     return PointResult(document, motion)
 
 
-def solve_point_housing(case: Case, code: str) -> HousingComponent | PointFailure:
+def solve_point_housing(case: Case, code: str) -> HousingComponent | Failure:
     """Solve the housing of a point, for its machine."""
     try:
         require_same_code(code)
         return reduce_housing(case, solve_housing(case, command="sweep"))
     except Exception as error:
         return failure_of(error)
-
-
-def failure_of(error: Exception) -> PointFailure:
-    """Return the failure of a point by its error, with the traceback of an unexpected one."""
-    _, message = explain(error)
-    if message is None and not isinstance(error, OtherCodeError):
-        return PointFailure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
-    return PointFailure(message or str(error))
 
 
 def _document(
@@ -212,7 +187,7 @@ _BY_NAME = {
 _LOADS = ("x", "y", "z", "moment about x", "moment about y")
 
 
-def write_point(folder: Path, place: Path, point: Point, result: PointResult | PointFailure) -> None:
+def write_point(folder: Path, place: Path, point: Point, result: PointResult | Failure) -> None:
     """Write a point and move it to its place.
 
     Parameters
@@ -222,7 +197,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     place : path
         Staging folder on the same file system.
     point : Point
-    result : PointResult or PointFailure
+    result : PointResult or Failure
         Result to write.
     """
     attributes = {
@@ -231,7 +206,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
         "case": dump_case(point.case),
         "failure": "",
     }
-    if isinstance(result, PointFailure):
+    if isinstance(result, Failure):
         attributes["failure"] = json_text({"message": result.message, "traceback": result.traceback})
         arrays = {}
     else:
@@ -244,7 +219,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
     os.replace(staged, folder / POINTS / point.file)
 
 
-def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
+def read_point(folder: Path, point: Point) -> PointResult | Failure | None:
     """Read a point; None where its file is missing, damaged or of other content."""
     file = folder / POINTS / point.file
     try:
@@ -255,7 +230,7 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
         if attributes.get("key") != point.key:
             return None
         if attributes["failure"]:
-            return PointFailure(**json.loads(attributes["failure"]))
+            return Failure(**json.loads(attributes["failure"]))
         return _result({name: array.values for name, array in arrays.items()}, attributes)
     except (OSError, RuntimeError, ValueError, KeyError, TypeError):
         return None

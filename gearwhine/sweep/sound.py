@@ -31,8 +31,8 @@ from gearwhine.sweep.solution import PointResult
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
     from gearwhine.housing import HousingModes
+    from gearwhine.sweep.grid import SweptPoint
     from gearwhine.sweep.points import Point
-    from gearwhine.sweep.run import SweptPoint
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -44,7 +44,7 @@ _FAINT_LINE_RATIO = 1e-3  # part of a point's loudest line, by an estimate, belo
 def add_sound(
     case: Case,
     keys: Sequence[SweptKey],
-    swept: Sequence[SweptPoint],
+    swept: Sequence[SweptPoint[Point]],
     housing: HousingModes,
     progress: Progress = silent,
 ) -> tuple[list[dict[str, Any]], HousingModes, RadiatedLevel | None]:
@@ -165,7 +165,9 @@ def add_sound(
     return warnings, housing, partial(radiated_level, radiation, table)
 
 
-def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limit: float) -> Iterator[dict[str, Any]]:
+def _beyond_warnings(
+    keys: Sequence[SweptKey], swept: Sequence[SweptPoint[Point]], limit: float
+) -> Iterator[dict[str, Any]]:
     """Warn where a mesh frequency is above the highest frequency of the sound [Hz]: its lines are left out there."""
     beyond = [
         (max(above), swept_point.point)
@@ -183,7 +185,7 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
         )
 
 
-def _without_lines(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> tuple[int, list[dict[str, Any]]]:
+def _without_lines(keys: Sequence[SweptKey], swept: Sequence[SweptPoint[Point]]) -> tuple[int, list[dict[str, Any]]]:
     """Return the number of points whose motion has no lines that drive the housing, and the warnings that say why."""
     from gearwhine.coupling.sound.motion_lines import left_out_warnings
 

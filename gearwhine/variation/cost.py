@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
+from gearwhine.solutions import duration
 from gearwhine.variation.quantities import Evaluation
 
 _WORTH_TELLING = 60.0  # time of a study below which its cost is not told [s]
 _MOST = 0.4  # part of a gearbox's time from which on what takes it is named
 _OVER_ALL_PERIODS = ("_over_hunting_period_m", "_harmonic_1_m", "_harmonic_2_m", "_harmonic_3_m", "_n_per_m")
-_MINUTE, _HOUR = 60.0, 3600.0
-
-
-def duration(seconds: float) -> str:
-    """Return a time in words: ``45 s``, ``12 min``, ``3.4 h``."""
-    if seconds < 1.5 * _MINUTE:
-        return f"{seconds:.0f} s"
-    return f"{seconds / _MINUTE:.0f} min" if seconds < 1.5 * _HOUR else f"{seconds / _HOUR:.1f} h"
 
 
 def cost_of_study(first: Evaluation, taken: float, count: int, noun: str, table: str) -> str:

@@ -11,10 +11,11 @@ from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress
+from gearwhine.solutions import Failure, duration
 from gearwhine.study_folder import StudyFolder
-from gearwhine.variation.cost import cost_of_study, duration
+from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.quantities import Evaluation
-from gearwhine.variation.samples import FOLDER, Failure, Outcome, Record, Sampled, solve_samples
+from gearwhine.variation.samples import FOLDER, Outcome, Record, Sampled, solve_samples
 from gearwhine.workers import as_they_end, called, code_digest, default_workers
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import gc
 import json
 import os
-import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
@@ -18,52 +17,31 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
-import gearwhine
-from gearwhine.case import Case, CaseError, CaseSource, case_document
+from gearwhine.case import Case, CaseSource
 from gearwhine.coupling import Machine
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.failures import explain
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.reduced_housing import reduced_component
-from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
-from gearwhine.numerics.source_digest import installed
-from gearwhine.output.files import with_contents
+from gearwhine.solutions import Failure, failure_of, solution_key
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
 from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.variation.inputs import Input, Wider, inputs_at
 from gearwhine.variation.quantities import Evaluation, Wanted, evaluate, evaluate_pairs
-from gearwhine.workers import code_digest, require_same_code
+from gearwhine.workers import require_same_code
 
 if TYPE_CHECKING:  # with kernels of its own
     from gearwhine.coupling.sweep.line_sound import RadiatedPower
 
 _REMARKS = frozenset({"title", "notes", "provenance"})
-_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 _KEPT_HOUSINGS = 50  # kilobytes each
 _UNDER_LOAD = frozenset({"gears", "load", "lines", "sound", "motion"})  # analyses about an operating point
 FOLDER = "samples"
 """Folder of the record within the results folder."""
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A sample without a result.
-
-    Attributes
-    ----------
-    message : str
-        Sentence on the failure.
-    traceback : str
-        Traceback of an unexpected error; empty otherwise.
-    """
-
-    message: str
-    traceback: str = ""
 
 
 Outcome = Evaluation | Failure
@@ -73,13 +51,8 @@ def outcome_of(find: Callable[[], Evaluation]) -> Outcome:
     """Return what a function finds of a sample, or its error as a failure."""
     try:
         return find()
-    except CaseError as error:
-        return Failure("; ".join(str(replace(problem, source="")) for problem in error.problems))
     except Exception as error:
-        _, message = explain(error)
-        if message is not None:
-            return Failure(message)
-        return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
+        return failure_of(error)
 
 
 _Housing: TypeAlias = "tuple[HousingComponent, RadiatedPower | None]"
@@ -174,17 +147,8 @@ class VariedCase:
     @cached_property
     def key(self) -> str:
         """Key of all that the samples depend on but their points: case, files, inputs, libraries and our code."""
-        case = self.case(None)
-        document = {name: table for name, table in case_document(case).items() if name not in _REMARKS}
-        return content_key(
-            {
-                "case": with_contents(document, case.input_files.contents),
-                "inputs": [repr(one) for one in (*self.inputs, *self.wider)],
-                "wanted": repr(self.wanted),
-                "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-                "source": code_digest(),
-            }
-        )
+        inputs = [repr(one) for one in (*self.inputs, *self.wider)]
+        return solution_key(self.case(None), _REMARKS, inputs=inputs, wanted=repr(self.wanted))
 
 
 class Sampled(Protocol):

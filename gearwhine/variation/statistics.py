@@ -15,9 +15,10 @@ from gearwhine.numerics.arrays import BoolArray, FloatArray
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
 from gearwhine.output.quantity import unit_of
+from gearwhine.solutions import Failure
 from gearwhine.variation.inputs import Input
 from gearwhine.variation.quantities import Evaluation
-from gearwhine.variation.samples import Failure, Outcome
+from gearwhine.variation.samples import Outcome
 
 QUANTILES = (0.05, 0.5, 0.95)
 """Probabilities of the quantiles."""

@@ -12,8 +12,8 @@ from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.linear.lines_over_speed import sensor_rms
 from gearwhine.optimisation.verification import Motion, Verification, motion_of, range_of
 from gearwhine.results.optimisation import _warnings
+from gearwhine.solutions import Failure
 from gearwhine.variation.quantities import level_of
-from gearwhine.variation.samples import Failure
 
 
 def _motion(levels: list[float]) -> Motion:

@@ -20,10 +20,11 @@ from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.meshes import read_mesh, write_mesh
+from gearwhine.solutions import Failure
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
 from gearwhine.study_folder import StudyFolder
-from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
+from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
 from gearwhine.sweep.run import run_sweep
 from gearwhine.sweep.solution import outdated_points, read_point, solve_point, write_point
 from gearwhine.workers import code_digest
@@ -156,14 +157,14 @@ def test_a_damaged_point_is_no_point(solved: tuple, tmp_path: Path) -> None:
 
 
 def test_a_failure_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> None:
-    failure = PointFailure("it diverged", "a traceback")
+    failure = Failure("it diverged", "a traceback")
     write_point(tmp_path, tmp_path, solved[0], failure)
     assert read_point(tmp_path, solved[0]) == failure
 
 
 def test_a_worker_with_other_code_solves_nothing(solved: tuple) -> None:
     failure = solve_point(solved[0].case, None, "of another version")
-    assert isinstance(failure, PointFailure)
+    assert isinstance(failure, Failure)
     assert "another version of gearwhine" in failure.message
     assert failure.traceback == ""
 
@@ -181,7 +182,7 @@ def test_spectra_of_unlike_lengths_meet_on_their_orders(solved: tuple) -> None:
     )
     finer = replace(result, motion=motion)
     swept = [
-        SweptPoint(replace(point, place=(0,)), result, False),
+        SweptPoint(replace(point, place=(0,)), result),
         SweptPoint(replace(point, place=(1,)), finer, False),
     ]
     data = collected_sweep(case, keys, swept)
@@ -197,8 +198,8 @@ def test_words_are_swept_too(solved: tuple) -> None:
     point, _, result = solved
     keys = swept_keys(point.case, ["rotor.input.mass=lumped,distributed"])
     swept = [
-        SweptPoint(replace(point, place=(0,)), result, False),
-        SweptPoint(replace(point, place=(1,)), PointFailure("no"), False),
+        SweptPoint(replace(point, place=(0,)), result),
+        SweptPoint(replace(point, place=(1,)), Failure("no"), False),
     ]
     data = collected_sweep(point.case, keys, swept)
     assert data.rotor_input_mass.values.tolist() == ["lumped", "distributed"]

@@ -10,8 +10,9 @@ import pytest
 
 from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
+from gearwhine.solutions import duration
 from gearwhine.variation import cost
-from gearwhine.variation.cost import cost_of_study, duration
+from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.quantities import Evaluation, Wanted, _evaluation
 
 PAIR = "gear_pair.pinion-wheel"

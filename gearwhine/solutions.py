@@ -1,0 +1,74 @@
+"""Solutions of a study of many: the key of what they depend on, the failure in place of one, the time that is left."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Container
+from dataclasses import dataclass, replace
+from typing import Any
+
+import gearwhine
+from gearwhine.case import Case, CaseError, case_document
+from gearwhine.failures import explain
+from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.source_digest import installed
+from gearwhine.output.files import with_contents
+from gearwhine.workers import OtherCodeError, code_digest
+
+_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
+_MINUTE, _HOUR = 60.0, 3600.0
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A solution that there is not.
+
+    Attributes
+    ----------
+    message : str
+        Sentence on the failure, with a remedy where one is known.
+    traceback : str
+        Traceback of an unexpected error; empty otherwise.
+    """
+
+    message: str
+    traceback: str = ""
+
+
+def failure_of(error: Exception) -> Failure:
+    """Return the failure of a solution by its error, with the traceback of an unexpected one."""
+    if isinstance(error, CaseError):
+        return Failure("; ".join(str(replace(problem, source="")) for problem in error.problems))
+    _, message = explain(error)
+    if message is None and not isinstance(error, OtherCodeError):
+        return Failure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))
+    return Failure(message or str(error))
+
+
+def solution_key(case: Case, unread: Container[str], **more: Any) -> str:
+    """Return the key of the content that a solution depends on: case, files, libraries and our code.
+
+    Parameters
+    ----------
+    case : Case
+    unread : container of str
+        Tables of the case that the solution does not depend on.
+    **more
+        What else it depends on.
+    """
+    document = {name: table for name, table in case_document(case).items() if name not in unread}
+    return content_key(
+        {
+            "case": with_contents(document, case.input_files.contents),
+            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+            "source": code_digest(),
+            **more,
+        }
+    )
+
+
+def duration(seconds: float) -> str:
+    """Return a time in words: ``45 s``, ``12 min``, ``3.4 h``."""
+    if seconds < 1.5 * _MINUTE:
+        return f"{seconds:.0f} s"
+    return f"{seconds / _MINUTE:.0f} min" if seconds < 1.5 * _HOUR else f"{seconds / _HOUR:.1f} h"
