@@ -23,8 +23,8 @@ class Command:
     name : str
         Name of the command.
     sections : str
-        Module of :mod:`gearwhine.results` and function in it that compose what the terminal shows; empty for files
-        alone.
+        Module of :mod:`gearwhine.results` and function in it that compose what the terminal shows, by default
+        ``sections`` of the one with the command's name; empty for files alone.
     method : str
         Method of `gearwhine.case_study.CaseStudy`; that of the command's name by default.
     files : tuple of str
@@ -56,7 +56,7 @@ class Command:
     """
 
     name: str
-    sections: str = ""
+    sections: str | None = None
     method: str = ""
     files: tuple[str, ...] = ()
     reads: tuple[str, ...] = ()
@@ -93,132 +93,64 @@ _OF_MANY: dict[str, Any] = {"always_writes": True, "without": ("folder", "fresh"
 
 STUDY_COMMANDS = (
     Command(
-        "run",
-        "run.sections",
-        "run_into",
-        files=_RUN,
-        reads=("acoustics", "measured", "rotor_analysis", "sweep"),
-        always_writes=True,
-        stores=True,
-        without=("folder",),
-        fresh=_FRESH_RUN,
-        timed=True,
+        "run", method="run_into", files=_RUN, reads=("acoustics", "measured", "rotor_analysis", "sweep"),
+        always_writes=True, stores=True, without=("folder",), fresh=_FRESH_RUN, timed=True
     ),
     Command(
-        "check",
-        "check.summary",
-        files=_CASE,
-        reads=("acoustics", "measured", "rotor_analysis", "sweep", "update"),
-        longer=("verbose", "check.sections"),
-        draws=False,
+        "check", "check.summary", files=_CASE, reads=("acoustics", "measured", "rotor_analysis", "sweep", "update"),
+        longer=("verbose", "check.sections"), draws=False
     ),
-    Command("mesh", "mesh.sections", always_writes=True, names={"suffix": "format"}, draws=False),
+    Command("mesh", always_writes=True, names={"suffix": "format"}, draws=False),
     Command(
-        "modes",
-        "modes.sections",
-        files=(*_DATA, "modes.vtu"),
-        unread=_OF_MACHINE,
-        longer=("detail", "modes.detailed_sections"),
-        fresh=_FRESH_MODES,
+        "modes", files=(*_DATA, "modes.vtu"), unread=_OF_MACHINE, longer=("detail", "modes.detailed_sections"),
+        fresh=_FRESH_MODES
     ),
     Command(
-        "rotors",
-        "rotors.sections",
-        files=(*_CASE, "results.nc", "rotor-*.png"),
-        reads=("rotor_analysis", "sweep"),
-        unread=("transient", "gear_pair"),
-        writes_with="write_ross",
+        "rotors", files=(*_CASE, "results.nc", "rotor-*.png"), reads=("rotor_analysis", "sweep"),
+        unread=("transient", "gear_pair"), writes_with="write_ross"
     ),
-    Command("gears", "gears.sections", files=(*_DATA, "gears-*.png"), unread=("transient",), without=("aims",)),
+    Command("gears", files=(*_DATA, "gears-*.png"), unread=("transient",), without=("aims",)),
     Command(
-        "load",
-        "operating_point.sections",
-        "operating_point",
-        files=(*_DATA, _LOAD),
-        reads=("acoustics", "update"),
-        fresh=_FRESH_MODES,
+        "load", "operating_point.sections", "operating_point", files=(*_DATA, _LOAD), reads=("acoustics", "update"),
+        fresh=_FRESH_MODES
     ),
-    Command("system", "system.sections", files=(*_DATA, *_SYSTEM), reads=("sweep",), fresh=_FRESH_MODES),
+    Command("system", files=(*_DATA, *_SYSTEM), reads=("sweep",), fresh=_FRESH_MODES),
     Command("steady", "steady_state.sections", files=(*_DATA, "steady-*.png"), reads=("sweep",), fresh=_FRESH_MODES),
+    Command("sound", files=(*_DATA, _SOUND), reads=("acoustics",), without=("acoustics",), fresh=_FRESH_MODES),
     Command(
-        "sound",
-        "sound.sections",
-        files=(*_DATA, _SOUND),
-        reads=("acoustics",),
-        without=("acoustics",),
-        fresh=_FRESH_MODES,
+        "sweep", files=(*_DATA, "sweep-*.png", "waterfall-*.png"), reads=("acoustics", "sweep"), fresh=_FRESH_POINTS,
+        **_OF_MANY
     ),
     Command(
-        "sweep",
-        "sweep.sections",
-        files=(*_DATA, "sweep-*.png", "waterfall-*.png"),
-        reads=("acoustics", "sweep"),
-        fresh=_FRESH_POINTS,
-        **_OF_MANY,
+        "vary", "variation.sections", files=(*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
+        reads=("sweep", "variation"), names={"samples": "n"}, fresh=_FRESH_SAMPLES, **_OF_MANY
     ),
     Command(
-        "vary",
-        "variation.sections",
-        files=(*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
-        reads=("sweep", "variation"),
-        names={"samples": "n"},
-        fresh=_FRESH_SAMPLES,
-        **_OF_MANY,
+        "detect", "detection.sections", files=(*_MODES, "detect.nc", "detection-*.png"),
+        reads=("variation", "detection"), fresh=_FRESH_SAMPLES, **_OF_MANY
     ),
     Command(
-        "detect",
-        "detection.sections",
-        files=(*_MODES, "detect.nc", "detection-*.png"),
-        reads=("variation", "detection"),
-        fresh=_FRESH_SAMPLES,
-        **_OF_MANY,
-    ),
-    Command(
-        "optimise",
-        "optimisation.sections",
+        "optimise", "optimisation.sections",
         files=(*_CASE, "optimise.nc", "optimise-*.png", "best.toml", "nearest.toml", "front-*.toml"),
-        reads=("sweep", "variation", "optimisation"),
-        names={"evaluations": "n"},
-        fresh=_FRESH_DESIGNS,
-        **_OF_MANY,
+        reads=("sweep", "variation", "optimisation"), names={"evaluations": "n"}, fresh=_FRESH_DESIGNS, **_OF_MANY
     ),
     Command(
-        "compare",
-        "comparison.sections",
-        files=(*_MODES, *_COMPARED, "comparison.nc", "frac.csv"),
-        reads=("measured",),
-        unread=_OF_MACHINE,
-        fresh=_FRESH_MODES,
+        "compare", "comparison.sections", files=(*_MODES, *_COMPARED, "comparison.nc", "frac.csv"),
+        reads=("measured",), unread=_OF_MACHINE, fresh=_FRESH_MODES
     ),
     Command(
-        "survey",
-        "survey.sections",
-        files=(*_MODES, "survey.uff", "survey.csv"),
-        unread=_OF_MACHINE,
-        always_writes=True,
-        fresh=_FRESH_MODES,
+        "survey", files=(*_MODES, "survey.uff", "survey.csv"), unread=_OF_MACHINE, always_writes=True,
+        fresh=_FRESH_MODES
     ),
     Command(
-        "update",
-        "update.sections",
-        files=(*_CASE, "update.nc", "updated.toml"),
-        reads=("measured", "update"),
-        unread=_OF_MACHINE,
-        always_writes=True,
-        draws=False,
+        "update", files=(*_CASE, "update.nc", "updated.toml"), reads=("measured", "update"), unread=_OF_MACHINE,
+        always_writes=True, draws=False
     ),
     Command(
-        "render",
-        files=(*_MODES, *_SHAPES, "measured-and-model.png"),
-        reads=("measured",),
-        unread=_OF_MACHINE,
-        always_writes=True,
-        adds=True,
-        names={"mode_format": "format"},
-        fresh=_FRESH_MODES,
-        draws=False,
+        "render", "", files=(*_MODES, *_SHAPES, "measured-and-model.png"), reads=("measured",), unread=_OF_MACHINE,
+        always_writes=True, adds=True, names={"mode_format": "format"}, fresh=_FRESH_MODES, draws=False
     ),
-)
+)  # fmt: skip
 """Commands on a case, in the order of the help."""
 
 _SIMULATE = Command("simulate", files=_RUN, reads=("acoustics",))

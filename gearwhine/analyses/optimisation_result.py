@@ -53,9 +53,9 @@ from gearwhine.optimisation.search import Ended, Trials, require_pareto_library,
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
 from gearwhine.output.named_quantities import statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
+from gearwhine.solutions import Failure, duration
 from gearwhine.solve.machine import plan_of
 from gearwhine.solve.radiated_power import Radiations
-from gearwhine.solutions import Failure, duration
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.inputs import varied_inputs

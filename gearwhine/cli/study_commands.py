@@ -36,6 +36,11 @@ def method_of(entry: Command) -> Callable[..., Any]:
     return getattr(CaseStudy, entry.method or entry.name)  # type: ignore[no-any-return]
 
 
+def composer_of(entry: Command) -> str:
+    """Return the module of results and its function that compose what a command shows; empty for files alone."""
+    return f"{entry.name}.sections" if entry.sections is None else entry.sections
+
+
 def made_command(entry: Command) -> Callable[..., None]:
     """Return the function of a command, with the signature and the help that its method gives."""
     shown = [] if entry.longer[0] not in _SHOWN else [_shown_option(entry.longer[0])]
@@ -158,7 +163,7 @@ def _perform(entry: Command, case: str, common: Common, given: dict[str, Any]) -
         document: dict[str, Any] = result.document if entry.stores else written(result, folder, progress, **drawn)
         return document
 
-    composed_by = entry.longer[1] if shows_more else entry.sections
+    composed_by = entry.longer[1] if shows_more else composer_of(entry)
     show = shown_by(_sections(composed_by) if composed_by else lambda document: (), timed=entry.timed)
     files = (f"mesh.{given['suffix']}", "mesh.h5") if "suffix" in given else ()
     _require_whole(on_case(case, common, work, show, entry.name, writes=files, always_writes=entry.always_writes))
