@@ -154,8 +154,6 @@ class Value(typing.NamedTuple):
 
 
 _NAMED: dict[Any, str] = {
-    fields.Name: "name",
-    fields.CaseFile: "file",
     fields.Direction: '"x", "y", "z" or a vector',
     fields.Vector: "vector",
     rotors.ShearCoefficient: '"cowper", "hutchinson" or a number',
@@ -180,8 +178,9 @@ def value_of(hint: Any, link: dict[type[Table], str]) -> Value:
     origin, parts = get_origin(hint), get_args(hint)
     if origin is Annotated:
         for rule in parts[1:]:
-            if rule == get_args(fields.CaseFile)[1]:
-                return Value("file")
+            for known, words in ((fields.CaseFile, "file"), (fields.Name, "name")):
+                if rule == get_args(known)[1]:
+                    return Value(words)
             if isinstance(rule, Quantity):
                 return _quantity(rule)
             if isinstance(rule, OverSpeed):

@@ -17,6 +17,7 @@ from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
+    CarrierOfBearing,
     Coefficient,
     Damping,
     DampingFromZero,
@@ -30,6 +31,7 @@ from gearwhine.case.fields import (
     PositiveLength,
     PositiveStiffness,
     Quantity,
+    RotorName,
     SpeedFromZero,
     Stiffness,
     Table,
@@ -774,11 +776,11 @@ class Bearing(Table):
 
     name: Name
     """Name of the bearing."""
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     at: LengthFromZero
     """Middle of the bearing from the rotor's left end, whatever its contact angles."""
-    seat: Name = "ground"
+    seat: CarrierOfBearing = "ground"
     """Name of a seat of the housing, or "ground", which is warned of beside bearings in seats; or of another rotor on
     the same axis, in or on which it stands. Of a planet: its carrier, which is the default there."""
     speeds: tuple[SpeedFromZero, ...] | None = Field(default=None, min_length=2, max_length=MOST_ENTRIES)

@@ -12,7 +12,17 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, StrictBool, Tag, model_validator
 
 from gearwhine.case import units
-from gearwhine.case.fields import Length, LengthFromZero, Name, PositiveLength, Quantity, Table, Whole, by_table, wrong
+from gearwhine.case.fields import (
+    Length,
+    LengthFromZero,
+    MaterialName,
+    PositiveLength,
+    Quantity,
+    Table,
+    Whole,
+    by_table,
+    wrong,
+)
 
 Face = Literal["left", "right", "bottom", "top", "back", "front"]
 
@@ -105,7 +115,7 @@ class CoverBolts(Table):
     """Diameter of the circle that each bolt clamps. Default: twice the diameter."""
     grip: PositiveLength | None = None
     """Length between head and thread. Default: the thickness of cover and flange."""
-    material: Name | None = None
+    material: MaterialName | None = None
     """Material of the bolts. Default: that of the housing."""
 
 

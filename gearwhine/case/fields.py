@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -23,6 +24,7 @@ from pydantic import (
     ValidationInfo,
     model_validator,
 )
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearwhine.case import units
@@ -242,7 +244,35 @@ class _FileRule:
         return found
 
 
+@dataclass(frozen=True)
+class Reference:
+    """Says which entry of the case a name is that of; to stand in `Annotated` beside it.
+
+    Attributes
+    ----------
+    kind : str
+        What it names, in words.
+    to : tuple of str
+        Paths of the lists that hold these entries; in quotes a word that is no entry's name.
+    otherwise : tuple of str
+        The same, of a case that has no such entry.
+    """
+
+    kind: str
+    to: tuple[str, ...]
+    otherwise: tuple[str, ...] = ()
+
+
 Name = Annotated[str, _NameRule()]
+RotorName = Annotated[Name, Reference("rotor", ("rotor",))]
+ShaftName = Annotated[Name, Reference("rotor", ("rotor",), otherwise=("gear",))]
+"""Name of a rotor, or in a case without rotors of a gear."""
+GearName = Annotated[Name, Reference("gear", ("gear",))]
+MEMBER = Reference("gear or rotor", ("gear", "rotor"))
+MaterialName = Annotated[Name, Reference("material", ("material",))]
+SeatName = Annotated[Name, Reference("seat", ("housing.seat",))]
+CarrierOfBearing = Annotated[Name, Reference("seat", ("housing.seat", "'ground'", "rotor"))]
+SensorName = Annotated[Name, Reference("sensor", ("housing.sensor",))]
 CaseFile = Annotated[Path, _FileRule()]
 
 Length = Annotated[float, Quantity(units.LENGTH)]
@@ -285,6 +315,21 @@ class Table(BaseModel):
         protected_namespaces=(),
         defer_build=True,
     )
+
+
+def meaning_of_field(field: FieldInfo) -> Iterator[Any]:
+    """Yield every type, rule and literal of a key, outside in."""
+    yield from field.metadata
+    yield from _parts(field.annotation)
+
+
+def _parts(annotation: Any) -> Iterator[Any]:
+    yield annotation if get_origin(annotation) is None else get_origin(annotation)
+    if get_origin(annotation) is Literal:
+        yield get_args(annotation)
+        return
+    for part in get_args(annotation):
+        yield from _parts(part)
 
 
 def by_table(other: str) -> Discriminator:

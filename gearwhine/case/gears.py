@@ -22,14 +22,18 @@ from gearwhine.case.fields import (
     CaseFile,
     DampingFromZero,
     DampingRatio,
+    GearName,
     Inertia,
     LengthFromZero,
     Mass,
+    MaterialName,
     Name,
     PlanetNumber,
     PositiveLength,
     PositiveStiffness,
     Quantity,
+    RotorName,
+    SensorName,
     Table,
     Whole,
     one_of_planets,
@@ -331,7 +335,7 @@ class Gear(Table):
 
     name: Name
     """Name of the gear."""
-    rotor: Name | None = None
+    rotor: RotorName | None = None
     """Name of its rotor; left out in a case without rotors."""
     at: LengthFromZero | None = None
     """Station on its rotor from the left end."""
@@ -391,7 +395,7 @@ class Gear(Table):
     """Tip relief."""
     root_relief: Relief | None = None
     """Root relief."""
-    material: Name | None = None
+    material: MaterialName | None = None
     """Name of the material. Default: that of its rotor, or of the shaft at its station where a file holds the rotor;
     without a rotor the only one of the case."""
     mass: Mass | None = None
@@ -576,7 +580,7 @@ class ReliefAim(Table):
     harmonics: Annotated[dict[str, HarmonicWeight], Field(default_factory=dict, max_length=32)]
     """Weights w of the transmission error's amplitudes e by the multiple of the mesh frequency, √(Σ (w e)²), such as `{
     1 = 1, 2 = 0.5 }`; load shuttling is left out. With `sensor`: weights of the amplitudes of its acceleration."""
-    sensor: Name | None = None
+    sensor: SensorName | None = None
     """Sensor whose level is the objective, by the linear response to transmission error and load shuttling together, as
     in `gearwhine load --sensitivity`: root mean square over the first eight multiples of the mesh frequency below the
     housing's limit, or over those that `harmonics` weighs."""
@@ -609,9 +613,9 @@ class ReliefAim(Table):
 class GearPair(Table):
     """`[[gear_pair]]`: two gears by name, and their contact."""
 
-    driver: Name
+    driver: GearName
     """Name of the driving gear."""
-    driven: Name
+    driven: GearName
     """Name of the driven gear."""
     stiffness: ToothStiffness = ToothStiffness()
     """Tooth stiffness model."""

@@ -21,6 +21,7 @@ from gearwhine.case.fields import (
     Density,
     Direction,
     ElasticModulus,
+    MaterialName,
     Name,
     Patch,
     Point,
@@ -47,7 +48,7 @@ class Region(Table):
 
     name: Name
     """Name of the region."""
-    material: Name
+    material: MaterialName
     """Name of its material."""
     volume: Name | None = None
     """Name of a volume of the mesh. One of this and `box`."""
@@ -322,7 +323,7 @@ GEOMETRIES = ("box", "cad", "mesh")
 class Housing(Table):
     """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted."""
 
-    material: Name
+    material: MaterialName
     """Name of the material; a region may have another."""
     damping_ratio: Annotated[
         Annotated[DampingRatio, Tag("~scalar")]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -21,7 +21,7 @@ from pydantic_core import ErrorDetails
 from gearwhine.case.checks.plausible import library_findings
 from gearwhine.case.checks.whole_case import check, warnings_of, without_changed
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, problem_of
-from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
+from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole, meaning_of_field
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import KEY_OF_FORM, Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
@@ -156,20 +156,10 @@ def _meaning_of(location: Location) -> tuple[tuple[type[Table], ...], tuple[Any,
         for table in tables:
             field = next((f for n, f in table.model_fields.items() if (f.alias or n) == step), None)
             if field is not None:
-                meaning = (*field.metadata, *_parts(field.annotation))
+                meaning = tuple(meaning_of_field(field))
                 tables = tuple(part for part in meaning if isinstance(part, type) and issubclass(part, Table))
                 break
     return tables, meaning
-
-
-def _parts(annotation: Any) -> Iterator[Any]:
-    """Yield every type, rule and literal within an annotation, outside in."""
-    yield annotation if get_origin(annotation) is None else get_origin(annotation)
-    if get_origin(annotation) is Literal:
-        yield get_args(annotation)
-        return
-    for part in get_args(annotation):
-        yield from _parts(part)
 
 
 def _describe(meaning: tuple[Any, ...], location: Location) -> str:

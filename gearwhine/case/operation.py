@@ -19,10 +19,11 @@ from gearwhine.case.fields import (
     Angle,
     Force,
     LengthFromZero,
-    Name,
     Point,
     PositiveFrequency,
     Quantity,
+    RotorName,
+    ShaftName,
     Speed,
     SpeedFromZero,
     Table,
@@ -314,7 +315,7 @@ class Base(Table):
 class Output(Table):
     """`[[operation.output]]`: a torque taken off a rotor [N m], at a station [m]; None: its right end."""
 
-    rotor: Name
+    rotor: ShaftName
     """Name of the rotor."""
     torque: SignedTorque
     """Torque taken off; negative where the machine coasts, or a second motor drives this rotor."""
@@ -336,7 +337,7 @@ class Output(Table):
 class Drive(Table):
     """`[[operation.drive]]`: a further rotor that turns at a given speed [rad/s]."""
 
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     speed: Speed
     """Speed, positive counter-clockwise seen from +z; that of the first driver is `[operation] speed`."""
@@ -353,7 +354,7 @@ class Drive(Table):
 class ShaftForce(Table):
     """`[[operation.force]]`: a constant force on a rotor [N], at a station [m], such as the pull of a belt."""
 
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     at: LengthFromZero
     """Station from the rotor's left end."""
@@ -376,7 +377,7 @@ class Operation(Table):
 
     speed: Speed
     """Speed of the first driver's rotor, positive counter-clockwise seen from +z."""
-    rotor: Name | None = None
+    rotor: RotorName | None = None
     """Rotor that turns at `speed` and takes `torque` in. Default: that of the first `gear_pair`'s driver, or where this
     one is held or a planet, its carrier."""
     torque: SignedTorque = 0.0

@@ -21,14 +21,18 @@ from pydantic_core import PydanticCustomError
 from gearwhine.case import units
 from gearwhine.case.errors import UNSAID, Finding, Location, look_up
 from gearwhine.case.fields import (
+    MEMBER,
     MOST_ENTRIES,
     MOST_PLANETS,
     Angle,
+    GearName,
     Length,
     LengthFromZero,
     Name,
     PositiveLength,
     Quantity,
+    RotorName,
+    SeatName,
     Table,
     Whole,
     wrong,
@@ -107,13 +111,13 @@ class Bolts(Table):
 class HeldMember(Table):
     """`[[torque_support]]`, and `fixed` of a `[[planetary]]`: what is held from turning, and by what."""
 
-    member: Name
+    member: Annotated[Name, MEMBER]
     """Gear or rotor that is held, by its name."""
     stiffness: TorsionalStiffness | None = None
     """Torque over rotation. Default: rigid."""
     bolts: Bolts | None = None
     """Bolts in place of a stiffness; they hold the member in all directions in which they are stiff."""
-    seat: Name | None = None
+    seat: SeatName | None = None
     """Seat of the housing that takes the torque. Default: the ground."""
     at: LengthFromZero | None = None
     """Station on the rotor. Default: that of the gear; of a rotor its left end."""
@@ -149,20 +153,20 @@ class Planetary(Table):
 
     name: Name
     """Name of the set."""
-    sun: Name | None = None
+    sun: GearName | None = None
     """Sun, a gear."""
-    ring: Name | None = None
+    ring: GearName | None = None
     """Ring, an internal gear."""
-    planets: tuple[Name, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+    planets: tuple[GearName, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
     """Planets, gears by name: all of them, or with `count` or `angles` those of one planet."""
-    carrier: Name
+    carrier: RotorName
     """Rotor that carries the planets."""
     count: Annotated[int, Whole(1, MOST_PLANETS)] | None = None
     """Number of planets that are made of one. Their rotors, gears and bearings get a number behind their names: `p 1`,
     `p 2`, ..."""
     angles: tuple[Angle, ...] | None = Field(default=None, min_length=1, max_length=MOST_PLANETS)
     """Angle of each planet about the carrier's axis, from the place of the one that is written. Default: equal ones."""
-    fixed: HeldMember | None = None
+    fixed: Annotated[HeldMember | None, MEMBER] = None
     """Member that is held from turning: a gear or a rotor by its name; the name of a seat or a stiffness such as
     "1e7 N*m/rad", by which the ring is held; or a table. Default: none, as of a differential."""
     pin_errors: tuple[PinError, ...] | None = Field(default=None, max_length=MOST_PLANETS)

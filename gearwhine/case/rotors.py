@@ -40,11 +40,13 @@ from gearwhine.case.fields import (
     Length,
     LengthFromZero,
     Mass,
+    MaterialName,
     Name,
     PositiveFrequency,
     PositiveLength,
     PositiveStiffness,
     Quantity,
+    RotorName,
     Table,
     Whole,
     wrong,
@@ -107,7 +109,7 @@ class Segment(Table):
     """Outer diameter at the right end of a cone. Default: `diameter`."""
     right_bore: LengthFromZero | None = None
     """Inner diameter at the right end of a cone. Default: `bore`."""
-    material: Name | None = None
+    material: MaterialName | None = None
     """Name of the material. Default: that of the rotor."""
     shear_coefficient: ShearCoefficient | None = None
     """Shear coefficient. Default: that of the rotor."""
@@ -230,7 +232,7 @@ class RoundDisc(Table):
     """Outer diameter."""
     bore: LengthFromZero = 0.0
     """Inner diameter."""
-    material: Name | None = None
+    material: MaterialName | None = None
     """Name of the material. Default: that of the rotor."""
     density: Density | None = None
     """Density, in place of `material`."""
@@ -325,7 +327,7 @@ class Pin(Table):
     """Diameter of the beam."""
     bore: LengthFromZero = 0.0
     """Bore of the beam."""
-    material: Name | None = None
+    material: MaterialName | None = None
     """Material of the beam. Default: that of the rotor."""
     at: Length | None = None
     """z of the place that the stiffness is of; in place of walls."""
@@ -376,7 +378,7 @@ class Rotor(Table):
     """Name of the rotor."""
     axis: tuple[Length, Length] = (0.0, 0.0)
     """x and y of the shaft line."""
-    carrier: Name | None = None
+    carrier: RotorName | None = None
     """Rotor with which the shaft line turns, as that of a planet with its carrier; `axis` is then its place at t = 0,
     and its bearings sit on the carrier. Planets of a `[[planetary]]` have it from there."""
     pin_error: tuple[Length, Length] = (0.0, 0.0)
@@ -392,7 +394,7 @@ class Rotor(Table):
     file: CaseFile | None = None
     """Rotor saved by ROSS (`.toml`, `.json`), relative to the case file, in place of `material` and `segments`: its
     shaft, discs and bearings."""
-    material: Name | None = None
+    material: MaterialName | None = None
     """Name of the material; needed without `file`. Beside it: that of discs and gears on the shaft, which by default
     have the material that the shaft of the file has at their station."""
     mass: Literal["distributed", "lumped"] = "distributed"
@@ -591,7 +593,7 @@ class Probe(Table):
 
     name: Name
     """Name of the probe."""
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     at: LengthFromZero
     """Station from the rotor's left end."""
@@ -637,7 +639,7 @@ class FrequencyRange(Table):
 class HarmonicTorque(Table):
     """A torque [N m] about the axis of a rotor at a station [m], that swings ahead by a phase [rad]."""
 
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     at: LengthFromZero
     """Station from the rotor's left end."""
@@ -650,7 +652,7 @@ class HarmonicTorque(Table):
 class TorsionSpring(Table):
     """Torsional support of a rotor at a station [m] against the ground: stiffness [N m/rad], damping [N m s/rad]."""
 
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     at: LengthFromZero
     """Station from the rotor's left end."""
@@ -665,7 +667,7 @@ class TorsionProbe(Table):
 
     name: Name
     """Name of the probe."""
-    rotor: Name
+    rotor: RotorName
     """Name of the rotor."""
     at: LengthFromZero
     """Station from the rotor's left end."""
