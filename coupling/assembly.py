@@ -15,7 +15,6 @@ from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import (
     gear_train,
@@ -76,9 +75,8 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Bearing
-
-FloatArray = npt.NDArray[np.float64]
 
 # Clearance between tip and root, in normal modules. Teeth compressed by more would touch there, and no
 # steel bends so far.

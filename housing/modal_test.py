@@ -40,6 +40,7 @@ from gearwhine.housing.measured import (
 from gearwhine.housing.model.supports import Support
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Instance, Number, Part, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -47,7 +48,6 @@ from gearwhine.numerics.result_warnings import ResultWarning, warning
 if TYPE_CHECKING:
     from gearwhine.housing.reduced import ReducedModes
 
-FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
 
 ABOVE_HIGHEST_MEASURED = 1.05

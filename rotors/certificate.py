@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import IncompleteModesError
-
-FloatArray = npt.NDArray[np.float64]
 
 ENERGY_TOLERANCE = 1e-8
 ORTHONORMALITY_TOLERANCE = 1e-8

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
@@ -33,10 +32,9 @@ from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, amplitude
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices
 from gearwhine.coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
 from gearwhine.coupling.time.histories import histories as coupled_histories
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _RPM = 60.0 / (2.0 * np.pi)
 _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of interest: little folds back below it

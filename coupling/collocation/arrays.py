@@ -11,11 +11,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 ORDER = 5
 """Gauss points (places) in an element; the error at its end is of order 2 ORDER + 1 in the element's size."""

@@ -23,14 +23,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.collocation.arrays import Reference
 from gearwhine.coupling.errors import CouplingError, PeriodicError
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _LARGEST = 0.05  # largest entry of E for which the correction converges
 _SMALLEST = 1e-8  # entry of E at which the corrections stop: its square is rounding

@@ -18,10 +18,8 @@ import numpy.typing as npt
 
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.connectors import NonlinearConnector
+from gearwhine.numerics.arrays import FloatArray, IntArray
 from gearwhine.rotors.rolling_bearings import BallRow, CageFault, pressed_azimuth, spall_contacts
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 BY_TIME, BY_TURNING, BY_UNBALANCE = 0, 1, 2
 BALLS, ROLLERS, GAP = 0, 1, 2

@@ -7,7 +7,6 @@ from math import cos, hypot, pi, sin
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, pin_findings, seat_findings
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain, GivenSpeed, Output
@@ -21,6 +20,7 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.pins import Pin, PinBeam, PinSprings
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -41,8 +41,6 @@ from gearwhine.rotors import Unbalance as ShaftUnbalance
 from gearwhine.rotors.model.loads import Bow
 from gearwhine.rotors.model.profile import StiffnessDiameter
 from gearwhine.rotors.model.shaft import inertia_findings
-
-FloatArray = npt.NDArray[np.float64]
 
 LATERAL_LIMIT_HZ = 8000.0
 """Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""

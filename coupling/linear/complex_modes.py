@@ -23,7 +23,6 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.linear.carriers.frozen_directions import FROZEN_MODES, frozen_warnings
 from gearwhine.coupling.linear.carriers.planetary_modes import planetary_kinds
@@ -32,10 +31,8 @@ from gearwhine.coupling.linear.modal_superposition import SUM_RULE
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 # Relative distance of eigenvalues within which rounding mixes their shapes: by the eigensolver's error over this.
 # Forward and backward whirl of a round shaft that hardly turns are further apart.

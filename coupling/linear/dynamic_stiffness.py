@@ -11,10 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _FEW = 0.4  # part of the coordinates up to which the directions between them are few
 _ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding

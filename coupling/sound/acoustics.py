@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
 from gearwhine.housing.acoustics.sound_levels import measurement_box
 from gearwhine.housing.modes.housing_field import HousingField
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import (
     Choice,
     Finding,
@@ -26,8 +26,6 @@ from gearwhine.numerics.findings import (
     refuse,
 )
 from gearwhine.numerics.own_copies import keep_tuples
-
-FloatArray = npt.NDArray[np.float64]
 
 MOST_LINES = 400
 """Largest number of spectral lines that are solved."""

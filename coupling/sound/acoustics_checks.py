@@ -7,7 +7,6 @@ triangles that are too large, and a floor above the soles, so that none of them 
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.sound.acoustics import Acoustics
@@ -20,11 +19,10 @@ from gearwhine.housing.acoustics.surface_velocity import face_surface
 from gearwhine.housing.errors import TriangleSizeError
 from gearwhine.housing.fem.surface import FlatFace, flat_face_of_surface
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Part, in_mm, refuse
 from gearwhine.numerics.names import one_of
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _PART: Part = ("acoustics", "")
 _COARSE = 20.0  # triangles along the housing where neither their size nor a frequency is known

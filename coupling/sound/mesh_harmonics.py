@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.linear.line_outputs import SoundPower
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
@@ -21,9 +20,7 @@ from gearwhine.coupling.sound.motion_lines import AUDIBLE, pulsating_efficiency
 from gearwhine.housing.acoustics.power_gradient import PowerGradient
 from gearwhine.housing.acoustics.radiation import HousingRadiation, RadiatedSound
 from gearwhine.housing.acoustics.sound_levels import a_weighting
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 LINES = 3
 """Number of lines of the sound, the loudest ones."""

@@ -16,15 +16,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import polynomial
 
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.signals.transfer_paths import housing_paths
 from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import FloatArray
 
 _TWO_PI = 2.0 * np.pi
 _BLOCK = 2048  # lines at once

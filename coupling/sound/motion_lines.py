@@ -20,10 +20,8 @@ from gearwhine.coupling.signals.spectrum import Spectrum, at_time_zero
 from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.coupling.signals.transfer_paths import HousingPaths, housing_paths
 from gearwhine.coupling.sound.acoustics import Acoustics
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
 _EXACT = 0.02  # distance of a record's exact line from the frequency of its cause, over the spacing of lines

@@ -3,15 +3,13 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.acoustics.boundary_elements import SoundField
 from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.radiation import SOURCE_HEARD, EquivalentField, RadiatedSound, require_proved
 from gearwhine.housing.acoustics.sound_levels import power_level
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
 
 _GATHERED = ("known_source", "microphone_known_source")
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.analyses.transient import SolvedTransient
@@ -56,12 +55,10 @@ from gearwhine.housing.acoustics.sound_levels import (
     third_octave_bands,
 )
 from gearwhine.housing.modes.housing_field import HousingField
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.findings import refuse
 from gearwhine.numerics.progress import Progress, in_order, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 Span = Callable[[HousingRadiation, FloatArray, tuple[float, float], Progress], HousingRadiation]
 

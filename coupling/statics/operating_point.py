@@ -34,9 +34,8 @@ from gearwhine.coupling.statics.static_model import (
     StaticPair,
     StaticShaftPart,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import RollingState, linearised_bearing
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

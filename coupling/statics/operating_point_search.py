@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.coupling.description.parts import TorqueSupport
@@ -39,11 +38,10 @@ from gearwhine.coupling.statics.static_model import (
     StaticPair,
     StaticShaftPart,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.own_copies import unchecked
 from gearwhine.rotors.rolling_bearings import RollingState
 from gearwhine.rotors.rolling_bearings.equilibrium import state_of_elements
-
-FloatArray = npt.NDArray[np.float64]
 
 RESIDUAL_BOUND = 1e-9
 """Largest force out of balance, relative to the largest load, beyond the rounding of elastic forces."""

@@ -32,9 +32,9 @@ from gearwhine.coupling.machine.connectors import (
 )
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.time.turning_directions import law_directions
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.modes.modal_rotor import FEWEST_MODES
 
-FloatArray = npt.NDArray[np.float64]
 Law = TypeVar("Law", LinearConnector, NonlinearConnector, Sliding)
 
 _DEFAULT_LIMIT = 2.0 * np.pi * LATERAL_LIMIT_HZ

@@ -23,7 +23,6 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.collocation.arrays import (
     ORDER,
@@ -46,9 +45,7 @@ from gearwhine.coupling.time.condensation import condensed
 from gearwhine.coupling.time.integration import Attempt, Checkpoint, coarsest_step, sample_times
 from gearwhine.coupling.time.settings import TransientOutputs, TransientSettings
 from gearwhine.coupling.time.step_matrices import kernel_arrays
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _STRETCHES, _ELEMENTS = 256, 1024  # approximate largest numbers between two checks of the error
 _FIRST_STRETCHES = 8  # number before the first check, where most failing attempts fail

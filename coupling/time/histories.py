@@ -19,7 +19,6 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
@@ -30,8 +29,7 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import friction_of
 from gearwhine.coupling.signals.transfer_paths import housing_connections
 from gearwhine.coupling.time.settings import MotionRecord, TransientOutputs
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True)

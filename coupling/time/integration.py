@@ -23,8 +23,7 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.statics.static_equilibrium import coasting_velocity, static_equilibrium
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.step_matrices import KernelArrays, stored_energy
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _POINTS_PER_PERIOD = 6  # points in a period of the highest natural frequency; the tolerance refines motions that matter
 _STEPS_PER_SEGMENT = 64  # largest number of steps between two cuts where no event cuts the time

@@ -14,7 +14,6 @@ frequencies are not meant to be followed. The stiffest of them are condensed, se
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.kernel_arrays import LAST_TOUCH, Samples, Segments
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
@@ -23,8 +22,7 @@ from gearwhine.coupling.time.integration import Attempt, Checkpoint, timed_ampli
 from gearwhine.coupling.time.settings import TransientOutputs, TransientSettings
 from gearwhine.coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
 from gearwhine.coupling.time.turning_directions import with_own_laws
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SEGMENTS_PER_CHUNK = 48  # number of stretches between two checks of the error
 _GROW_TO = 0.85  # part of the tolerance up to which steps grow

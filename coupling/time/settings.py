@@ -4,12 +4,11 @@ from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Choice, Finding, Number, Rule, attribute_findings, refuse
 
-FloatArray = npt.NDArray[np.float64]
 Method = Literal["newmark", "exact", "auto"]
 
 

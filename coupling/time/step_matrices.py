@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.kernel_arrays import (
     BEARING_ENERGY,
@@ -33,9 +32,7 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.time.condensation import common_span
 from gearwhine.coupling.time.settings import TransientOutputs
 from gearwhine.coupling.time.turning_directions import mixing, turning_arrays, turning_laws, with_own_laws
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _WIDTH = 16  # number of rows of a vectorised loop
 _FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}

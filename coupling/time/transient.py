@@ -16,7 +16,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.connector_forces.kernel_arrays import APART, IMPULSE, PEAK
@@ -32,11 +31,11 @@ from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint, I
 from gearwhine.coupling.time.newmark_stepper import NewmarkStepper
 from gearwhine.coupling.time.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
 from gearwhine.coupling.time.step_matrices import empty_samples
+from gearwhine.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = npt.NDArray[np.float64]
 
 ENERGY_BOUND = 1e-2
 _ENERGY_ROUNDING = 1e-8  # part of the stored energy of which rounding over many steps may be a hundredth

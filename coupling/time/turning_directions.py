@@ -9,15 +9,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.kernel_arrays import Bearings, Turning
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable, TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _DEPENDENT = 1e-13  # part of a column that may be left of it beside a sum of others
 _WELL_POSED = 100.0  # largest factor of a column of the same size in such a sum

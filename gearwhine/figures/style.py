@@ -21,9 +21,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFo
 from matplotlib.transforms import Affine2D
 from scipy.optimize import isotonic_regression
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.sections import arrowed
 
-FloatArray = npt.NDArray[np.float64]
 Kind = TypeVar("Kind")
 
 INK, BLUE, RED, GREY, PALE = "#202428", "#1f5a96", "#b5382a", "#8a9097", "#e4e7ea"

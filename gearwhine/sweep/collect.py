@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
 from gearwhine.coupling.linear.carriers.frozen_directions import FROZEN_CARRIER
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.dataset import PHASE_CONVENTION
 from gearwhine.output.quantity import Quantity, document_of
 from gearwhine.results.operating_point import SWEPT_PAIR
@@ -27,7 +27,6 @@ from gearwhine.sweep.solution import POINTS, PointResult
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = npt.NDArray[np.float64]
 
 _PEAKS = 10  # number of highest peaks of each sensor
 _SAME_ORDER = 9  # decimals to which orders of one line agree

@@ -13,7 +13,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.coupling.sound.proofs import gathered
 from gearwhine.coupling.sweep.line_sound import LineSound, interpolated_line_sound, line_sound, radiated_level
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
     from gearwhine.sweep.grid import SweptPoint
     from gearwhine.sweep.points import Point
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
 _FAINT_LINE_RATIO = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out

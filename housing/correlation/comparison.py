@@ -23,7 +23,6 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.correlation.modal_assurance_criterion import (
-    ComplexArray,
     ShapeArray,
     auto_mac,
     comac,
@@ -39,8 +38,7 @@ from gearwhine.housing.correlation.subspaces import nearest_in_span, principal_a
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.measured import MeasuredModes
 from gearwhine.housing.modes.dominance import Dominance
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 Pairing = Literal["order", "nearest", "dominance", "shapes"]
 """How measured modes are paired with the model's."""

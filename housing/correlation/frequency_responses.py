@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from gearwhine.housing.correlation.modal_assurance_criterion import ComplexArray, FloatArray
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.housing.modes.receptance import receptance
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
 

@@ -33,10 +33,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
+from gearwhine.numerics.arrays import BoolArray, ComplexArray, FloatArray
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-ComplexArray = npt.NDArray[np.complex128]
 ShapeArray: TypeAlias = npt.NDArray[np.inexact[Any]]
 
 

@@ -14,14 +14,9 @@ part of a measured shape outside their span has no mass; :func:`outside_span` gi
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.housing.correlation.modal_assurance_criterion import (
-    ComplexArray,
-    FloatArray,
-    ShapeArray,
-    alike_measured,
-    two_sets,
-)
+from gearwhine.housing.correlation.modal_assurance_criterion import ShapeArray, alike_measured, two_sets
 from gearwhine.housing.errors import HousingError
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 # Beyond this condition of the shapes, rounding and noise of a part in a thousand decide the coordinates.
 _WORST_CONDITION = 1e3

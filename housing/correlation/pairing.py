@@ -26,10 +26,7 @@ import numpy.typing as npt
 from gearwhine.housing.correlation.modal_assurance_criterion import ShapeArray, modal_assurance_criterion, two_sets
 from gearwhine.housing.correlation.subspaces import close_modes, span_mac
 from gearwhine.housing.errors import HousingError
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
 
 def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:

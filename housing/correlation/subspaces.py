@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from gearwhine.housing.correlation.modal_assurance_criterion import FloatArray, alike_measured, filled, two_sets
+from gearwhine.housing.correlation.modal_assurance_criterion import alike_measured, filled, two_sets
 from gearwhine.housing.errors import HousingError
-
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _RANK = 1e-10  # singular values below this part of the largest are no directions
 

@@ -11,7 +11,6 @@ from itertools import permutations, product
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import MeasuredDataError
@@ -21,11 +20,11 @@ from gearwhine.housing.measured.survey_data import MeasuredGeometry
 from gearwhine.housing.model.patches import point_matrix
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.lengths import UNITS, length_text
+from gearwhine.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-FloatArray = npt.NDArray[np.float64]
 
 _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, below which they turn about their line
 _LARGEST_SIZE_RATIO = 20.0  # largest size of a housing over that of its survey; a millionth of it lies near any surface

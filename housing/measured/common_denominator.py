@@ -19,12 +19,10 @@ lost, or pulled along the real axis. The gap that α < 1 leaves keeps the edges 
 """
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg
 
 from gearwhine.housing.errors import MeasuredDataError
-
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray
 
 CIRCLE_SHARE = 0.9
 """Part α of the unit circle that the band covers: 0.9 to 0.95 in the literature."""

@@ -20,9 +20,7 @@ from gearwhine.housing.measured.residues import (
     refine_poles,
 )
 from gearwhine.housing.measured.survey_data import MeasuredModes, MeasuredResponses
-
-ComplexArray = npt.NDArray[np.complex128]
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True)

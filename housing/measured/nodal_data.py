@@ -20,9 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 NORMAL, COMPLEX_FIRST, COMPLEX_SECOND = 2, 3, 7  # analysis types that are modes
 _MODES = (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)

@@ -9,10 +9,8 @@ residual stiffness C for those above (P. Verboven, dissertation, Vrije Universit
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-ComplexArray = npt.NDArray[np.complex128]
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 POWERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Power p of iω by which a motion differs from the displacement."""

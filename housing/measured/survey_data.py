@@ -9,13 +9,9 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError, MeasuredDataError
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-ComplexArray = npt.NDArray[np.complex128]
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 _UNIT = 1e-6  # largest deviation of a unit vector's length from one: files carry six digits
 

@@ -18,7 +18,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
 from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, SurveyData
@@ -27,8 +26,7 @@ from gearwhine.housing.measured.universal_reading import read_universal
 from gearwhine.housing.measured.universal_writing import write_universal
 from gearwhine.housing.storage.atomic_file import atomic_file
 from gearwhine.meshes.lengths import UNITS
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _FREQUENCY, _RATIO = "frequency_hz", "damping_ratio"
 _PLACES = ("point", "x", "y", "z", "direction")

@@ -11,7 +11,6 @@ The survey grid has measuring points over the outer faces of a box, along the ou
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
@@ -21,9 +20,7 @@ from gearwhine.housing.measured.survey_data import MeasuredGeometry
 from gearwhine.housing.model.patches import points_matrix
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import Facets, facet_centers, facet_normals, pick_facets
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray, IntArray
 
 # Columns and rows of points on each face. The rig's survey had 116 points (TM-104434, "Experimental study"), laid
 # out in a way not printed; here they cover the five faces that are within reach, at nearly even density:

@@ -23,8 +23,7 @@ import numpy.typing as npt
 from gearwhine.housing.errors import MeasuredDataError
 from gearwhine.housing.measured.nodal_data import NodalMode, read_nodal_mode
 from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, Motion
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 Dataset = dict[str, Any]
 

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import MeasuredDataError
 from gearwhine.housing.measured.survey_data import SurveyData
@@ -25,8 +24,7 @@ from gearwhine.housing.measured.universal_datasets import (
     read_shapes,
 )
 from gearwhine.meshes.lengths import UNITS
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 CARTESIAN, CYLINDRICAL, SPHERICAL = 0, 1, 2
 _DEEPEST = 100  # systems within each other, beyond which they count as a circle

@@ -19,8 +19,7 @@ from gearwhine.housing.measured.nodal_data import COMPLEX_FIRST, NORMAL
 from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData
 from gearwhine.housing.measured.universal_datasets import FORCE, MOTIONS, RESPONSE_FUNCTION
 from gearwhine.housing.storage.atomic_file import atomic_file
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _SI = {"type": 164, "units_code": 1, "units_description": "SI: Meter (newton)", "temp_mode": 1}
 _SI |= {"length": 1.0, "force": 1.0, "temp": 1.0, "temp_offset": 273.15}

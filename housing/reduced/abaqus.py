@@ -21,8 +21,7 @@ import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.matrices import MOST_COORDINATES, Coordinate, LabelledMatrix, chosen_matrix
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _INTERNAL = 1000  # internal numbers that one node may have
 _LARGEST_NODE = 1e9

@@ -8,9 +8,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.housing.reduced.matrices import MASSLESS, ReducedMatrices, StaticStiffness, scaled
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from gearwhine.numerics.arrays import FloatArray
 
 RIGID_STRAIN = 1e-5
 """Largest strain energy of a free rigid motion, over that of its node motions one by one."""

@@ -9,12 +9,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Part, refuse
 
-FloatArray = npt.NDArray[np.float64]
 Coordinate = tuple[int, int]
 """Number of a node and a component from 1 to 6; component 0 of an internal coordinate."""
 

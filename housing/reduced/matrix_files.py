@@ -23,8 +23,7 @@ from gearwhine.housing.reduced.dmig import read_dmig
 from gearwhine.housing.reduced.harwell_boeing import read_harwell_boeing
 from gearwhine.housing.reduced.matrices import MOST_COORDINATES, Coordinate, LabelledMatrix, chosen_matrix
 from gearwhine.housing.reduced.op4 import read_op4
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 LARGEST_FILE = 300_000_000
 """Bytes beyond which a file is not read: a full matrix of the largest order, 24 characters a number, takes 216 MB."""

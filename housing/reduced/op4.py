@@ -14,12 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.matrices import MOST_COORDINATES, chosen_matrix
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 Strings = Iterator[tuple[int, int, FloatArray]]
 """Column, first row and numbers of each string of a matrix."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.certificate import ReducedCertificate, certify, rigid_motions
 from gearwhine.housing.reduced.matrices import MASSLESS, ReducedMatrices, StaticStiffness, scaled
 from gearwhine.housing.reduced.recovery import RecoveredPoints
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -29,7 +29,6 @@ from gearwhine.numerics.findings import (
 from gearwhine.numerics.own_copies import keep_tuples
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 
-FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
 
 _TWO_PI = 2.0 * np.pi

@@ -9,15 +9,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from scipy import io
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.reduced.matrices import Coordinate, ReducedMatrices
 from gearwhine.housing.reduced.row_labels import write_row_labels
 from gearwhine.housing.storage.netcdf import Variables, write_netcdf
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.arrays import FloatArray
 
 _LARGE = 16  # characters of a large field
 

@@ -7,16 +7,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import RotorError
 from gearwhine.rotors.model.bearing import Bearing, Pedestal
 from gearwhine.rotors.model.shaft import Disc, Rotor
 from gearwhine.rotors.ross.shafts import COUPLING, SHAFT, ReadShaft, read_shaft
 from gearwhine.rotors.ross.tables import Entry, Remarks, read_entries
-
-FloatArray = npt.NDArray[np.float64]
 
 # Row, column of ROSS's coefficients in the matrix over x, y, z and the rotations about x and y.
 PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1), "zz": (2, 2)}

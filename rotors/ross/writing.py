@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import tomli_w
 
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.errors import require, require_finite
 from gearwhine.rotors.model.bearing import Bearing, Pedestal
 from gearwhine.rotors.model.material import ElasticMaterial
@@ -20,7 +20,6 @@ from gearwhine.rotors.ross.reading import PLACES
 from gearwhine.rotors.ross.shafts import ross_formula
 from gearwhine.rotors.ross.tables import Remarks
 
-FloatArray = npt.NDArray[np.float64]
 Table = dict[str, Any]
 
 ROSS_VERSION = "2.3.0"

@@ -40,17 +40,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_loads, slice_stiffness
 from gearwhine.coupling.gears.contact.tooth_pair import ToothPairCurves, slope_jumps
 from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 Weight = Callable[[FloatArray], FloatArray]
 
 CELL = 20

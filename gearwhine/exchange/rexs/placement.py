@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from gearwhine.exchange.rexs.errors import wrong
 from gearwhine.exchange.rexs.model import Component, RexsModel
+from gearwhine.numerics.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 _PARALLEL = 1e-6  # sine of the angle within which axes are parallel
 
 

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -49,10 +48,9 @@ from gearwhine.figures.style import (
     stacked,
     stretches,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
-
-FloatArray = npt.NDArray[np.float64]
 
 KIND_COLORS = {
     "rotor": BLUE,

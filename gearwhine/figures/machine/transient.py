@@ -10,7 +10,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -54,9 +53,8 @@ from gearwhine.figures.style import (
 )
 from gearwhine.housing import HousingModes
 from gearwhine.housing.correlation.comparison import Comparison
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.sections import arrowed, counted
-
-FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN, _RIGHT = 34.0, 6.5, 14.0  # height of a panel, gap above it, and width beside it for levels [mm]
 _ABOVE = 4.5  # height above the first panel for the name of its sensor [mm]
