@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args, get_origin
@@ -57,8 +58,25 @@ def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
     return PydanticCustomError("case", "{expected}", {"expected": expected, "at": at, "note": note})
 
 
+class Rule(ABC):
+    """Validates the value of a key; to stand in `Annotated`. A rule with a `write` takes that to write it back."""
+
+    write: Callable[..., Any] | None = None
+
+    @abstractmethod
+    def validate(self, value: object) -> Any:
+        """Return the value, or raise pydantic's error with what was expected."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Return pydantic's schema for validation and serialisation of this field."""
+        if self.write is None:
+            return core_schema.no_info_plain_validator_function(self.validate)
+        writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
+        return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
+
+
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(Rule):
     """Validates a quantity within a range, and writes it back with its unit; to stand in `Annotated`.
 
     Attributes
@@ -76,11 +94,6 @@ class Quantity:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Return pydantic's schema for validation and serialisation of this field."""
-        writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
-        return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
     def write(self, number: float) -> str | float:
         """Return the quantity as text with its unit."""
@@ -159,7 +172,7 @@ def hint_of_millimetres(value: object) -> str:
 
 
 @dataclass(frozen=True)
-class Whole:
+class Whole(Rule):
     """Validates a whole number within limits; to stand in `Annotated`.
 
     Where negative numbers of the same size stand for something, `negative` names it: "an internal gear".
@@ -168,10 +181,6 @@ class Whole:
     at_least: int
     at_most: int
     negative: str = ""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Return pydantic's schema for validation of this field."""
-        return core_schema.no_info_plain_validator_function(self.validate)
 
     @property
     def expected(self) -> str:
@@ -202,11 +211,8 @@ _NAME = re.compile(r"[^\s\x00-\x1f\x7f/\\](?:[^\x00-\x1f\x7f/\\]{0,98}[^\s\x00-\
 
 
 @dataclass(frozen=True)
-class _NameRule:
+class _NameRule(Rule):
     """Validates an entry's name: short, on one line, fit to stand in a table, a plot and a file name."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
 
     def validate(self, value: object) -> str:
         if not isinstance(value, str) or _NAME.fullmatch(value) is None:
@@ -375,15 +381,10 @@ Coefficient = float | tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class OverSpeed:
+class OverSpeed(Rule):
     """Validates a quantity, or a list with one for each speed of a table; to stand in `Annotated`."""
 
     each: Quantity
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Return pydantic's schema for validation and serialisation of this field."""
-        writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
-        return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
     @property
     def expected(self) -> str:

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import (
     Field,
-    GetCoreSchemaHandler,
     PrivateAttr,
     StrictBool,
     Tag,
     ValidationInfo,
     model_validator,
 )
-from pydantic_core import core_schema
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -31,6 +29,7 @@ from gearwhine.case.fields import (
     PositiveFrequency,
     PositiveLength,
     Quantity,
+    Rule,
     Table,
     Whole,
     by_list,
@@ -215,11 +214,8 @@ class Measured(Table):
         return "shapes" if self.has_shapes else "nearest"
 
 
-class _AmountRule:
+class _AmountRule(Rule):
     """Validates a quantity of any kind, left as it is written: text with a unit, or a plain number in SI."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
 
     def validate(self, value: object) -> str | float:
         if units.si_amount(value) is None:
@@ -228,11 +224,8 @@ class _AmountRule:
         return value if isinstance(value, str) else float(value)
 
 
-class _KeyRule:
+class _KeyRule(Rule):
     """Validates a key path."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
 
     def validate(self, value: object) -> str:
         if not isinstance(value, str) or parse_key_path(value) is None:

@@ -10,7 +10,7 @@ from gearwhine.case import units
 from gearwhine.case.fields import Name, Quantity, Table, Whole, wrong
 from gearwhine.case.measured import Amount, KeyPath
 from gearwhine.case.operation import Speeds, listed
-from gearwhine.case.variation import MOST_KEYS, AnalysisName, Factor, Limit
+from gearwhine.case.variation import MOST_KEYS, Analyses, Factor, Limit, QuantityPatterns
 
 QuantityName = Annotated[str, Field(max_length=200)]
 Choices = Annotated[tuple[str | bool | int | float, ...], Field(min_length=1, max_length=1000)]
@@ -100,9 +100,9 @@ class Optimisation(Table):
     """Largest number of designs that a search tries."""
     seed: Annotated[int, Whole(0, 2**31 - 1)] = 1
     """Seed of the search. The same seed gives the same designs."""
-    analyses: tuple[AnalysisName, ...] | None = None
+    analyses: Analyses | None = None
     """What is found of each design, as in `[variation]`. Default: what aims and limits name."""
-    quantities: Annotated[tuple[Annotated[str, Field(min_length=1, max_length=200)], ...], Field(max_length=1000)] = ()
+    quantities: QuantityPatterns = ()
     """Names of the quantities that are found beside those of aims and limits, as in `[variation]`; what they do not
     need is not computed. Default: all of the analyses."""
     speed: Speeds | None = None
@@ -126,13 +126,6 @@ class Optimisation(Table):
     def speeds(self) -> tuple[float, ...]:
         """The speeds [rad/s]; none where they are those of the case."""
         return () if self.speed is None else listed(self.speed)
-
-    @field_validator("analyses", mode="after")
-    @classmethod
-    def _each_once(cls, names: tuple[str, ...] | None) -> tuple[str, ...] | None:
-        if names is not None and (not names or len(set(names)) < len(names)):
-            raise wrong("one analysis or more, each once")
-        return names
 
     @field_validator("aim", mode="after")
     @classmethod

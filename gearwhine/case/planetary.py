@@ -30,9 +30,11 @@ from gearwhine.case.fields import (
     LengthFromZero,
     Name,
     PositiveLength,
+    PositiveStiffness,
     Quantity,
     RotorName,
     SeatName,
+    StiffnessFromZero,
     Table,
     Whole,
     wrong,
@@ -59,10 +61,8 @@ PinError = Annotated[
 ]
 
 
-StiffnessAboveZero = Annotated[float, Quantity(units.STIFFNESS, above=0.0)]
-StiffnessFromZero = Annotated[float, Quantity(units.STIFFNESS, at_least=0.0)]
 TangentialStiffness = Annotated[
-    Annotated[StiffnessAboveZero, Tag("~length")] | Annotated[tuple[StiffnessAboveZero, ...], Tag("~list")],
+    Annotated[PositiveStiffness, Tag("~length")] | Annotated[tuple[PositiveStiffness, ...], Tag("~list")],
     Discriminator(_error_form),
 ]
 OtherStiffness = Annotated[

@@ -14,7 +14,6 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
-    GetCoreSchemaHandler,
     PrivateAttr,
     SerializerFunctionWrapHandler,
     Tag,
@@ -24,7 +23,7 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
-from pydantic_core import PydanticCustomError, core_schema
+from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -47,6 +46,7 @@ from gearwhine.case.fields import (
     PositiveStiffness,
     Quantity,
     RotorName,
+    Rule,
     Table,
     Whole,
     wrong,
@@ -72,11 +72,8 @@ reciprocal is meant."""
 
 
 @dataclass(frozen=True)
-class _ShearRule:
+class _ShearRule(Rule):
     """Validates a shear coefficient: a formula by its name, or the number itself."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
 
     def validate(self, value: object) -> ShearFormula | float:
         if value == "cowper" or value == "hutchinson":

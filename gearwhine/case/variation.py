@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import Field, StrictBool, field_validator, model_validator
+from pydantic import AfterValidator, Field, StrictBool, model_validator
 
 from gearwhine.case import units
 from gearwhine.case.fields import MOST_ENTRIES, CaseFile, Name, Quantity, Table, Whole, wrong
@@ -133,6 +133,16 @@ class Limit(Table):
 
 
 AnalysisName = Literal["gears", "load", "rotors", "mass", "lines", "sound", "motion"]
+
+
+def _each_once(names: tuple[AnalysisName, ...]) -> tuple[AnalysisName, ...]:
+    if not names or len(set(names)) < len(names):
+        raise wrong("one analysis or more, each once")
+    return names
+
+
+Analyses = Annotated[tuple[AnalysisName, ...], AfterValidator(_each_once)]
+QuantityPatterns = Annotated[tuple[Annotated[str, Field(min_length=1, max_length=200)], ...], Field(max_length=1000)]
 MOST_SAMPLES = 10_000_000
 MOST_KEYS = 500
 
@@ -144,12 +154,12 @@ class Variation(Table):
     """Number of gearboxes; powers of two cover the distributions most evenly."""
     seed: Annotated[int, Whole(0, 2**31 - 1)] = 1
     """Seed of the samples. The same seed gives the same samples, the first ones whatever their number."""
-    analyses: tuple[AnalysisName, ...] | None = None
+    analyses: Analyses | None = None
     """What is found of each gearbox: "gears" (transmission error, mesh stiffness), "load" (operating point), "rotors"
     (critical speeds), "mass" (gears, shafts, housing), "lines" (levels at sensors by the linear machine under load),
     "sound" (sound power of its mesh harmonics, as `[acoustics]` says) and "motion" (levels at sensors by the
     transient). Default: gears, load and lines, as far as the case has them."""
-    quantities: Annotated[tuple[Annotated[str, Field(min_length=1, max_length=200)], ...], Field(max_length=1000)] = ()
+    quantities: QuantityPatterns = ()
     """Names of the quantities that are found, `*` for any part of a name, such as
     "gear_pair.*.transmission_error_peak_to_peak_m"; what they do not need is not computed. Default: all of the
     analyses."""
@@ -166,13 +176,6 @@ class Variation(Table):
     def speeds(self) -> tuple[float, ...]:
         """The speeds [rad/s]; none where they are those of the case."""
         return () if self.speed is None else listed(self.speed)
-
-    @field_validator("analyses", mode="after")
-    @classmethod
-    def _each_once(cls, names: tuple[str, ...] | None) -> tuple[str, ...] | None:
-        if names is not None and (not names or len(set(names)) < len(names)):
-            raise wrong("one analysis or more, each once")
-        return names
 
     @model_validator(mode="after")
     def _correlated_keys_are_varied(self) -> Variation:

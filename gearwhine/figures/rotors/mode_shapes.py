@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 from gearwhine.figures.rotors.assembly import RotorAssembly
 from gearwhine.figures.rotors.campbell import AXIAL, Sense, legend_lines, sense_of
-from gearwhine.figures.rotors.shaft import MM, ShaftView, lay_out
+from gearwhine.figures.rotors.shaft import MM, OutlinePanel, ShaftView, lay_out
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -121,6 +121,19 @@ def draw_along(axes: Axes, assembly: RotorAssembly, view: ShaftView, bearings: S
         axes.axvline(MM * at, color=PALE, lw=1.0, zorder=0.5, label="bearing")
 
 
+def _sheet_below_shaft(
+    outline: OutlinePanel, height: float, title: str, remarks: Sequence[str], bearings: Sequence[float]
+) -> tuple[Figure, Axes]:
+    """Return a sheet with a shaft at its top, and the panel of a height [mm] below on the same axis."""
+    figure = sheet(HEAD + outline.height + height + FOOT, title, "; ".join([*remarks, *outline.remarks]))
+    upper = outline.draw(figure, FOOT + height)
+    upper.spines["bottom"].set_visible(False)
+    upper.tick_params(bottom=False, labelbottom=False)
+    axes = panel(figure, FOOT, height)
+    draw_along(axes, outline.assembly, outline.view, bearings)
+    return figure, axes
+
+
 def _places(assembly: RotorAssembly) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return places along the shaft, ascending, and among them those of bearings and of discs and gears [m]."""
     length = assembly.rotor.length
@@ -154,13 +167,7 @@ def _stacked(
     share = float(np.clip(_TOGETHER / max(count, 1), _LOWEST, _HIGHEST))
     height = share * max(count, 1)
     title = f"Rotor {assembly.rotor.name}: {kind}"
-    figure = sheet(HEAD + outline.height + height + FOOT, title, "; ".join([note, *outline.remarks]))
-    upper = outline.draw(figure, FOOT + height)
-    upper.spines["bottom"].set_visible(False)
-    upper.tick_params(bottom=False, labelbottom=False)
-
-    axes = panel(figure, FOOT, height)
-    draw_along(axes, assembly, outline.view, bearings)
+    figure, axes = _sheet_below_shaft(outline, height, title, [note], bearings)
     axes.set_ylim(-count + 0.5, 0.5)
     levels = -np.arange(count, dtype=np.float64)
     axes.hlines(levels, 0.0, MM * assembly.rotor.length, color=GREY, lw=0.5, zorder=1)
@@ -228,13 +235,8 @@ def draw_static_deflection(
     outline = lay_out(assembly, labelled=False)
     title = f"Rotor {shortened(assembly.rotor.name, 20)}: static deflection and bearing loads"
     carried = f"bearings carry {np.linalg.norm(loads.sum(axis=0)):.5g} N"
-    figure = sheet(HEAD + outline.height + _HEIGHT + FOOT, title, "; ".join([carried, *outline.remarks]))
-    upper = outline.draw(figure, FOOT + _HEIGHT)
-    upper.spines["bottom"].set_visible(False)
-    upper.tick_params(bottom=False, labelbottom=False)
-
-    axes = panel(figure, FOOT, _HEIGHT)
-    draw_along(axes, assembly, outline.view, [bearing.at for bearing in assembly.bearings])
+    at_bearings = [bearing.at for bearing in assembly.bearings]
+    figure, axes = _sheet_below_shaft(outline, _HEIGHT, title, [carried], at_bearings)
     axes.axhline(0.0, color=GREY, lw=0.5, zorder=1)
     largest = float(np.abs(moved).max(initial=0.0))
     curves: list[Artist] = []
@@ -295,15 +297,9 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     along = [number for number in range(count) if whirl.axial_share[number] > MOSTLY_AXIAL]
     remarks = [f"the lowest {count} of {whole}"] if count < whole else []
     remarks += ["orbits begin at the dot"] * (len(along) < count) + ["arrows: motion along the axis"] * bool(along)
-    remarks += ["each mode over its largest displacement", *outline.remarks]
+    remarks.append("each mode over its largest displacement")
     title = f"Rotor {shortened(assembly.rotor.name, 20)}: whirl at {abs(whirl.speed) * RPM:.5g} rpm"
-    figure = sheet(HEAD + outline.height + height + FOOT, title, "; ".join(remarks))
-    upper = outline.draw(figure, FOOT + height)
-    upper.spines["bottom"].set_visible(False)
-    upper.tick_params(bottom=False, labelbottom=False)
-
-    axes = panel(figure, FOOT, height)
-    draw_along(axes, assembly, view, [bearing.at for bearing in assembly.bearings])
+    figure, axes = _sheet_below_shaft(outline, height, title, remarks, [bearing.at for bearing in assembly.bearings])
     axes.set_ylim(0.0, height)
     places = np.linspace(0.0, assembly.rotor.length, _ALONG)
     x, y = whirl.evaluate(places)
