@@ -34,7 +34,12 @@ import numpy as np
 from scipy import linalg
 
 from gearwhine.coupling.assembly import CoupledMachine
-from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, polygon_phasors
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    HuntingCurve,
+    hunting_period_mesh,
+    loaded_transmission_error,
+    polygon_phasors,
+)
 from gearwhine.coupling.linear.carriers.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.linear.carriers.turning_stiffness import TurningStiffnessForce
 from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero, sum_by_order
@@ -318,21 +323,19 @@ class LineMechanisms:
         few = len(cycles) <= _UNRESOLVED_HARMONICS
         if isinstance(varying, StiffnessForce):
             orders, forces = varying.lines
-            near = (np.abs(orders * rate - frequency) <= reach) & (few | (orders % 1.0 == 0.0))
+            near = slice(*np.searchsorted(orders, [(frequency - reach) / rate, (frequency + reach) / rate]))
+            orders, forces = orders[near], np.where(few | (orders[near] % 1.0 == 0.0), forces[near], 0.0)
             rounding = _TRANSMISSION_ERROR_ROUNDING * stiffness * np.abs(alike.transmission_error).max()
-            least = max(rounding, _FAINT_HARMONIC * np.abs(forces[near]).max(initial=0.0))
-            for at, force in zip(orders[near].tolist(), forces[near].tolist(), strict=True):
+            least = max(rounding, _FAINT_HARMONIC * np.abs(forces).max(initial=0.0))
+            for at, force in zip(orders.tolist(), forces.tolist(), strict=True):
                 if abs(force) > least:
                     yield at * rate, "varying_stiffness", Force.along(contact, force)
         if periods == 1 or not few or not len(cycles):
             return
-        every, same = self._hunting[number]
+        largest, differences = self._differences[number]
         orders = cycles / periods
-        errors = polygon_phasors(every.phases, every.transmission_error, orders, periods)
-        if np.any(of_mesh := cycles % periods == 0):
-            errors[of_mesh] -= polygon_phasors(same.phases, same.transmission_error, orders[of_mesh])
-        errors = at_time_zero(errors, contact, orders)
-        rounding = _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max()
+        errors = at_time_zero(differences.amplitudes(cycles.astype(np.int64)), contact, orders)
+        rounding = _TRANSMISSION_ERROR_ROUNDING * largest
         least = max(rounding, _FAINT_HARMONIC * np.abs(errors).max())
         for at, error in zip(orders.tolist(), errors.tolist(), strict=True):
             if abs(error) > least:
@@ -362,14 +365,17 @@ class LineMechanisms:
         return self.model.varying_meshes() if self.model.stiffness_varies else []
 
     @cached_property
-    def _hunting(self) -> dict[int, tuple[LoadedMesh, LoadedMesh]]:
-        """Mesh of every loaded contact over its hunting period, and with teeth alike at the same phases of a period."""
-        meshes = {}
+    def _differences(self) -> dict[int, tuple[float, HuntingCurve]]:
+        """Transmission error over the hunting period less that of teeth alike, after its largest value [m]."""
+        found = {}
         for number in self.model.loaded:
             law, force = self.machine.system.contacts[number].contact, self._force[number]
-            if law.hunting_period > 1:
-                meshes[number] = (hunting_period_mesh(law, force), hunting_period_mesh(law.teeth_alike, force))
-        return meshes
+            if (periods := law.hunting_period) > 1:
+                phases, error = (every := hunting_period_mesh(law, force)).phases, every.transmission_error
+                alike = loaded_transmission_error(law.teeth_alike, force, phases[: phases.size // periods])
+                more = error - np.tile(alike.transmission_error, periods)
+                found[number] = float(np.abs(error).max()), HuntingCurve.through(phases, more, periods)
+        return found
 
     @property
     def _force(self) -> list[float]:

@@ -33,11 +33,10 @@ import numpy.typing as npt
 
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.loaded.transmission_error import (
+    HuntingCurve,
     LoadedMesh,
     loaded_transmission_error,
     period_mean,
-    phasors_between,
-    polygon_phasors,
 )
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -49,7 +48,6 @@ _FURTHER = 3  # orders beyond the limit whose coupling counts
 LEAST_REACH = 15
 """Number of harmonics at least: a mesh vibrates on its stiffness far above the modes of a housing."""
 _SECANT = 0.1  # part of the mean force, or compression, over which the stiffness is taken
-_AT_ONCE = 4000  # orders whose amplitudes are summed together
 _WHOLE = 1e-9  # distance from a whole order below which a line is a mesh harmonic
 
 
@@ -167,11 +165,7 @@ def varying_mesh(
     def two_sided(values: FloatArray, widest: int) -> ComplexArray:
         """Amplitudes at the orders k/H + j, j up to ``widest`` on either side, without the mean."""
         orders = np.arange(1, count + 1) if between else periods * np.arange(1, 2 * reach + 1)
-        if periods == 1 or not between:
-            found = polygon_phasors(mesh.phases, values, orders / periods, periods)
-        else:
-            parts = np.array_split(orders, -(-count // _AT_ONCE))
-            found = np.concatenate([phasors_between(mesh.phases, values, some) for some in parts])
+        found = HuntingCurve.through(mesh.phases, values, periods).amplitudes(orders)
         found = 0.5 * found * np.exp(2j * np.pi * contact.phase / periods * orders)
         found = np.concatenate([[0.0], found if contact.mesh_frequency > 0.0 else found.conj()])
         at = whole[:, None] + (periods if between else 1) * np.arange(-widest, widest + 1)

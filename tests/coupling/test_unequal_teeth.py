@@ -14,7 +14,7 @@ import gearwhine as gw
 from gearwhine.coupling import CoupledMachine, TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.gears import GearError
-from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, phasors_between, polygon_phasors
+from gearwhine.coupling.gears.loaded.transmission_error import HuntingCurve, hunting_period_mesh, polygon_phasors
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.lines_over_speed import housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
@@ -52,13 +52,13 @@ def test_amplitudes_between_mesh_harmonics_are_fouriers_integrals() -> None:
     first = np.sort(rng.uniform(0.0, 0.98, 7))
     phases = (np.arange(5)[:, None] + first).ravel()
     values = rng.normal(size=35)
-    orders = np.array([1, 2, 4, 5, 7, 23])
-    found = phasors_between(phases, values, orders)
-    np.testing.assert_allclose(found, polygon_phasors(phases, values, orders / 5.0, 5), rtol=1e-10, atol=1e-13)
+    cycles = np.array([1, 2, 4, 5, 7, 23])
+    found = HuntingCurve.through(phases, values, 5).amplitudes(cycles)
+    np.testing.assert_allclose(found, polygon_phasors(phases, values, cycles / 5.0, 5), rtol=1e-10, atol=1e-13)
     moved = phases.copy()
     moved[9] += 1e-3
     with pytest.raises(GearError, match="return in each mesh period"):
-        phasors_between(moved, values, orders)
+        HuntingCurve.through(moved, values, 5)
 
 
 @pytest.mark.parametrize("torque", ["71.77 N*m", "-71.77 N*m"])

@@ -299,9 +299,10 @@ def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -
     Raises
     ------
     GearError
-        Where the phases do not lie in these periods, ascending.
+        Where the phases do not return in each of these periods.
     """
-    return polygon_phasors(mesh.phases, mesh.transmission_error, np.arange(1, count + 1), periods)
+    curve = HuntingCurve.through(mesh.phases, mesh.transmission_error, periods)
+    return curve.amplitudes(periods * np.arange(1, count + 1))
 
 
 def polygon_phasors(phases: FloatArray, values: FloatArray, orders: npt.ArrayLike, periods: int = 1) -> ComplexArray:
@@ -343,41 +344,53 @@ def polygon_phasors(phases: FloatArray, values: FloatArray, orders: npt.ArrayLik
     return np.asarray(2.0 / periods * integral.sum(axis=-1))
 
 
-def phasors_between(phases: FloatArray, values: FloatArray, orders: IntArray) -> ComplexArray:
-    """Complex amplitudes of a curve over H mesh periods whose phases return in each, of any of many orders.
+@dataclass(frozen=True, eq=False)
+class HuntingCurve:
+    """Harmonics of a curve over H mesh periods whose n phases return in each: of a few or of all, at little cost.
 
-    As `polygon_phasors` at the orders k / H, by H-point Fourier transforms at each of the n phases p_j of a period: the
-    polygon is a sum of triangles, of the widths a to the phase before and b to the one after, whose transform at
-    θ = 2π k / H is (1 - e^{iθa}) / (θ² a) + (1 - e^{-iθb}) / (θ² b).
+    The second derivative of a polygon are its changes of slope s_j, so that its amplitude at the order k/H is
 
-    Parameters
+        c = -(2/H) / θ² Σ_j s_j e^{-iθ x_j},      θ = 2π k / H,
+
+    exactly as of `polygon_phasors`, and the sum over the mesh periods is one Fourier transform for all k.
+
+    Attributes
     ----------
-    phases : ndarray, shape (H n,)
-        Mesh periods, ascending: those of the first period and whole numbers beyond.
-    values : ndarray, shape (H n,)
-    orders : ndarray of int, shape (k,)
-        Whole numbers k above 0.
-
-    Returns
-    -------
-    ndarray of complex, shape (k,)
-
-    Raises
-    ------
-    GearError
-        Where the phases do not return in each mesh period.
+    phases : ndarray, shape (n,)
+        Phases of the first mesh period.
+    changes : ndarray of complex, shape (H, n)
+        Σ s e^{-iθx} over the mesh periods at each phase, for k = 0 ... H - 1.
     """
-    count = int(np.searchsorted(phases, phases[0] + 1.0 - _SAME_PHASE))
-    first = phases[:count]
-    periods, left = divmod(phases.size, count)
-    if left or not np.allclose(phases.reshape(periods, count) - np.arange(periods)[:, None], first, atol=_SAME_PHASE):
-        raise GearError("harmonics between those of the mesh: phases that return in each mesh period are needed")
-    lines = np.fft.fft(np.asarray(values, dtype=np.float64).reshape(periods, count), axis=0)[orders % periods]
-    before, after = np.diff(first, prepend=first[-1] - 1.0), np.diff(first, append=first[0] + 1.0)
-    angle = 2.0 * np.pi * np.asarray(orders, dtype=np.float64)[:, None] / periods
-    triangles = (1.0 - np.exp(1j * angle * before)) / (angle**2 * before)
-    triangles += (1.0 - np.exp(-1j * angle * after)) / (angle**2 * after)
-    return np.asarray(2.0 / periods * np.sum(np.exp(-1j * angle * first) * triangles * lines, axis=1))
+
+    phases: FloatArray
+    changes: ComplexArray
+
+    @classmethod
+    def through(cls, phases: FloatArray, values: FloatArray, periods: int) -> HuntingCurve:
+        """Return the polygon through points at phases of ``periods`` mesh periods, shape (H n,) each, ascending.
+
+        Raises
+        ------
+        GearError
+            Where the phases do not return in each mesh period.
+        """
+        first = phases[: phases.size // periods]
+        every = (np.arange(periods)[:, None] + first).ravel()
+        widths = np.diff(first, append=first[0] + 1.0)
+        if phases.size != every.size or np.any(widths <= 0.0) or not np.allclose(phases, every, atol=_SAME_PHASE):
+            raise GearError("harmonics: ascending phases that return in each mesh period are needed")
+        slope = (np.diff(values, append=values[0]).reshape(periods, -1) / widths).ravel()
+        changes = np.fft.fft((slope - np.roll(slope, 1)).reshape(periods, -1), axis=0)
+        return cls(first, changes * np.exp(-2j * np.pi / periods * np.arange(periods)[:, None] * first))
+
+    def amplitudes(self, cycles: IntArray) -> ComplexArray:
+        """Complex amplitudes at the orders k / H, k the whole numbers ``cycles`` above 0, shape (k,)."""
+        periods, found = len(self.changes), np.empty(len(cycles), dtype=np.complex128)
+        whole, rest = np.divmod(cycles, periods)
+        for harmonic in np.unique(whole).tolist():
+            of_harmonic = whole == harmonic
+            found[of_harmonic] = self.changes[rest[of_harmonic]] @ np.exp(-2j * np.pi * harmonic * self.phases)
+        return np.asarray(-periods / (2.0 * np.pi**2 * cycles.astype(np.float64) ** 2) * found)
 
 
 _SAME_PHASE = 1e-9  # of a mesh period
