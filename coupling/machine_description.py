@@ -67,7 +67,7 @@ from gearwhine.coupling.gears.geometry.pair import turning_sense
 from gearwhine.coupling.gears.geometry.pitch_deviations import has_different_teeth
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
 from gearwhine.coupling.gears.stiffness.beam import PlaneState
-from gearwhine.coupling.gears.stiffness.models import rim_compliances
+from gearwhine.coupling.gears.stiffness.models import follows_load, rim_compliances
 from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
 from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
 from gearwhine.coupling.linear.complex_modes import CoupledModes, coupled_modes
@@ -141,6 +141,9 @@ FloatArray = npt.NDArray[np.float64]
 
 _ANGLES = 7  # number of angles of a carrier's turn over which mesh forces are averaged
 _EQUAL_SHARES = 1e-6  # part of a mesh force by which that of an operating point differs from it by rounding
+
+_ROUNDS = 20  # largest number of rounds in which forces and stiffness of teeth settle; each leaves at most a quarter
+_SETTLED_FORCE = 1e-6  # change of a mesh force in the last round, over the largest
 
 _GEOMETRIC = frozenset(
     (
@@ -688,7 +691,8 @@ class Machine:
         """Solve static equilibrium under the mean torques: loads, deflections, misalignment, load over the faces.
 
         Without any torque no flanks carry, and the result has no gear pairs: it is the equilibrium of preloads and
-        weight.
+        weight. Teeth whose stiffness depends on the load have that of their own mesh force: of pairs that share a
+        torque it is found in rounds, from equal shares on.
 
         Raises
         ------
@@ -699,20 +703,41 @@ class Machine:
         gearwhine.rotors.EquilibriumError
             Where a rolling bearing is loaded beyond its theory.
         """
-        pairs = []
         shared = [body for body in self.gear_bodies if self._pair_count(body.gear) > 1]
         alone = [replace(body, twist=None, shift=None) for body in self.gear_bodies if body not in shared]
         rims = {body.gear: body for body in (*shared, *alone) if body in shared or body.plates}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
-        operated = zip(self.gear_pairs, self.pair_geometries, self.pair_torques, self.turning_senses, strict=True)
-        for pair, geometry, torque, rotation in operated:
-            if not carrying:
-                continue
-            driver, driven = self._gears_of(pair)
-            axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            gears = self._static_gears((driver, driven), geometry)
-            behind = _behind_rims(pair, geometry, rims)
-            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque, behind))
+        forces = self._equal_mesh_forces if carrying else np.zeros(0)
+        pairs = [self._static_pair(number, force, rims) for number, force in enumerate(forces.tolist())]
+        follows = np.array(self._stiffens_by_share[: len(pairs)], dtype=bool)
+        for _ in range(_ROUNDS):
+            point = self._equilibrium(pairs, rims)
+            change = np.where(follows, [pair.force for pair in point.pairs] - forces, 0.0)
+            if np.abs(change).max(initial=0.0) <= _SETTLED_FORCE * forces[follows].max(initial=0.0):
+                return point
+            forces = forces + change
+            # The structure that the search starts from stays as it is.
+            pairs = [
+                replace(self._static_pair(number, force, rims), nominal=pair.nominal) if follows[number] else pair
+                for number, (pair, force) in enumerate(zip(pairs, forces.tolist(), strict=True))
+            ]
+        raise EquilibriumNotFoundError(
+            f"the stiffness of teeth that share a torque does not settle in {_ROUNDS} rounds; their forces still "
+            f"change by {np.abs(change).max():.3g} N"
+        )
+
+    def _static_pair(self, number: int, force: float, rims: Mapping[str, GearBody]) -> StaticPair:
+        """Place a pair in the static model, of teeth as stiff as under a mesh force [N]."""
+        pair, geometry = self.gear_pairs[number], self.pair_geometries[number]
+        torque, rotation = self.pair_torques[number], self.turning_senses[number]
+        driver, driven = self._gears_of(pair)
+        axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
+        gears = self._static_gears((driver, driven), geometry)
+        behind = _behind_rims(pair, geometry, rims)
+        return static_pair(pair, geometry, gears, axes, rotation, torque, force, behind)
+
+    def _equilibrium(self, pairs: Sequence[StaticPair], rims: Mapping[str, GearBody]) -> OperatingPoint:
+        """Solve static equilibrium with the gear pairs of a static model."""
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
@@ -815,8 +840,7 @@ class Machine:
         their planets: the means over a turn are those of operating points at angles from that of ``point`` on. All
         carriers turn by the same angles there.
         """
-        rows = zip(self.pair_torques, self.pair_geometries, strict=True)
-        equal = np.array([abs(torque / geometry.driver.base_radius) for torque, geometry in rows])
+        equal = self._equal_mesh_forces
         if point is None or not point.pairs or not any(self.train.shares_torque):
             return list(equal.tolist())
         over_turn = [np.array([pair.force for pair in point.pairs])]
@@ -828,6 +852,18 @@ class Machine:
                     break  # alike all round
         mean = np.mean(over_turn, axis=0)
         return list(np.where(np.abs(mean - equal) <= rounding, equal, mean).tolist())
+
+    @property
+    def _equal_mesh_forces(self) -> FloatArray:
+        """Mesh forces by the torques, of pairs that share one by equal shares [N], shape (p,)."""
+        rows = zip(self.pair_torques, self.pair_geometries, strict=True)
+        return np.array([abs(torque / geometry.driver.base_radius) for torque, geometry in rows])
+
+    @property
+    def _stiffens_by_share(self) -> list[bool]:
+        """Whether each pair shares a torque and its teeth stiffen with the load."""
+        rows = zip(self.gear_pairs, self.train.shares_torque, strict=True)
+        return [shares and follows_load(pair.stiffness) for pair, shares in rows]
 
     def turned(self, angle: float, carrier: str | None = None) -> "Machine":
         """Return the machine with a carrier and its planets turned about its axis [rad]; by default all that turn."""

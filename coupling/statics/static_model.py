@@ -289,6 +289,7 @@ def static_pair(
     axes: tuple[tuple[float, float], tuple[float, float]],
     rotation: int,
     torque: float,
+    force: float,
     behind_rims: float = 0.0,
 ) -> StaticPair:
     """Make a gear pair of the static model, of sound teeth, on the flanks that its mean torque loads.
@@ -305,10 +306,11 @@ def static_pair(
         Sense of rotation of the driver about z: 1 or -1.
     torque : float
         Torque that the pair takes from its driver [N m], positive where power flows to the driven gear.
+    force : float
+        Mesh force that a stiffness by name is that of, where it depends on the load [N].
     behind_rims : float
         Compliance of rims that are coordinates of the static machine, along the line of action [m/N].
     """
-    force = abs(torque / geometry.driver.base_radius)
     tooth_stiffness = pair.stiffness
     model = (
         stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness

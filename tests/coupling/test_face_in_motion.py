@@ -152,10 +152,7 @@ def test_a_spur_power_split_answers_as_springs_over_its_faces() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [ConstantStiffness(4e8), "elastic-ring"])
 def test_mean_forces_in_motion_are_those_of_the_equilibrium(stiffness: ConstantStiffness | str) -> None:
-    """Two paths share a torque by the tilt of their flanks: 1221 and 2326 N.
-
-    The equilibrium keeps the stiffness that teeth under load have at equal shares, the motion that at their own.
-    """
+    """Two paths share a torque by the tilt of their flanks: 1221 and 2326 N, with teeth as stiff as under their own."""
     model = power_split(1, ConstantStiffness(4e8))
     pairs = [replace(pair, stiffness=stiffness, misalignment=None) for pair in model.gear_pairs]
     model = replace(model, gear_pairs=pairs)
@@ -163,9 +160,7 @@ def test_mean_forces_in_motion_are_those_of_the_equilibrium(stiffness: ConstantS
     means, _ = mean_equilibrium(model.at_operating_point(point).assemble().system)
     expected = [pair.force for pair in point.pairs]
     assert expected[1] > 1.5 * expected[0]
-    assert [mean.force for mean in means if mean is not None] == pytest.approx(
-        expected, rel=1e-3 if isinstance(stiffness, ConstantStiffness) else 3e-3
-    )
+    assert [mean.force for mean in means if mean is not None] == pytest.approx(expected, rel=3e-4)
 
 
 @pytest.mark.parametrize("torque", [150.0, -150.0])

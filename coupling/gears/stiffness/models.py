@@ -296,6 +296,12 @@ def stiffness_under_load(name: str, geometry: GearPairGeometry, force: float) ->
     return model
 
 
+def follows_load(stiffness: StiffnessModel | str) -> bool:
+    """Whether the stiffness of a pair follows its load, see `stiffness_under_load`: that of a model by name alone."""
+    model = stiffness_model(stiffness) if isinstance(stiffness, str) else None
+    return isinstance(model, Iso6336Stiffness) or (isinstance(model, CompliantTeeth) and model.contact == "weber")
+
+
 def _require_positive(model: SquareStiffness | ConstantStiffness) -> None:
     if not (math.isfinite(model.value) and model.value > 0.0):
         raise StiffnessModelError(f"stiffness model {model.name!r}: value must be above 0 N/m, got {model.value!r}")
