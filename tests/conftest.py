@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import KINDS, ElementKind
@@ -26,6 +27,8 @@ from gearwhine.meshes.elements import KINDS, ElementKind
 settings.register_profile("fixed", deadline=None, derandomize=True, max_examples=50)
 settings.register_profile("explore", deadline=None)
 settings.load_profile("fixed")
+# Examples would have numbers of the source of whatever modules are loaded by then, which take seconds to read.
+providers.is_local_module_file = lambda path: False
 
 Published = Callable[..., None]
 BlockOf = Callable[..., Mesh]
