@@ -3,21 +3,26 @@
 import gc
 import json
 import logging
+import os
+import pickle
 from base64 import b64decode
 from collections import OrderedDict, defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
+from hashlib import sha256
 from itertools import combinations_with_replacement
 from math import floor, log10
 from pathlib import Path
+from tempfile import NamedTemporaryFile, TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 from gearwhine.meshes import ElementBlock, Mesh
 from gearwhine.meshes.elements import KINDS, ElementKind
@@ -26,10 +31,13 @@ from gearwhine.meshes.elements import KINDS, ElementKind
 settings.register_profile("fixed", deadline=None, derandomize=True, max_examples=50)
 settings.register_profile("explore", deadline=None)
 settings.load_profile("fixed")
+# Examples would have numbers of the source of whatever modules are loaded by then, which take seconds to read.
+providers.is_local_module_file = lambda path: False
 
 Published = Callable[..., None]
 BlockOf = Callable[..., Mesh]
 
+_SHARED = "GEARWHINE_SOLVED_BY_TESTS"
 _VALUE = "published value"
 _REMARK = "remark on a source"
 _HEAD = """\
@@ -89,6 +97,10 @@ def pytest_configure(config: pytest.Config) -> None:
     config.option.loadscopereorder = False
     # As in the command: the garbage collector looks less often at objects that stay.
     gc.set_threshold(20_000, 20, 20)
+    if not hasattr(config, "workerinput"):
+        folder = TemporaryDirectory(prefix="solved-by-tests-")
+        os.environ[_SHARED] = folder.name  # which the processes of the run inherit
+        config.add_cleanup(folder.cleanup)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -212,8 +224,7 @@ def _cells(row: Row) -> list[str]:
     return [row.quantity, value, ours, row.unit, difference, tolerance]
 
 
-_KEPT_HOUSINGS = 8  # the last ones: their shapes take memory
-_KEPT_MOTIONS = 12  # two of each periodic motion, the closed and the refined one
+_KEPT_HERE = 20  # shapes of modes take memory
 
 # A single white point, in place of a rendered figure.
 _POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg==")
@@ -291,57 +302,84 @@ def swept_here() -> Iterator[None]:
         yield
 
 
+class Kept:
+    """What a run of the tests has solved: in a folder that its processes share, the last of it here."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._last = folder, OrderedDict[str, Any]()
+
+    def once(self, key: str, solve: Callable[[], Any], *, shared: bool = True) -> Any:
+        """What was found for a key, by any process of the run where it is shared, or else is solved now."""
+        path = self._folder / key
+        if key not in self._last:
+            if path.exists():
+                self._last[key] = pickle.loads(path.read_bytes())  # noqa: S301 - of this run
+            else:
+                self._last[key] = solve()
+                if shared:
+                    with NamedTemporaryFile(dir=self._folder, delete=False) as file:
+                        pickle.dump(self._last[key], file)
+                    Path(file.name).replace(path)
+            if len(self._last) > _KEPT_HERE:
+                self._last.popitem(last=False)
+        self._last.move_to_end(key)
+        return self._last[key]
+
+
 @pytest.fixture(scope="session")
-def _solved_modes() -> OrderedDict[str, tuple[Any, list[str]]]:
-    return OrderedDict()
+def kept() -> Kept:
+    """What the processes of this run have solved."""
+    return Kept(Path(os.environ[_SHARED]))
 
 
 @pytest.fixture(scope="module")
-def modes_solved_once(_solved_modes: OrderedDict[str, tuple[Any, list[str]]]) -> Iterator[None]:
-    """Solve the modes of a housing once for the cases of a process that differ in the rest.
+def modes_solved_once(kept: Kept) -> Iterator[None]:
+    """Mesh a housing, and solve its modes, once for the cases of a run that differ in the rest.
 
-    The key is that of the modes which a results folder keeps. What the solution says of its progress is said again.
+    The key of modes is that of those which a results folder keeps. What the solution says of its progress is said
+    again.
     """
+    from gearwhine.from_case import mesh
     from gearwhine.housing.storage.netcdf import content_key
     from gearwhine.solve import housing_modes
 
-    solve = housing_modes._solve_modes
+    solve, mesh_box, mesh_cad = housing_modes._solve_modes, mesh.mesh_box, mesh.mesh_cad
 
     def solved(given: Any, described: Any, defects: Any, progress: Any) -> Any:
-        mesh = described.mesh
-        key = content_key({"inputs": given.cache_inputs(mesh), "nodes": mesh.points.tobytes().hex()})
-        if key not in _solved_modes:
+        nodes = described.mesh.points.tobytes().hex()
+
+        def told() -> Any:
             said: list[str] = []
+            known = solve(given, described, defects, said.append)
+            return known.record, known.seconds, said
 
-            def kept(text: str) -> None:
-                said.append(text)
-                progress(text)
+        key = content_key({"inputs": given.cache_inputs(described.mesh), "nodes": nodes})
+        record, seconds, said = kept.once(f"modes-{key}", told)
+        for text in said:
+            progress(text)
+        return replace(housing_modes._of_record(given, described, record), seconds=seconds)
 
-            _solved_modes[key] = solve(given, described, defects, kept), said
-            if len(_solved_modes) > _KEPT_HOUSINGS:
-                _solved_modes.popitem(last=False)
-        else:
-            _solved_modes.move_to_end(key)
-            for text in _solved_modes[key][1]:
-                progress(text)
-        known = _solved_modes[key][0]
-        return replace(housing_modes._of_record(given, described, known.record), seconds=known.seconds)
+    def box(*of: Any, **how: Any) -> Any:
+        key = sha256(pickle.dumps((of, how))).hexdigest()
+        return kept.once(f"box-{key}", lambda: mesh_box(*of, **how))
+
+    def cad(path: Path, *of: Any, **how: Any) -> Any:
+        key = sha256(path.read_bytes() + pickle.dumps((path.suffix, of, how))).hexdigest()
+        return kept.once(f"cad-{key}", lambda: mesh_cad(path, *of, **how))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "_solve_modes", solved)
+        patch.setattr(mesh, "mesh_box", box)
+        patch.setattr(mesh, "mesh_cad", cad)
         yield
 
 
-@pytest.fixture(scope="session")
-def _periodic_motions() -> OrderedDict[str, Any]:
-    return OrderedDict()
-
-
 @pytest.fixture(scope="module")
-def periodic_motions_found_once(_periodic_motions: OrderedDict[str, Any]) -> Iterator[None]:
+def periodic_motions_found_once(kept: Kept) -> Iterator[None]:
     """Find the periodic motion of a machine once for the cases of a process that differ in the rest.
 
     The key has every number that the search takes: matrices, contacts, period, segments, elements, start and tolerance.
+    At ten megabytes each motions are not shared by processes.
     """
     from gearwhine.coupling.periodic import shooting
     from gearwhine.coupling.time.transient import fingerprint
@@ -351,11 +389,7 @@ def periodic_motions_found_once(_periodic_motions: OrderedDict[str, Any]) -> Ite
     def once(solve: Callable[[], Any], ready: Any, *more: Any) -> Any:
         coarsest = shooting.coarsest_element(ready.system, ready.period)
         key = fingerprint(ready.part, ready.contacts, ready.recovery, ready.period, ready.segments, coarsest, more)
-        if key not in _periodic_motions:
-            _periodic_motions[key] = solve()
-            if len(_periodic_motions) > _KEPT_MOTIONS:
-                _periodic_motions.popitem(last=False)
-        return _periodic_motions[key]
+        return kept.once(f"motion-{key}", solve, shared=False)
 
     def searched(ready: Any, level: int, state: Any) -> Any:
         return once(lambda: search(ready, level, state), ready, "search", level, state)

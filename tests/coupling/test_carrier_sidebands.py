@@ -292,7 +292,7 @@ def test_parts_and_bands_of_sidebands_are_those_of_lines_and_of_a_machine_with_o
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("angles", "ripple"), [(None, RIPPLE), (UNEQUAL, RIPPLE), (UNEQUAL, STRONG_RIPPLE)])
+@pytest.mark.parametrize(("angles", "ripple"), [(None, RIPPLE), (UNEQUAL, STRONG_RIPPLE)])
 def test_lines_are_those_of_an_integration_in_time(angles: tuple[float, ...] | None, ripple: float) -> None:
     machine = turning_machine(ANISOTROPIC, angles_deg=angles, ripple=ripple)
     period, count = 2.0 * np.pi / machine.speeds["carrier"], 8192

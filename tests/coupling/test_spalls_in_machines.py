@@ -216,7 +216,7 @@ def test_motion_on_a_housing_that_yields(
         q, rate = np.split(state, 2)
         return np.concatenate([rate, forces(q, time) - damping @ rate])
 
-    interval, duration = 1e-4, 0.015
+    interval, duration = 1e-4, 0.01
     outputs = np.vstack([rows["left"][:2], rows["right"][:2]])
     top = np.concatenate([np.zeros(size), SENSOR])[None]
     chosen = TransientSettings(duration, 0.0, interval, 2e-6, tolerance=1e-4)

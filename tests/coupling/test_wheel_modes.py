@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import skfem
-from scipy import linalg, optimize
+from scipy import linalg, optimize, sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from scipy.special import ivp, jvp, kvp, yvp
+from skfem.models.elasticity import lame_parameters
 
 from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftGear
 from gearwhine.coupling.gears import Gear, GearError
@@ -290,32 +291,38 @@ def solid_wheel(count: int, teeth: bool = True) -> Solid:
         [np.array([a[0], a[1], a[2], b[0], a[3], b[1], b[2], b[3]]) for a, b in zip(near, after, strict=True)], axis=1
     )
     mesh = skfem.MeshHex(points, cells)
-    basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementHex2()), intorder=4)
-    from skfem.models.elasticity import lame_parameters, linear_elasticity
-
-    stiffness = linear_elasticity(*lame_parameters(E, NU)).assemble(basis)
-    product = skfem.BilinearForm(lambda u, v, w: u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
-    mass = DENSITY * product.assemble(basis)
-    x, y, height = basis.doflocs
+    basis = skfem.Basis(mesh, skfem.ElementHex2(), intorder=4)
+    # A form for each pair of directions, of one displacement: all of x, then y, then z.
+    slopes = {
+        (i, j): skfem.BilinearForm(lambda u, v, w, i=i, j=j: v.grad[i] * u.grad[j]).assemble(basis)
+        for i in range(3)
+        for j in range(i, 3)
+    }
+    slopes |= {(j, i): one.T for (i, j), one in slopes.items()}
+    lame, shear = lame_parameters(E, NU)
+    even = shear * (slopes[0, 0] + slopes[1, 1] + slopes[2, 2])
+    stiffness = sparse.block_array(
+        [[lame * slopes[i, j] + shear * slopes[j, i] + (i == j) * even for j in range(3)] for i in range(3)]
+    ).tocsr()
+    product = skfem.BilinearForm(lambda u, v, w: u * v)
+    density = DENSITY * product.assemble(basis)
     outside = mesh.facets_satisfying(lambda p: np.hypot(p[0], p[1]) > 0.99 * wide * root, boundaries_only=True)
     if teeth:
         area = 2.0 * np.pi * root * gear.face_width
         of_teeth = DENSITY * np.pi * gear.face_width * (gear.pitch_radius**2 - root**2) / area
-        mass = mass + of_teeth * product.assemble(basis.boundary(outside))
-    held = np.zeros(basis.N, dtype=bool)
+        density = density + of_teeth * product.assemble(basis.boundary(outside))
+    mass = sparse.kron(sparse.eye_array(3), density).tocsr()
+    held = np.zeros((3, basis.N), dtype=bool)
     inside = mesh.facets_satisfying(lambda p: np.hypot(p[0], p[1]) < 1.01 * wide * hub, boundaries_only=True)
-    held[basis.get_dofs(facets=inside).all()] = True
-    free = np.flatnonzero(~held)
+    held[:, basis.get_dofs(facets=inside).all()] = True
+    free = np.flatnonzero(~held.ravel())
     k, m = stiffness[free][:, free].tocsc(), mass[free][:, free].tocsc()
     solver = splu(k, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     inverse = LinearOperator(k.shape, matvec=solver.solve, dtype=np.float64)
     values, vectors = eigsh(k, count, m, sigma=0.0, OPinv=inverse, v0=np.ones(free.size))
-    shapes = np.zeros((basis.N, count))
+    shapes = np.zeros((3 * basis.N, count))
     shapes[free] = vectors
-    part = np.zeros(basis.N, dtype=np.int64)
-    for kind in (basis.dofs.nodal_dofs, basis.dofs.edge_dofs, basis.dofs.facet_dofs, basis.dofs.interior_dofs):
-        for number in range(3):
-            part[kind[number::3]] = number
+    x, y, height = basis.doflocs
     zero, one = np.zeros(basis.N), np.ones(basis.N)
     fields = [
         (one, zero, zero),
@@ -325,19 +332,17 @@ def solid_wheel(count: int, teeth: bool = True) -> Solid:
         (height, zero, -x),
         (-y, x, zero),
     ]
-    rigid = np.array([np.choose(part, field) for field in fields]).T
+    rigid = np.array([np.concatenate(field) for field in fields]).T
     assert np.abs(stiffness @ rigid).max() < 1e-9 * np.abs(stiffness).max()
     order = np.argsort(values)
-    outer = np.flatnonzero((np.hypot(x, y) > 0.99 * wide * root) & (part == 0))
-    at = np.array([x, y, height])[:, outer]
-    moved = np.array(
-        [
-            [shapes[np.flatnonzero((x == a) & (y == b) & (height == c) & (part == p))[0]] for p in range(3)]
-            for a, b, c in at.T
-        ]
-    )
+    outer = np.flatnonzero(np.hypot(x, y) > 0.99 * wide * root)
+    moved = shapes.reshape(3, -1, count)[:, outer].transpose(1, 0, 2)
     return Solid(
-        at, np.sqrt(values[order]), moved[:, :, order], (rigid.T @ (mass @ shapes))[:, order], rigid.T @ (mass @ rigid)
+        basis.doflocs[:, outer],
+        np.sqrt(values[order]),
+        moved[:, :, order],
+        (rigid.T @ (mass @ shapes))[:, order],
+        rigid.T @ (mass @ rigid),
     )
 
 

@@ -18,7 +18,6 @@ import xarray as xr
 import gearwhine as gw
 from gearwhine.cli import run_command
 from gearwhine.from_case import mesh
-from gearwhine.meshes import mesh_cad
 from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 
@@ -45,6 +44,7 @@ def _periodic_motions_found_once(periodic_motions_found_once: None) -> None:
 @pytest.fixture
 def linear_drawings(monkeypatch: pytest.MonkeyPatch) -> None:
     """Mesh drawings by linear tetrahedra: their bolts, not the size of elements, say how many there are."""
+    mesh_cad = mesh.mesh_cad
     monkeypatch.setattr(mesh, "mesh_cad", lambda *drawing, **how: mesh_cad(*drawing, **how | {"order": 1}))
 
 

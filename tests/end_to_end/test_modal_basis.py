@@ -15,7 +15,7 @@ Motions = dict[str, FloatArray]
 
 LIMIT_HZ = 3200.0
 HERTZ = 2.0 * np.pi
-MESH = 'housing.box.mesh_size="40 mm"'  # the bundled 12 mm are in studies/basis_error.py
+MESH = 'housing.box.mesh_size="50 mm"'  # the bundled 12 mm are in studies/basis_error.py
 BEARINGS = ("input-back", "input-front", "output-back", "output-front")
 FIVE_BY_FIVE = [
     f"bearing.{name}.stiffness={{matrix=[[1.2e8,0,0,0,0],[0,1.2e8,0,0,0],[0,0,4e7,0,0],[0,0,0,3e4,0],[0,0,0,0,3e4]]}}"

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from gearwhine.from_case import mesh
-from gearwhine.meshes import mesh_box
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "scripts" / "examples"
@@ -25,6 +24,7 @@ def _solved_once(modes_solved_once: None, periodic_motions_found_once: None) -> 
 @pytest.fixture
 def larger_elements(monkeypatch: pytest.MonkeyPatch) -> None:
     """Mesh boxes by elements of at least 60 mm, for examples whose statements do not depend on them."""
+    mesh_box = mesh.mesh_box
     monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, 0.06), **how))
 
 

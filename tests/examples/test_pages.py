@@ -18,7 +18,6 @@ from pydantic import ValidationError
 
 from gearwhine.case import Case
 from gearwhine.from_case import mesh
-from gearwhine.meshes import mesh_box
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -152,6 +151,7 @@ def test_the_reducer_of_the_tutorial_is_the_bundled_one() -> None:
 @pytest.mark.slow
 def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
+    mesh_box = mesh.mesh_box
     monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, 0.05), **how))
     names: dict[str, Any] = {"__name__": "__main__"}
     for block in blocks("docs/python.md"):

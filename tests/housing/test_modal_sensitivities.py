@@ -86,18 +86,17 @@ def test_turning_and_shifting_a_body_changes_no_frequency(box: Mesh, steel: Mate
 def test_frequency_slopes_are_those_of_solved_modes(
     box: Mesh, geometry: BoxGeometry, steel: Material, constants: FloatArray
 ) -> None:
-    """A wall, a spring and a density, against Richardson's extrapolation of true solutions, to 1e-6 of the largest."""
+    """A wall and a spring, against Richardson's extrapolation of true solutions, to 1e-6 of the largest."""
     supports = [Support("feet", surface="foot-1", fixed=(True, True, True))]
     spring = (3e7, 4e7, 5e7)
     fixed = fixed_freedoms(box, supports)
     morph = BoxMorph(box, geometry)
     velocity = morph.displacement(replace(geometry, wall=replace(geometry.wall, top=0.021, front=0.0205)))
 
-    def frequencies(wall: float, springs: float, density: float) -> FloatArray:
+    def frequencies(wall: float, springs: float) -> FloatArray:
         mesh = replace(box, points=box.points + wall * velocity)
         held = [Support("spring", surface="foot-3", stiffness=tuple((1.0 + springs) * k for k in spring))]  # type: ignore[arg-type]
-        own = replace(steel, density=(1.0 + density) * steel.density)
-        return solve_modes(attach_fixtures(assemble(mesh, own), mesh, held).held(fixed), count=6).frequencies
+        return solve_modes(attach_fixtures(assemble(mesh, steel), mesh, held).held(fixed), count=6).frequencies
 
     held = Support("spring", surface="foot-3", stiffness=spring)
     matrices = attach_fixtures(assemble(box, steel), box, [held])
@@ -110,14 +109,13 @@ def test_frequency_slopes_are_those_of_solved_modes(
     rates = [
         ModelSensitivity(velocity=velocity, stiffness=(shares[0] - shares[1]) / (2.0 * STEP)),
         ModelSensitivity(stiffness=fastened),
-        ModelSensitivity(constants=np.stack([0.0 * constants[0], 0.0 * constants[1], constants[2]])),
     ]
     slopes = modal_sensitivities(box, constants, modes.shapes, rates).eigenvalues(modes.frequencies) / (
         2.0 * modes.frequencies
     )
-    for number, step in enumerate((0.02, 0.01, 0.005)):
+    for number, step in enumerate((0.02, 0.01)):
         one, two = (
-            (frequencies(*np.eye(3)[number] * h) - frequencies(*np.eye(3)[number] * -h)) / (2.0 * h)
+            (frequencies(*np.eye(2)[number] * h) - frequencies(*np.eye(2)[number] * -h)) / (2.0 * h)
             for h in (2.0 * step, step)
         )
         expected = (4.0 * two - one) / 3.0

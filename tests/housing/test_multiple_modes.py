@@ -1,4 +1,4 @@
-"""Double and triple modes of free cubes and rings, complete in each of fifty random runs.
+"""Double and triple modes of free cubes and rings, complete in each of thirty random runs.
 
 The cube's group of symmetries has representations of one, two and three dimensions, the ring's of one and two, and so
 many modes share one frequency. Meshes that have the symmetry themselves (grids of bricks; rings of equal sectors) have
@@ -28,7 +28,7 @@ from gearwhine.numerics.arrays import FloatArray
 
 Blocks = Callable[..., Mesh]
 
-RUNS = 25  # of either shape
+RUNS = 15  # of either shape
 SPREAD = 1e-9  # of the frequencies of one multiple mode, as a part of them
 SPLIT = 1e-6  # frequencies farther apart, as a part of them, are different modes
 DISTINCT = 1e-3  # part of the highest eigenvalue found: a gap this wide always ends a search by number

@@ -196,16 +196,6 @@ def test_without_egl_and_osmesa_the_packages_to_install_are_named() -> None:
     assert done.stdout.strip().endswith("False")
 
 
-def test_importing_the_room_brings_no_heavy_library() -> None:
-    done = _run("""
-        import gearwhine.housing
-        heavy = ["gmsh", "vtk", "vtkmodules", "pyvista", "matplotlib", "skfem", "numba", "rslab", "PIL"]
-        heavy += ["scipy.optimize", "scipy.spatial"]
-        print([name for name in heavy if name in sys.modules])
-    """)
-    assert done.stdout.strip() == "[]", done.stderr
-
-
 def test_middle_nodes_bend_the_drawn_surface(block: Callable[..., Mesh]) -> None:
     mesh = block((0.1, 0.1, 0.1))
     drawn = drawn_housing(mesh)

@@ -16,14 +16,6 @@ def _run(script: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, timeout=60, check=False)
 
 
-def test_importing_the_room_brings_neither_gmsh_nor_meshio() -> None:
-    done = _run("""
-        import gearwhine.meshes
-        print([name for name in ("gmsh", "meshio", "vtk", "matplotlib", "skfem") if name in sys.modules])
-    """)
-    assert done.stdout.strip() == "[]", done.stderr
-
-
 def test_a_gmsh_that_cannot_be_loaded_is_answered_with_the_packages_to_install() -> None:
     done = _run("""
         class Blocker:

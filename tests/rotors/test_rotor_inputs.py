@@ -1,8 +1,6 @@
 """Wrong shafts, bearings and requests name what is wrong; right ones have the inertias of solid geometry."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -143,13 +141,6 @@ def test_bearings_are_values() -> None:
     assert one != Bearing("b", 0.1, np.eye(2), np.eye(2))
     with pytest.raises(ValueError, match="read-only"):
         one.stiffness[0, 0] = 2.0
-
-
-def test_import_pulls_in_no_meshing_and_no_pictures() -> None:
-    heavy = "('gmsh', 'vtk', 'matplotlib', 'numba')"
-    script = f"import sys, gearwhine.rotors; print([m for m in {heavy} if m in sys.modules])"
-    answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert answer.stdout.strip() == "[]"
 
 
 def test_a_segment_takes_the_material_of_a_housing() -> None:

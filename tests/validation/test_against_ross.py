@@ -17,10 +17,12 @@ object compiles for half a minute before it shows the first of them.
 import contextlib
 import functools
 import io
+import sys
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -206,9 +208,14 @@ CASES = {
 
 @pytest.fixture(scope="module")
 def ross() -> Any:
-    """ROSS itself, which says much as it is imported."""
-    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+    """ROSS itself, which says much as it is imported, without properties of gases, which take longest to load."""
+    with (
+        warnings.catch_warnings(),
+        contextlib.redirect_stdout(io.StringIO()),
+        pytest.MonkeyPatch.context() as patch,
+    ):
         warnings.simplefilter("ignore")
+        patch.setitem(sys.modules, "ccp", ModuleType("ccp"))
         return pytest.importorskip("ross", reason="ROSS is not installed; make install-dev installs it")
 
 

@@ -1,8 +1,6 @@
 """The contact law: kernels against the law written out, tip relief, events, damping."""
 
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import combinations
 
@@ -236,12 +234,6 @@ def test_equivalent_mass_and_damping() -> None:
 def test_malformed_contacts_say_what_is_wrong(changes: dict[str, object], words: str) -> None:
     with pytest.raises(GearError, match=words):
         replace(CONTACT, **changes)
-
-
-def test_the_package_loads_without_a_compiler() -> None:
-    heavy = "{'numba', 'gmsh', 'vtk', 'matplotlib'}"
-    check = f"import sys, gearwhine.coupling.gears; sys.exit(bool({heavy} & set(sys.modules)))"
-    assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
 
 
 def test_damping_fades_in_over_its_depth() -> None:

@@ -12,10 +12,10 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 import gearwhine as gw
 
-COARSE = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "2 kHz", "measured": "", "provenance": ""}
+COARSE = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "2 kHz"}
 
 def first_modes(wall):
-    study = gw.load("small-gearbox", COARSE | {"housing.box.wall": wall})
+    study = gw.load("steel-box", COARSE | {"housing.box.wall": wall})
     return study.modes().dataset["housing_frequency"].values[:3].tolist()
 
 def in_a_thread_that_ends(wall):
@@ -29,7 +29,7 @@ _AT_ONCE = """
 with ThreadPoolExecutor(2) as pool:
     together = list(pool.map(first_modes, ("10 mm", "12 mm")))
 assert together == [first_modes("10 mm"), first_modes("12 mm")], together
-study = gw.load("small-gearbox", COARSE)
+study = gw.load("steel-box", COARSE)
 with ThreadPoolExecutor(2) as pool:
     housings = list(pool.map(lambda _: study.housing, range(4)))
 assert all(housing is housings[0] for housing in housings)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 import time
 
 import pytest
@@ -161,10 +159,3 @@ def test_customary_units_are_used_where_nothing_is_lost() -> None:
     assert format_quantity(parse_quantity("5500 rpm", units.SPEED), units.SPEED) == "5500 rpm"
     assert format_quantity(parse_quantity("24 deg", units.ANGLE), units.ANGLE) == "24 deg"
     assert format_quantity(0.00635, units.LENGTH) == "0.00635 m"
-
-
-def test_importing_the_case_room_brings_neither_pint_nor_the_solvers() -> None:
-    heavy = ("pint", "numpy", "scipy", "gmsh", "vtk", "matplotlib", "housing", "rotors", "coupling", "meshes")
-    code = f"import sys, gearwhine.case; print([name for name in {heavy!r} if name in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"

@@ -359,7 +359,7 @@ def test_check_and_gears_say_which_misalignment_they_take(
 ) -> None:
     """`check` solves nothing; `gears` finds it in rigid seats where it is left to the operating point."""
     # Seconds of search for the best relief, of which nothing is asked.
-    monkeypatch.setattr("gearwhine.coupling.analyses.gear_pairs.solve_over_torques", lambda pairs, *_, **__: pairs)
+    monkeypatch.setattr("gearwhine.analyses.machine_results.solve_over_torques", lambda pairs, *_, **__: pairs)
     file = tmp_path / "case.toml"
     bare = document()
     for angle, command, expected in (
@@ -434,7 +434,7 @@ def test_an_offset_loads_both_bearings_of_a_shaft_without_gears() -> None:
 @pytest.mark.slow
 def test_gears_takes_the_housing_that_stands_in_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its best relief is then of the gap that `load` finds; without modes it is that of rigid seats, and it says so."""
-    monkeypatch.setattr("gearwhine.coupling.analyses.gear_pairs.solve_over_torques", lambda pairs, *_, **__: pairs)
+    monkeypatch.setattr("gearwhine.analyses.machine_results.solve_over_torques", lambda pairs, *_, **__: pairs)
     changes = {"housing.box.mesh_size": "60 mm", "gear.*.at": "40 mm"}
     study = gw.load("small-gearbox", changes)
     (rigid,) = study.gears().document["pairs"]

@@ -5,6 +5,7 @@ import numpy as np
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
+BOX = (0.28, 0.25, 0.33)
 _T = (1.0 + 5.0**0.5) / 2.0
 _ICOSAHEDRON = np.array(
     [[-1, _T, 0], [1, _T, 0], [-1, -_T, 0], [1, -_T, 0], [0, -1, _T], [0, 1, _T]]
@@ -119,3 +120,19 @@ def at_corners(surface: RadiatingSurface, field: "np.ufunc") -> ComplexArray:
         right = right + share[3] * share[None, :3, None] * np.asarray(field(points, surface.normals))[:, None, :]
     mass = (np.ones((3, 3)) + np.eye(3)) / 12.0
     return np.asarray(np.einsum("ab,ebn->ean", np.linalg.inv(mass), right).reshape(3 * len(surface.areas), -1))
+
+
+def uneven(part: float) -> tuple[RadiatingSurface, int]:
+    """Box with a vertex that is drawn towards its nearest neighbour by a part of the way, and its number."""
+    even = box(BOX, 0.04)
+    points = even.points.copy()
+    flat = [
+        vertex
+        for vertex in range(len(points))
+        if np.ptp(even.normals[(even.triangles == vertex).any(axis=1)], axis=0).max() < 1e-9
+    ]
+    vertex = flat[len(flat) // 2]
+    beside = np.setdiff1d(even.triangles[(even.triangles == vertex).any(axis=1)], vertex)
+    nearest = beside[np.argmin(np.linalg.norm(points[beside] - points[vertex], axis=1))]
+    points[vertex] += part * (points[nearest] - points[vertex])
+    return RadiatingSurface(points, even.triangles), vertex

@@ -10,11 +10,10 @@ from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, Soun
 from gearwhine.housing.acoustics.medium import HardPlane, Medium
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.errors import HousingError
-from tests.housing.acoustics.surfaces import at_corners, box, disc, rectangle, sphere
+from tests.housing.acoustics.surfaces import BOX, at_corners, box, disc, rectangle, sphere, uneven
 
 UNIT = Medium(density=1.0, speed_of_sound=1.0)  # k = ω
 LABORATORY = Medium(density=1.2, speed_of_sound=343.0)
-BOX = (0.28, 0.25, 0.33)
 
 
 def decibels(ratio):
@@ -131,22 +130,11 @@ def coarse_box() -> RadiatingSurface:
 @pytest.mark.parametrize("part", [0.0, 0.5, 0.65, 0.75])
 def test_a_vertex_of_uneven_triangles_has_the_pressure_of_the_others(part):
     """A monopole inside, and a vertex that is drawn towards a neighbour."""
-    even = box(BOX, 0.04)
-    points = even.points.copy()
-    flat = [
-        vertex
-        for vertex in range(len(points))
-        if np.ptp(even.normals[(even.triangles == vertex).any(axis=1)], axis=0).max() < 1e-9
-    ]
-    vertex = flat[len(flat) // 2]
-    beside = np.setdiff1d(even.triangles[(even.triangles == vertex).any(axis=1)], vertex)
-    nearest = beside[np.argmin(np.linalg.norm(points[beside] - points[vertex], axis=1))]
-    points[vertex] += part * (points[nearest] - points[vertex])
-    surface = RadiatingSurface(points, even.triangles)
+    surface, vertex = uneven(part)
     wavenumber = 2.0 * np.pi * 800.0 / 343.0
     velocity = at_corners(surface, sources(wavenumber))[:, :1] / (-1j * wavenumber * LABORATORY.impedance)
     field = BoundaryElements(surface, LABORATORY).solve(800.0, velocity)
-    r = np.linalg.norm(points - SOURCE, axis=1)
+    r = np.linalg.norm(surface.points - SOURCE, axis=1)
     exact = np.exp(-1j * wavenumber * r) / r
     error = np.abs(field.pressure[:, 0] - exact) / np.abs(exact).max()
     assert error[vertex] < 0.03

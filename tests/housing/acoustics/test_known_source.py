@@ -20,9 +20,8 @@ from gearwhine.housing.acoustics.known_source import (
 from gearwhine.housing.acoustics.medium import AIR, HardPlane
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.radiation import LEAK, SOURCE_OFF
-from tests.housing.acoustics.surfaces import at_corners, box, rectangle, sphere
+from tests.housing.acoustics.surfaces import BOX, at_corners, box, rectangle, sphere, uneven
 
-BOX = (0.28, 0.25, 0.33)
 PLACES = np.array([[0.03, 0.1, 0.05], [-0.05, 0.2, -0.02]])
 
 
@@ -194,22 +193,6 @@ def test_vertices_over_a_narrow_gap_do_not_count():
     assert found[0.001][2] > 10.0 * found[0.0][1]
     assert found[0.001][0] == found[0.001][1] < 1.3 * found[0.0][1]
     assert found[0.012][0] == max(found[0.012][1:]) < 3.0 * found[0.0][1]
-
-
-def uneven(part: float) -> tuple[RadiatingSurface, int]:
-    """Box with a vertex that is drawn towards its nearest neighbour by a part of the way, and its number."""
-    even = box(BOX, 0.04)
-    points = even.points.copy()
-    flat = [
-        vertex
-        for vertex in range(len(points))
-        if np.ptp(even.normals[(even.triangles == vertex).any(axis=1)], axis=0).max() < 1e-9
-    ]
-    vertex = flat[len(flat) // 2]
-    beside = np.setdiff1d(even.triangles[(even.triangles == vertex).any(axis=1)], vertex)
-    nearest = beside[np.argmin(np.linalg.norm(points[beside] - points[vertex], axis=1))]
-    points[vertex] += part * (points[nearest] - points[vertex])
-    return RadiatingSurface(points, even.triangles), vertex
 
 
 def test_a_vertex_that_the_equations_leave_free_is_seen_by_known_sources_alone(monkeypatch: pytest.MonkeyPatch):

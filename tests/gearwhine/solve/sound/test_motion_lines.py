@@ -10,14 +10,12 @@ from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sound
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case, swept_keys
-from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.coupling.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
 from gearwhine.coupling.sound.solution import build_radiation, solve_sound
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, sounding_lines
 from gearwhine.housing.pictures.drawn_shapes import drawn_housing
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.result_warnings import warning
 from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
@@ -59,13 +57,6 @@ def test_lines_of_superposed_motions_at_one_frequency_are_added_with_their_phase
     # Of several motions at one speed on a branch the first is taken.
     branch: Any = SimpleNamespace(motions=(fast, slow), superposed=None)
     assert lines_of_steady(branch, 650.0).forces["front"][2, 0] == pytest.approx(3.0j)
-
-
-@pytest.mark.slow
-def test_the_sound_of_doubtful_superposed_motions_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
-    doubt = warning("superposition", "doubtful at a mesh")
-    monkeypatch.setattr(SolvedSteady, "superposition_warnings", lambda _: [doubt])
-    assert doubt in sounding_gearbox(QUICK).sound().document["warnings"]
 
 
 def test_bearings_share_the_frequencies_of_their_tones() -> None:

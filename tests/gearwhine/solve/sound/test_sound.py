@@ -10,10 +10,12 @@ from sounding_gearbox import swept_point
 
 import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
+from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.sound.microphones import microphone_histories
 from gearwhine.coupling.sound.solution import build_radiation
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.export import write_sounds
 from gearwhine.output.files import staging
 from gearwhine.solve.acoustics import acoustics_of, refused_by_key
@@ -41,9 +43,19 @@ def study():
     return found
 
 
+DOUBT = warning("superposition", "doubtful at a mesh")
+
+
 @pytest.fixture(scope="module")
 def sound(study):
-    return study.sound()
+    """Sound of a steady motion that is doubted."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(SolvedSteady, "superposition_warnings", lambda _: [DOUBT])
+        return study.sound()
+
+
+def test_the_sound_of_doubtful_superposed_motions_is_warned_of(sound):
+    assert DOUBT in sound.document["warnings"]
 
 
 def test_parts_add_up_to_the_power(sound):
@@ -92,7 +104,7 @@ def test_the_sound_of_modes_is_solved_once_a_folder(sound, monkeypatch, tmp_path
     monkeypatch.setattr("gearwhine.coupling.sound.solution.sound_of_modes", None)
     again = gw.load("small-gearbox", BOXED, folder=folder).sound()
     assert again.document["modes"] == sound.document["modes"]
-    assert again.document.get("warnings") == sound.document.get("warnings")
+    assert again.document["warnings"] == [one for one in sound.document["warnings"] if one != DOUBT]
     modes = again.solved.modes
     assert [mode.known_source for mode in modes] == [mode.known_source for mode in sound.solved.modes]
     slower = gw.load("small-gearbox", BOXED | {"operation.speed": "4000 rpm", "acoustics.lines": 1}, folder=folder)
