@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
 
+from gearwhine.commands import COMMANDS
 from gearwhine.numerics.findings import Number
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -54,18 +55,8 @@ if TYPE_CHECKING:
     from gearwhine.sweep.points import Point
     from gearwhine.variation.statistics import VariedResult
 
-# Tables that a command needs of a case.
-_NEEDS = {
-    "rotors": ("rotor",),
-    "gears": ("gear_pair",),
-    "load": ("rotor", "bearing", "operation"),
-    "system": ("rotor", "operation"),
-    "system --mesh-phase": ("rotor", "operation", "gear_pair"),
-    "steady": ("rotor", "operation"),
-    "simulate": ("rotor", "operation", "transient"),
-    "simulate with a plan": ("rotor", "operation"),
-    "sound": ("housing",),
-}
+# Tables of a case that some options of a command need besides.
+_NEEDS_BESIDES = {"system --mesh-phase": ("gear_pair",), "simulate": ("transient",)}
 _AtLeastOne = Number(at_least=1, whole=True)
 _NotNegative = Number(at_least=0, whole=True)
 
@@ -865,7 +856,8 @@ class CaseStudy(Study):
         from gearwhine.case import CaseError, Problem, require
         from gearwhine.solve.comparison import require_comparable
 
-        require(self.case, *_NEEDS.get(command, ()), command=command)
+        needs = (*COMMANDS[command.partition(" ")[0]].needs, *_NEEDS_BESIDES.get(command, ()))
+        require(self.case, *needs, command=command)
         operation = self.case.operation
         if command == "run":
             if self.case.transient is not None:

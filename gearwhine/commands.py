@@ -29,6 +29,8 @@ class Command:
         Method of `gearwhine.case_study.CaseStudy`; that of the command's name by default.
     files : tuple of str
         Patterns of the names of the files that it writes; none where it leaves no results for a report.
+    needs : tuple of str
+        Tables of the case that it does not go without, where the method does not tell.
     reads : tuple of str
         Tables of the case that it reads, of those that not all commands read.
     unread : tuple of str
@@ -59,6 +61,7 @@ class Command:
     sections: str | None = None
     method: str = ""
     files: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
     reads: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
     longer: tuple[str, str] = ("", "")
@@ -106,17 +109,27 @@ STUDY_COMMANDS = (
         fresh=_FRESH_MODES
     ),
     Command(
-        "rotors", files=(*_CASE, "results.nc", "rotor-*.png"), reads=("rotor_analysis", "sweep"),
+        "rotors", files=(*_CASE, "results.nc", "rotor-*.png"), needs=("rotor",), reads=("rotor_analysis", "sweep"),
         unread=("transient", "gear_pair"), writes_with="write_ross"
     ),
-    Command("gears", files=(*_DATA, "gears-*.png"), unread=("transient",), without=("aims",)),
     Command(
-        "load", "operating_point.sections", "operating_point", files=(*_DATA, _LOAD), reads=("acoustics", "update"),
+        "gears", files=(*_DATA, "gears-*.png"), needs=("gear_pair",), unread=("transient",), without=("aims",)
+    ),
+    Command(
+        "load", "operating_point.sections", "operating_point", files=(*_DATA, _LOAD),
+        needs=("rotor", "bearing", "operation"), reads=("acoustics", "update"), fresh=_FRESH_MODES
+    ),
+    Command(
+        "system", files=(*_DATA, *_SYSTEM), needs=("rotor", "operation"), reads=("sweep",), fresh=_FRESH_MODES
+    ),
+    Command(
+        "steady", "steady_state.sections", files=(*_DATA, "steady-*.png"), needs=("rotor", "operation"),
+        reads=("sweep",), fresh=_FRESH_MODES
+    ),
+    Command(
+        "sound", files=(*_DATA, _SOUND), needs=("housing",), reads=("acoustics",), without=("acoustics",),
         fresh=_FRESH_MODES
     ),
-    Command("system", files=(*_DATA, *_SYSTEM), reads=("sweep",), fresh=_FRESH_MODES),
-    Command("steady", "steady_state.sections", files=(*_DATA, "steady-*.png"), reads=("sweep",), fresh=_FRESH_MODES),
-    Command("sound", files=(*_DATA, _SOUND), reads=("acoustics",), without=("acoustics",), fresh=_FRESH_MODES),
     Command(
         "sweep", files=(*_DATA, "sweep-*.png", "waterfall-*.png"), reads=("acoustics", "sweep"), fresh=_FRESH_POINTS,
         **_OF_MANY
@@ -153,6 +166,6 @@ STUDY_COMMANDS = (
 )  # fmt: skip
 """Commands on a case, in the order of the help."""
 
-_SIMULATE = Command("simulate", files=_RUN, reads=("acoustics",))
+_SIMULATE = Command("simulate", files=_RUN, needs=("rotor", "operation"), reads=("acoustics",))
 COMMANDS = {command.name: command for command in (*STUDY_COMMANDS, _SIMULATE) if command.files}
 """Analyses that leave results in the output folder, by name: the commands, and `simulate` of Python."""
