@@ -16,8 +16,8 @@ from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import (
     in_solved_housing,
     limits_of,
+    name_problems,
     sampled_points,
-    sensor_problems,
     wanted_of,
 )
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
@@ -46,12 +46,12 @@ from gearwhine.optimisation.design import (
     written_value,
 )
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
-from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, plain_pattern, statistic_problems
+from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, statistic_problems
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
-from gearwhine.output.named_quantities import statistic_of
+from gearwhine.output.named_quantities import plain_pattern, statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solve.machine import plan_of
 from gearwhine.solve.radiated_power import Radiations
@@ -101,29 +101,16 @@ def solve_optimisation(
     optimisation = case.optimisation
     if optimisation is None:
         raise lacking(case, "optimisation", command="optimise")
-    refusal, plain = Refusal(), source.without("variation", "optimisation")
-    if not optimisation.design:
-        refusal.add(Problem("optimisation.design", UNSAID, "the values of one key or more"))
-    if not optimisation.aim:
-        refusal.add(NO_AIM)
     settings = _Settings(
         optimisation.method if method is None else method,
         optimisation.evaluations if evaluations is None else evaluations,
         optimisation.seed if seed is None else seed,
     )
     settings.require_library(optimisation.aim)
-    inputs = design_inputs(source, optimisation, refusal)
-    refusal.add(*value_problems(plain, inputs))
+    inputs, scatter, wanted = plan_optimisation(source, optimisation)
+    plain = source.without("variation", "optimisation")
     good = {} if case.variation is None else case.variation.limit
-    refusal.add(*statistic_problems(optimisation.aim, optimisation.limit, optimisation.robust, good))
-    names = {("optimisation", "aim"): [*optimisation.aim], ("optimisation", "limit"): [*optimisation.limit]}
-    refusal.add(*sensor_problems(case.housing or case.reduced_housing, names))
     variation = None if optimisation.robust is None else case.variation
-    with refusal:
-        scatter = _scatter(optimisation.robust, variation, plain, inputs)
-    with refusal:
-        wanted = wanted_of(case, _with_what_is_named(optimisation, good), "optimise")
-    refusal.require_none()
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
     folder.progress("the case as it is written")
@@ -452,6 +439,42 @@ def _shown(one: DesignInput, value: object) -> str:
     return f"{amount / one.keys[0][1] / scale:.6g} {one.unit}".strip()
 
 
+def plan_optimisation(
+    source: CaseSource, optimisation: Optimisation
+) -> tuple[tuple[DesignInput, ...], FloatArray, Wanted]:
+    """Check the optimisation of a case; return its inputs, the points of the scatter and what is found of each design.
+
+    Raises
+    ------
+    CaseError
+        With every key that cannot be designed, and every aim, limit and range that cannot be.
+    """
+    case, refusal, plain = source.changed_case(), Refusal(), source.without("variation", "optimisation")
+    if not optimisation.design:
+        refusal.add(Problem("optimisation.design", UNSAID, "the values of one key or more"))
+    if not optimisation.aim:
+        refusal.add(NO_AIM)
+    inputs = design_inputs(source, optimisation, refusal)
+    refusal.add(*value_problems(plain, inputs))
+    good = {} if case.variation is None else case.variation.limit
+    refusal.add(*statistic_problems(optimisation.aim, optimisation.limit, optimisation.robust, good))
+    variation = None if optimisation.robust is None else case.variation
+    with refusal:
+        _scatter(optimisation.robust, variation, plain, inputs)
+    asked = _with_what_is_named(optimisation, good)
+    with refusal:
+        wanted = wanted_of(case, asked, "optimise")
+        goals = {"aim": list(optimisation.aim), "limit": list(optimisation.limit)}
+        for table, names in goals.items():
+            of_quantities = [name for name in names if name != YIELD]
+            refusal.add(*name_problems(case, wanted, ("optimisation", table), of_quantities))
+        if any(YIELD in names for names in goals.values()):
+            refusal.add(*name_problems(case, wanted, ("variation", "limit"), good))
+        refusal.add(*name_problems(case, wanted, ("optimisation", "quantities"), optimisation.quantities))
+    refusal.require_none()
+    return inputs, _scatter(optimisation.robust, variation, plain, inputs), wanted_of(case, asked, "optimise")
+
+
 def _quantities_named(aims: Iterable[str], limits: Iterable[str], good: Iterable[str]) -> list[str]:
     """Return the quantities of aims and limits: of a statistic its own, of a yield those of a good gearbox."""
     named = [*aims, *limits]
@@ -462,15 +485,15 @@ def _quantities_named(aims: Iterable[str], limits: Iterable[str], good: Iterable
 def _with_what_is_named(optimisation: Optimisation, good: Mapping[str, Limit]) -> Optimisation:
     """Return an optimisation with the analyses of the quantities that it names, and with these beside its own.
 
-    No analyses are named where none has one of them: it is refused with those that there are by default.
+    Names that no analysis has are refused later.
     """
     named = _quantities_named(optimisation.aim, optimisation.limit, good)
-    found = {analysis_of(name) for name in (*named, *optimisation.quantities)}
+    found = {analysis_of(name) for name in (*named, *optimisation.quantities)} - {None}
     changes: dict[str, Any] = {}
     if optimisation.quantities:
         kept = (*optimisation.quantities, *map(plain_pattern, named), "sensor.*.loudest_speed_rpm")
         changes["quantities"] = tuple(dict.fromkeys(kept))
-    if optimisation.analyses is None and None not in found and found:
+    if optimisation.analyses is None and found:
         changes["analyses"] = tuple(name for name in ANALYSES if name in found)
     return optimisation.model_copy(update=changes)
 

@@ -1,6 +1,7 @@
 """Quantities by names such as ``sensor.top.level_db``: what they are of, and how tables and figures show them."""
 
 import re
+from fnmatch import fnmatchcase
 
 from gearwhine.output.quantity import UNITS, unit_of
 
@@ -22,6 +23,16 @@ def statistic_of(name: str) -> tuple[str, str]:
     """Return the statistic over gearboxes that a name begins with, empty of a quantity itself, and the quantity."""
     begin = _STATISTIC.match(name)
     return (begin[1], name[begin.end() :]) if begin else ("", name)
+
+
+def matches(name: str, pattern: str) -> bool:
+    """Whether a quantity has a name, in which ``*`` stands for any part."""
+    return name == pattern or ("*" in pattern and fnmatchcase(name, plain_pattern(pattern)))
+
+
+def plain_pattern(pattern: str) -> str:
+    """Return a pattern in which only ``*`` has a meaning."""
+    return pattern.replace("[", "[[]").replace("?", "[?]")
 
 
 def part_of(name: str) -> str:

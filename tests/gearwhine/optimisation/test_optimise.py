@@ -292,7 +292,7 @@ BAD = {
         "a length",
     ),
     "no aim": ('"bearing.right.force_n" = { sense = "least" }', "", "the name of one quantity or more"),
-    "unknown aim": ('"bearing.right.force_n"', '"bearing.rihgt.force_n"', "did you mean 'bearing.right.force_n'"),
+    "unknown aim": ('"bearing.right.force_n"', '"bearing.rihgt.force_n"', "did you mean 'right'"),
     "unknown limit": ('"bearing.left.force_n"', '"bearing.*.weight_kg"', "there are: bearing.left.force_n"),
     "sense": ('sense = "least"', 'sense = "lowest"', "one of 'least' or 'most'"),
     "two kinds": ('["100 N", "900 N"]', '["100 N", "900 N"], values = [1.0]', "either 'range' or 'values'"),
