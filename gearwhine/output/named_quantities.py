@@ -3,7 +3,7 @@
 import re
 from fnmatch import fnmatchcase
 
-from gearwhine.output.quantity import UNITS, unit_of
+from gearwhine.output.quantity import UNITS, shown_product, unit_of
 
 _STATISTIC = re.compile(r"(mean|standard deviation|quantile 0?\.\d+) of (?=.)")
 """Begin of the name of a statistic over gearboxes, such as ``quantile 0.95 of sensor.top.level_db``."""
@@ -58,4 +58,4 @@ def shown_quantity(name: str) -> tuple[str, float]:
 
 def shown_unit(unit: str) -> tuple[str, float]:
     """Return the unit in which values of a varied key are shown, and the factor to it."""
-    return {**_SCALES, "um": ("µm", 1.0), "N*m": ("N m", 1.0)}.get(unit, (unit, 1.0))
+    return {**_SCALES, "um": ("µm", 1.0)}.get(unit, (shown_product(unit), 1.0))
