@@ -145,7 +145,7 @@ def solve_optimisation(
         goals=goals,
         method=settings.words(goals, inputs),
         start=start,
-        written=tuple(_shown(one, written_value(document, one)) for one in inputs),
+        written=tuple(_written(document, one) for one in inputs),
         designs=tuple(designs),
         ended=ended,
         gearboxes=len(scatter),
@@ -429,6 +429,12 @@ def _scatter(
         raise CaseError([Problem("variation", NOTHING, expected)])
     require_scatter(inputs, source, variation)
     return sampled_points(varied_inputs(source, variation), variation, robust.samples, variation.seed)
+
+
+def _written(document: Mapping[str, Any], one: DesignInput) -> str:
+    """Return the values that the case has at the keys of an input, one where they are alike."""
+    alone = [replace(one, keys=(key,)) for key in one.keys]
+    return ", ".join(dict.fromkeys(_shown(each, written_value(document, each)) or "–" for each in alone))
 
 
 def _shown(one: DesignInput, value: object) -> str:

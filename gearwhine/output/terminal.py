@@ -66,7 +66,7 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
     for item in section.content:
         if isinstance(item, Table):
             if item.caption:
-                console.print(f"{' ' * indent}{arrowed(item.caption)}")
+                console.print(f"{' ' * indent}{_hanging(console, arrowed(item.caption), indent)}")
             for grid in _fitting(console, item, indent):
                 console.print(Padding(grid, (0, 0, 1, indent), expand=False))
         else:
