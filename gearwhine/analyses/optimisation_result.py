@@ -15,6 +15,7 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import (
     in_solved_housing,
+    is_count,
     limits_of,
     name_problems,
     sampled_points,
@@ -248,7 +249,7 @@ def optimise(
     0.2
     """
     begin = time.perf_counter()
-    _require_values(laws, levels)
+    _require_values(laws, levels, evaluations)
     named = tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
     senses = _senses(aims)
     ranges = limits_of("optimise", limits)
@@ -295,6 +296,8 @@ def optimise(
     nominal = found(values_of(as_written))
     if problems := list(statistic_problems(senses, ranges, robust, good)):
         raise CaseError(problems)
+    if not nominal.numbers:
+        raise CouplingError(f"optimise: no analysis finds {', '.join(senses)}; expected names as machine.mass_kg")
     goals = goals_of(senses, ranges, list(nominal.numbers), robust, good)
     settings = _Settings(method, evaluations, seed)
     settings.require_library(senses)
@@ -504,7 +507,7 @@ def _with_what_is_named(optimisation: Optimisation, good: Mapping[str, Limit]) -
     return optimisation.model_copy(update=changes)
 
 
-def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None:
+def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int, evaluations: int) -> None:
     if not laws:
         raise CouplingError("optimise: no laws; expected the range of one value or more")
     for name, law in laws.items():
@@ -512,6 +515,8 @@ def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None
             raise CouplingError(f"optimise: {name} has {law!r}; expected Uniform(low, high) or Discrete(values)")
     if levels < 2:
         raise CouplingError(f"optimise: {levels} levels; expected 2 or more")
+    if not is_count(evaluations):
+        raise CouplingError(f"optimise: {evaluations!r} evaluations; expected a whole number of 1 or more")
 
 
 def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:

@@ -266,7 +266,7 @@ def vary(
     asked = (analyses,) if isinstance(analyses, str) else tuple(analyses)
     if unknown := [name for name in asked if name not in ANALYSES]:
         raise CouplingError(f"vary: analyses of {unknown[0]!r}; expected some of {', '.join(ANALYSES)}")
-    if not laws or samples < 1:
+    if not laws or not is_count(samples):
         raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
     for name, law in laws.items():
         if not hasattr(law, "quantile"):
@@ -290,6 +290,8 @@ def vary(
 
     progress("the machine of all medians")
     nominal = found(values_at(inputs, np.full((1, len(inputs)), 0.5))[0])
+    if not nominal.numbers:
+        raise CouplingError(f"vary: the machine has no quantity of {', '.join(asked)}; expected other analyses")
     ranges = known_limits(ranges, list(nominal.numbers))
     outcomes = []
     for number, row in enumerate(values):
@@ -360,6 +362,11 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
             housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
     key = housing_key(given_housing(case, command))
     return replace(varied, housing=reduce_housing(case, housing), housing_key=key, radiated=radiated), housing
+
+
+def is_count(value: object) -> bool:
+    """Whether a value is a whole number above 0."""
+    return isinstance(value, int) and value > 0
 
 
 def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | None]] | None) -> dict[str, Limit]:

@@ -326,8 +326,11 @@ def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
     assert found.document["yield"]["share"] == 1.0
     with pytest.raises(gw.CouplingError, match="expected some of gears, load"):
         gw.vary(made, laws, 4, analyses=["noise"])
-    with pytest.raises(gw.CouplingError, match="one value or more"):
-        gw.vary(made, {}, 4)
+    for given in ({"laws": {}}, {"samples": 0}, {"samples": "16"}):
+        with pytest.raises(gw.CouplingError, match="one value or more, and one sample or more"):
+            gw.vary(made, **{"laws": laws, "samples": 4, **given})
+    with pytest.raises(gw.CouplingError, match="no quantity of gears"):
+        gw.vary(made, laws, 4, analyses=["gears"])
     with pytest.raises(gw.CouplingError, match="a least and a largest value"):
         gw.vary(made, laws, 4, limits={name: (2.0, 1.0)})
 
