@@ -517,7 +517,7 @@ def _torque_support(
             raise CouplingError(f"torque support of {support.shaft!r}: no seat {support.seat!r} in the housing")
         rows = rows - coordinates.rows(housing.name, housing.section_motions(support.seat, rotor.start + support.at))
     if support.is_rigid:
-        raise CouplingError(f"torque support of {support.shaft!r} without a stiffness; expected one [N m/rad]")
+        raise CouplingError(f"torque support of {support.shaft!r} without a stiffness; expected one [N·m/rad]")
     stiffness = support.stiffness_matrix
     name = f"torque support of {support.shaft}"
     return LinearConnector(name, rows[support.held_motions].T, stiffness, support.damping_time * stiffness)

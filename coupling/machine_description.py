@@ -258,7 +258,7 @@ class Machine:
         counts = ", ".join(f"{len(each)} {name}{'' if len(each) == 1 else 's'}" for name, each in parts.items())
         housing = "without" if self.housing is None else "with a"
         rpm = self.speed * 30.0 / np.pi
-        return f"<Machine: {counts}, {housing} housing; {rpm:.5g} rpm, {self.torque:.5g} N m>"
+        return f"<Machine: {counts}, {housing} housing; {rpm:.5g} rpm, {self.torque:.5g} N·m>"
 
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
@@ -1078,15 +1078,15 @@ class Machine:
         """
         if self.torque != 0.0 and not self.outputs:
             raise CouplingError(
-                f"a torque of {self.torque:g} N m that nothing takes; expected a gear pair or an output that leads it "
+                f"a torque of {self.torque:g} N·m that nothing takes; expected a gear pair or an output that leads it "
                 "away"
             )
         if len(self.shafts) == 1 or any(output.torque is None for output in self.outputs):
             return
         for imbalance in imbalances_of_shafts(self.torque, self.outputs):
             raise CouplingError(
-                f"shaft {imbalance.shaft!r} takes in {imbalance.entering:g} N m and gives out {imbalance.leaving:g} "
-                f"N m; expected torques that balance on shaft {imbalance.shaft!r}, as no gear pair leads to or from it"
+                f"shaft {imbalance.shaft!r} takes in {imbalance.entering:g} N·m and gives out {imbalance.leaving:g} "
+                f"N·m; expected torques that balance on shaft {imbalance.shaft!r}, as no gear pair leads to or from it"
             )
 
     def _require_power_flow(self) -> None:

@@ -277,17 +277,17 @@ class CaseStudy(Study):
         from gearwhine.solve.case_summary import check_case
 
         if self.case.variation is not None:
-            from gearwhine.variation.inputs import correlation_matrix, varied_inputs
+            from gearwhine.analyses.variation_result import plan_variation
 
-            correlation_matrix(varied_inputs(self._source, self.case.variation), self.case.variation)
+            plan_variation(self.case, self._source)
         if self.case.detection is not None:
             from gearwhine.analyses.detection_result import plan_detection
 
             plan_detection(self._source)
         if self.case.optimisation is not None:
-            from gearwhine.optimisation.design import design_inputs
+            from gearwhine.analyses.optimisation_result import plan_optimisation
 
-            design_inputs(self._source, self.case.optimisation)
+            plan_optimisation(self._source, self.case.optimisation)
         checked = check_case(self.case, self.progress, self._source.imported)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 

@@ -74,6 +74,7 @@ class WholeRun:
         if pictures and study.has_housing:
             _require_renderer()
         self.study, self.plan, self.folder, self.until_written = study, plan, folder, until_written
+        self._pictures = pictures
         self._early: EarlyPictures | None = None
         self._has_early_figures = False
         if pictures and study.has_housing and until_written is not None:
@@ -216,7 +217,8 @@ class WholeRun:
         folder, until_written = self.folder, self.until_written
         if folder is None or until_written is None:
             return None
-        return lambda key: until_written.enter_context(stored_record(folder, key, fresh=self.study.fresh))
+        stays = not self._pictures
+        return lambda key: until_written.enter_context(stored_record(folder, key, fresh=self.study.fresh, stays=stays))
 
     @property
     def _has_sound(self) -> bool:

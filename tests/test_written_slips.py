@@ -311,8 +311,7 @@ _HEADINGS = {
     "Hz": "frequency frequencies torsion turning measured model predicted line back before after at below axis rest",
     "rpm": "speed speeds rotation at between width driver",
     "N": "force load preload radial axial tangential pin flanks z largest",
-    "N m": "torque moment driver y",
-    "N·m": "torque moment driver",
+    "N·m": "torque moment driver y",
     "N/m": "stiffness",
     "N/µm": "stiffness force load z",
     "N/mm": "load pairs pair",
@@ -352,9 +351,9 @@ def texts(source: Source) -> Iterator[tuple[int, str]]:
 
 
 def wrong_headings(source: Source) -> Slips:
-    """Units in brackets behind words that have others, as on axes and above columns; parts are in per cent."""
+    """Units in brackets behind words that have others, as above columns; parts in per cent, torques in N·m."""
     for line, text in texts(source):
-        if "‰" in text:
+        if "‰" in text or re.search(r"[\d}[] ?N m\b", text):
             yield line, text
         for before, unit in _HEADING.findall(text):
             words = [word for word in re.findall(r"[A-Za-z_0-9]+", before) if word in _WORDS_OF_HEADINGS]

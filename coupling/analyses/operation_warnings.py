@@ -52,8 +52,8 @@ def operation_warnings(machine: Machine) -> list[ResultWarning]:
         torque = line.at(abs(machine.speed))
         if abs(torque - machine.torque) > _OFF_LINE * max(abs(torque), abs(machine.torque)):
             message = (
-                f"[operation.{name}] has {torque:.4g} N m at the speed of operation, where the torque is "
-                f"{machine.torque:.4g} N m: only a [transient.run] whose speed is free follows the line, all else "
+                f"[operation.{name}] has {torque:.4g} N·m at the speed of operation, where the torque is "
+                f"{machine.torque:.4g} N·m: only a [transient.run] whose speed is free follows the line, all else "
                 "has the torque"
             )
             warnings.append(warning("torque line", message, line=name, line_n_m=torque, torque_n_m=machine.torque))
@@ -68,7 +68,7 @@ def unbalanced_torque_warnings(machine: Machine, run: Run | None) -> list[Result
     speed = "the speed told is that of motor and load alone" if free else "its speed is no longer that of operation"
     remedy = "put them into [operation.motor] and [operation.load]" if free else "balance them, or take a free run"
     message = (
-        f"torques `over_time` leave up to {net:.4g} N m at the first driver unbalanced: the train turns away from its "
+        f"torques `over_time` leave up to {net:.4g} N·m at the first driver unbalanced: the train turns away from its "
         f"nominal rotation, {speed}, and meshes, unbalance and spectra follow the nominal one; {remedy}"
     )
     return [warning("unbalanced torque", message, torque_n_m=net)]

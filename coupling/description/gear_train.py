@@ -645,8 +645,8 @@ def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[
     leaving = output_torque(train, outputs)
     if not is_balanced(torque, leaving):
         raise CouplingError(
-            f"outputs that amount to {leaving:g} N m at the first driver; expected outputs that balance the input "
-            f"torque of {torque:g} N m through the tooth ratios"
+            f"outputs that amount to {leaving:g} N·m at the first driver; expected outputs that balance the input "
+            f"torque of {torque:g} N·m through the tooth ratios"
         )
 
 
@@ -835,7 +835,7 @@ def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], sp
         power_in = sum(power for power in powers.values() if power > 0.0)
         power_out = -sum(power for power in powers.values() if power < 0.0)
         if abs(power_in - power_out) > LARGEST_IMBALANCE * max(power_in, power_out):
-            listed = ", ".join(f"{total.get(name, 0.0):.6g} N m on {name!r}" for name in train)
+            listed = ", ".join(f"{total.get(name, 0.0):.6g} N·m on {name!r}" for name in train)
             raise CouplingError(
                 f"torques of {listed} bring {power_in:.6g} W into their gear train and take {power_out:.6g} W "
                 "out of it; expected torques that balance through the tooth ratios"

@@ -235,8 +235,8 @@ def free_speed(
     stopped.direction = -1.0  # type: ignore[attr-defined]
     if start == 0.0 and surplus(0.0) <= 0.0:
         raise TransientError(
-            f"the machine cannot start: at rest its motor gives {motor(0.0):.6g} N m against a load of "
-            f"{load(0.0):.6g} N m; lower the load at rest, or start from a speed at which the motor is the stronger"
+            f"the machine cannot start: at rest its motor gives {motor(0.0):.6g} N·m against a load of "
+            f"{load(0.0):.6g} N·m; lower the load at rest, or start from a speed at which the motor is the stronger"
         )
     times = duration * np.arange(_PIECES + 1) / _PIECES
     # Torque lines have corners: steps no longer than an interval do not skip them.
@@ -255,7 +255,7 @@ def free_speed(
         when = float(solution.t_events[0][0])
         raise TransientError(
             f"the machine stalls at t = {when:.6g} s: it started at {start * _RPM:.6g} rpm and stands still, its "
-            f"motor giving {motor(0.0):.6g} N m against a load of {load(0.0):.6g} N m; lower the load, or end the "
+            f"motor giving {motor(0.0):.6g} N·m against a load of {load(0.0):.6g} N·m; lower the load, or end the "
             "run before"
         )
     if not solution.success:

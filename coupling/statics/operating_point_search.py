@@ -515,7 +515,7 @@ class _StaticModel:
         if self.pairs and largest <= RESIDUAL_BOUND * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
-            raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
+            raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N·m; expected a torque")
         directions = self.directions[len(self.bearings) : len(self.bearings) + len(self.pairs)]
         return tuple(
             self._pair(

@@ -15,9 +15,10 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import (
     in_solved_housing,
+    is_count,
     limits_of,
+    name_problems,
     sampled_points,
-    sensor_problems,
     wanted_of,
 )
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
@@ -46,12 +47,12 @@ from gearwhine.optimisation.design import (
     written_value,
 )
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
-from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, plain_pattern, statistic_problems
+from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, statistic_problems
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
-from gearwhine.output.named_quantities import statistic_of
+from gearwhine.output.named_quantities import plain_pattern, statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.solutions import Failure, duration
 from gearwhine.solve.machine import plan_of
@@ -102,29 +103,16 @@ def solve_optimisation(
     optimisation = case.optimisation
     if optimisation is None:
         raise lacking(case, "optimisation", command="optimise")
-    refusal, plain = Refusal(), source.without("variation", "optimisation")
-    if not optimisation.design:
-        refusal.add(Problem("optimisation.design", UNSAID, "the values of one key or more"))
-    if not optimisation.aim:
-        refusal.add(NO_AIM)
     settings = _Settings(
         optimisation.method if method is None else method,
         optimisation.evaluations if evaluations is None else evaluations,
         optimisation.seed if seed is None else seed,
     )
     settings.require_library(optimisation.aim)
-    inputs = design_inputs(source, optimisation, refusal)
-    refusal.add(*value_problems(plain, inputs))
+    inputs, scatter, wanted = plan_optimisation(source, optimisation)
+    plain = source.without("variation", "optimisation")
     good = {} if case.variation is None else case.variation.limit
-    refusal.add(*statistic_problems(optimisation.aim, optimisation.limit, optimisation.robust, good))
-    names = {("optimisation", "aim"): [*optimisation.aim], ("optimisation", "limit"): [*optimisation.limit]}
-    refusal.add(*sensor_problems(case.housing or case.reduced_housing, names))
     variation = None if optimisation.robust is None else case.variation
-    with refusal:
-        scatter = _scatter(optimisation.robust, variation, plain, inputs)
-    with refusal:
-        wanted = wanted_of(case, _with_what_is_named(optimisation, good), "optimise")
-    refusal.require_none()
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
     folder.progress("the case as it is written")
@@ -159,7 +147,7 @@ def solve_optimisation(
         goals=goals,
         method=settings.words(goals, inputs),
         start=start,
-        written=tuple(_shown(one, written_value(document, one)) for one in inputs),
+        written=tuple(_written(document, one) for one in inputs),
         designs=tuple(designs),
         ended=ended,
         gearboxes=len(scatter),
@@ -262,7 +250,7 @@ def optimise(
     0.2
     """
     begin = time.perf_counter()
-    _require_values(laws, levels)
+    _require_values(laws, levels, evaluations)
     named = tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
     senses = _senses(aims)
     ranges = limits_of("optimise", limits)
@@ -309,6 +297,8 @@ def optimise(
     nominal = found(values_of(as_written))
     if problems := list(statistic_problems(senses, ranges, robust, good)):
         raise CaseError(problems)
+    if not nominal.numbers:
+        raise CouplingError(f"optimise: no analysis finds {', '.join(senses)}; expected names as machine.mass_kg")
     goals = goals_of(senses, ranges, list(nominal.numbers), robust, good)
     settings = _Settings(method, evaluations, seed)
     settings.require_library(senses)
@@ -445,12 +435,54 @@ def _scatter(
     return sampled_points(varied_inputs(source, variation), variation, robust.samples, variation.seed)
 
 
+def _written(document: Mapping[str, Any], one: DesignInput) -> str:
+    """Return the values that the case has at the keys of an input, one where they are alike."""
+    alone = [replace(one, keys=(key,)) for key in one.keys]
+    return ", ".join(dict.fromkeys(_shown(each, written_value(document, each)) or "–" for each in alone))
+
+
 def _shown(one: DesignInput, value: object) -> str:
     """Return a value of the case in the unit of the design; empty where it has none."""
     amount, scale = si_amount(value), si_amount(f"1 {one.unit}") if one.unit else 1.0
     if one.words or amount is None or scale is None:
         return "" if value is NOTHING else str(value)
     return f"{amount / one.keys[0][1] / scale:.6g} {one.unit}".strip()
+
+
+def plan_optimisation(
+    source: CaseSource, optimisation: Optimisation
+) -> tuple[tuple[DesignInput, ...], FloatArray, Wanted]:
+    """Check the optimisation of a case; return its inputs, the points of the scatter and what is found of each design.
+
+    Raises
+    ------
+    CaseError
+        With every key that cannot be designed, and every aim, limit and range that cannot be.
+    """
+    case, refusal, plain = source.changed_case(), Refusal(), source.without("variation", "optimisation")
+    if not optimisation.design:
+        refusal.add(Problem("optimisation.design", UNSAID, "the values of one key or more"))
+    if not optimisation.aim:
+        refusal.add(NO_AIM)
+    inputs = design_inputs(source, optimisation, refusal)
+    refusal.add(*value_problems(plain, inputs))
+    good = {} if case.variation is None else case.variation.limit
+    refusal.add(*statistic_problems(optimisation.aim, optimisation.limit, optimisation.robust, good))
+    variation = None if optimisation.robust is None else case.variation
+    with refusal:
+        _scatter(optimisation.robust, variation, plain, inputs)
+    asked = _with_what_is_named(optimisation, good)
+    with refusal:
+        wanted = wanted_of(case, asked, "optimise")
+        goals = {"aim": list(optimisation.aim), "limit": list(optimisation.limit)}
+        for table, names in goals.items():
+            of_quantities = [name for name in names if name != YIELD]
+            refusal.add(*name_problems(case, wanted, ("optimisation", table), of_quantities))
+        if any(YIELD in names for names in goals.values()):
+            refusal.add(*name_problems(case, wanted, ("variation", "limit"), good))
+        refusal.add(*name_problems(case, wanted, ("optimisation", "quantities"), optimisation.quantities))
+    refusal.require_none()
+    return inputs, _scatter(optimisation.robust, variation, plain, inputs), wanted_of(case, asked, "optimise")
 
 
 def _quantities_named(aims: Iterable[str], limits: Iterable[str], good: Iterable[str]) -> list[str]:
@@ -463,20 +495,20 @@ def _quantities_named(aims: Iterable[str], limits: Iterable[str], good: Iterable
 def _with_what_is_named(optimisation: Optimisation, good: Mapping[str, Limit]) -> Optimisation:
     """Return an optimisation with the analyses of the quantities that it names, and with these beside its own.
 
-    No analyses are named where none has one of them: it is refused with those that there are by default.
+    Names that no analysis has are refused later.
     """
     named = _quantities_named(optimisation.aim, optimisation.limit, good)
-    found = {analysis_of(name) for name in (*named, *optimisation.quantities)}
+    found = {analysis_of(name) for name in (*named, *optimisation.quantities)} - {None}
     changes: dict[str, Any] = {}
     if optimisation.quantities:
         kept = (*optimisation.quantities, *map(plain_pattern, named), "sensor.*.loudest_speed_rpm")
         changes["quantities"] = tuple(dict.fromkeys(kept))
-    if optimisation.analyses is None and None not in found and found:
+    if optimisation.analyses is None and found:
         changes["analyses"] = tuple(name for name in ANALYSES if name in found)
     return optimisation.model_copy(update=changes)
 
 
-def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None:
+def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int, evaluations: int) -> None:
     if not laws:
         raise CouplingError("optimise: no laws; expected the range of one value or more")
     for name, law in laws.items():
@@ -484,6 +516,8 @@ def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int) -> None
             raise CouplingError(f"optimise: {name} has {law!r}; expected Uniform(low, high) or Discrete(values)")
     if levels < 2:
         raise CouplingError(f"optimise: {levels} levels; expected 2 or more")
+    if not is_count(evaluations):
+        raise CouplingError(f"optimise: {evaluations!r} evaluations; expected a whole number of 1 or more")
 
 
 def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:

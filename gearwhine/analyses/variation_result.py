@@ -16,12 +16,10 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.case import Case, CaseError, CaseSource, Problem, dump_case, require
 from gearwhine.case.analysis_speeds import with_sense_of
-from gearwhine.case.errors import UNSAID, Refusal, key_of
-from gearwhine.case.housing import Housing
+from gearwhine.case.errors import UNSAID, Location, Refusal, key_of
 from gearwhine.case.model import lacking
 from gearwhine.case.operation import Operation
 from gearwhine.case.optimisation import Optimisation
-from gearwhine.case.reduced_housing import ReducedHousing
 from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
@@ -35,7 +33,7 @@ from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems, staging
 from gearwhine.output.files import MODE_CACHE_FILE
-from gearwhine.output.named_quantities import statistic_of
+from gearwhine.output.named_quantities import matches, statistic_of
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.acoustics import acoustics_of
@@ -44,10 +42,10 @@ from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.radiated_power import Radiations, radiated_power_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
-from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate, possible_quantities
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
-from gearwhine.variation.statistics import VariedResult, WorstGearbox, require_known_limits
+from gearwhine.variation.statistics import VariedResult, WorstGearbox, known_limits
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -66,6 +64,7 @@ _NEEDS = {
 """Tables that an analysis needs of a case."""
 MOST_GEARBOXES = 10_000_000
 """Most gearboxes of a study."""
+_MOST_CHECKED = 100  # values of a list that are checked before any gearbox is solved
 MOST_WIDENED = 10.0
 """Largest factor by which a distribution is made wider."""
 
@@ -103,17 +102,8 @@ def solve_variation(
     variation = case.variation
     if variation is None:
         raise lacking(case, "variation", command="vary")
-    if not variation.vary:
-        raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
-    refusal, plain = Refusal(), source.without("variation")
-    inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
-    refusal.add(*_median_problems(plain, inputs))
-    refusal.add(*sensor_problems(case.housing or case.reduced_housing, {("variation", "limit"): variation.limit}))
-    with refusal:
-        correlation_matrix(inputs, variation)
-    with refusal:
-        wanted = wanted_of(case, variation)
-    refusal.require_none()
+    inputs, wanted = plan_variation(case, source)
+    plain, refusal = source.without("variation"), Refusal()
     count = variation.samples if samples is None else samples
     wider = _wider(inputs, widen)
     seed = variation.seed if seed is None else seed
@@ -124,7 +114,7 @@ def solve_variation(
     with refusal:
         _require_quantities(wanted, nominal)
     with refusal:
-        require_known_limits(variation.limit, list(nominal.numbers))
+        limits = known_limits(variation.limit, list(nominal.numbers))
     refusal.require_none()
     if design is not None:
         aim = "Sobol' indices" if indices else "what wider ones cost"
@@ -142,7 +132,7 @@ def solve_variation(
         values=values_at(inputs, points, wider),
         nominal=nominal,
         outcomes=solved.outcomes,
-        limits=variation.limit,
+        limits=limits,
         speeds=speeds,
         design=design,
         resumed=solved.resumed,
@@ -161,6 +151,29 @@ def solve_variation(
         return {}
 
     return _result(origin, result, start, worst_cases, varied.start_warnings)
+
+
+def plan_variation(case: Case, source: CaseSource) -> tuple[tuple[Input, ...], Wanted]:
+    """Check the variation of a case, and return its inputs and what is found of each gearbox.
+
+    Raises
+    ------
+    CaseError
+        With every key that cannot be varied, and every distribution, limit and quantity that cannot be.
+    """
+    variation, refusal = case.variation or Variation(), Refusal()
+    if not variation.vary:
+        raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
+    inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
+    refusal.add(*_value_problems(source.without("variation"), inputs))
+    with refusal:
+        correlation_matrix(inputs, variation)
+    with refusal:
+        wanted = wanted_of(case, variation)
+        refusal.add(*name_problems(case, wanted, ("variation", "quantities"), variation.quantities))
+        refusal.add(*name_problems(case, wanted, ("variation", "limit"), variation.limit))
+    refusal.require_none()
+    return inputs, wanted_of(case, variation)
 
 
 def _told(worst: WorstGearbox, title: str, notes: str, operation: Operation | None) -> dict[str, Any]:
@@ -253,7 +266,7 @@ def vary(
     asked = (analyses,) if isinstance(analyses, str) else tuple(analyses)
     if unknown := [name for name in asked if name not in ANALYSES]:
         raise CouplingError(f"vary: analyses of {unknown[0]!r}; expected some of {', '.join(ANALYSES)}")
-    if not laws or samples < 1:
+    if not laws or not is_count(samples):
         raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
     for name, law in laws.items():
         if not hasattr(law, "quantile"):
@@ -277,7 +290,9 @@ def vary(
 
     progress("the machine of all medians")
     nominal = found(values_at(inputs, np.full((1, len(inputs)), 0.5))[0])
-    require_known_limits(ranges, list(nominal.numbers))
+    if not nominal.numbers:
+        raise CouplingError(f"vary: the machine has no quantity of {', '.join(asked)}; expected other analyses")
+    ranges = known_limits(ranges, list(nominal.numbers))
     outcomes = []
     for number, row in enumerate(values):
         progress(f"machine {number + 1} of {len(values)}")
@@ -349,6 +364,11 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
     return replace(varied, housing=reduce_housing(case, housing), housing_key=key, radiated=radiated), housing
 
 
+def is_count(value: object) -> bool:
+    """Whether a value is a whole number above 0."""
+    return isinstance(value, int) and value > 0
+
+
 def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | None]] | None) -> dict[str, Limit]:
     """Return limits of quantities that are given by their least and largest values.
 
@@ -392,24 +412,55 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
     return Wanted(analyses, with_sense_of(case.operation, speeds) if over_speed else (), names=names)
 
 
-def sensor_problems(
-    housing: Housing | ReducedHousing | None, named: Mapping[tuple[str, str], Iterable[str]]
-) -> Iterator[Problem]:
-    """Yield names of quantities at sensors that no gearbox has, before the housing is solved for them."""
-    sensors = [one.name for one in (housing.sensor if housing else ())]
-    for table, names in named.items():
-        for name in names:
-            quantity = statistic_of(name)[1]
-            of_sensor = quantity.removeprefix("sensor.")
-            if of_sensor == quantity or "*" in quantity:
-                continue
-            if not any(of_sensor.startswith(f"{one}.") for one in sensors):
-                expected = one_of("a sensor of this case", of_sensor.partition(".")[0], sensors)
-                yield Problem(key_of((*table, name)), UNSAID, expected)
-            elif analysis_of(quantity) is None:
-                yield Problem(
-                    key_of((*table, name)), UNSAID, "level_db, motion_level_db or loudest_speed_rpm at its end"
-                )
+def name_problems(case: Case, wanted: Wanted, table: Location, named: Iterable[str]) -> Iterator[Problem]:
+    """Yield names in a table of a case that are of no quantity of its gearboxes, before anything is solved for them.
+
+    A name may have a statistic before it, and ``*`` in it.
+    """
+    names = dict(possible_quantities(parts_of(case)))
+    for name in named:
+        _, quantity = statistic_of(name)
+        found = [one for one in names if matches(one, quantity)]
+        expected = ""
+        if not found:
+            expected = _nearest_quantity(quantity, list(names))
+        elif not any(names[one] in wanted.analyses for one in found):
+            expected = f"{names[found[0]]!r} among the analyses, which finds it"
+        elif not any(wanted.has(one) for one in found):
+            expected = f"{found[0]!r} among the quantities, beside those that are found"
+        if expected:
+            yield Problem(key_of((*table, name)), UNSAID, expected)
+
+
+def _nearest_quantity(name: str, names: Sequence[str]) -> str:
+    """Return what a name that no quantity has may have meant: a quantity of its part, or a part of its kind."""
+    part, _, last = name.rpartition(".")
+    kind, _, own = part.partition(".")
+    of_part = dict.fromkeys(one.rpartition(".")[2] for one in names if matches(one.rpartition(".")[0], part))
+    if of_part:
+        hint = "; a life is that of a rolling bearing" if last.endswith("life_h") else ""
+        return one_of(f"a quantity of {part}", last, list(of_part)) + hint
+    parts = dict.fromkeys(one.rpartition(".")[0].partition(".")[2] for one in names if one.startswith(f"{kind}."))
+    if parts:
+        return one_of(f"a {kind.replace('_', ' ')} of this case", own, list(parts))
+    return one_of("a quantity of this case", name, names)
+
+
+def parts_of(case: Case) -> dict[str, list[str]]:
+    """Return the names of a case's parts by their kind, as names of quantities have them."""
+    table = case.housing or case.reduced_housing
+    bearings = case.parts.bearings if case.rotor else ()
+    return {
+        "gear_pair": [f"{pair.driver}-{pair.driven}" for pair in case.gear_pair],
+        "bearing": [one.bearing.name for one in bearings],
+        "rolling_bearing": [one.bearing.name for one in bearings if one.rolling is not None],
+        "planetary": [one.name for one in case.planetary],
+        "rotor": [one.name for one in case.rotor],
+        "gear": [one.name for one in case.gear],
+        "sensor": [one.name for one in table.sensor] if table else [],
+        "housing": [""] if table else [],
+        "machine": [""],
+    }
 
 
 def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
@@ -426,17 +477,20 @@ def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
         raise CaseError(Problem(f"variation.quantities[{place}]", name, expected) for place, name in without)
 
 
-def _median_problems(source: CaseSource, inputs: Sequence[Input]) -> Iterator[Problem]:
-    """Yield problems of keys that do not take their median; those of parts together are told by their gearbox."""
+def _value_problems(source: CaseSource, inputs: Sequence[Input]) -> Iterator[Problem]:
+    """Yield problems of keys that do not take their median, or one of their values.
+
+    Those of several keys together are told by their gearbox.
+    """
     for one in inputs:
-        if isinstance(one.law, Discrete):
-            continue
-        try:
-            source.changed(texts := list(one.overrides(0.5)))
-        except CaseError as error:
-            sources = [f"--set {text}" for text in texts]
-            own = [problem for problem in error.problems if problem.source in sources]
-            yield from (replace(problem, source=f"variation.vary, {one.name}") for problem in own)
+        every = one.law.values[:_MOST_CHECKED] if isinstance(one.law, Discrete) else ()
+        for texts in map(list, map(one.overrides_of, every) if every else [one.overrides(0.5)]):
+            try:
+                source.changed(texts)
+            except CaseError as error:
+                sources = [f"--set {text}" for text in texts]
+                own = [problem for problem in error.problems if problem.source in sources]
+                yield from (replace(problem, source=f"variation.vary, {one.name}") for problem in own)
 
 
 def _result(

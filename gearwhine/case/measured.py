@@ -6,6 +6,7 @@ are fitted, and the modes that they are fitted to.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -139,6 +140,14 @@ class Measured(Table):
     A table has the conditions of "shapes". Default: "shapes" where shapes are measured, else "nearest"."""
 
     _content: _Content | None = PrivateAttr(default=None)
+
+    @property
+    def frequencies_hz(self) -> tuple[float, ...]:
+        """Frequencies of the measured modes, ascending [Hz]; none where they are yet to be identified."""
+        modes = None if self.survey is None else self.survey.modes
+        if self.frequencies is not None or modes is None:
+            return self.frequencies or ()
+        return tuple(sorted((modes.frequencies / (2.0 * math.pi)).tolist()))
 
     @model_validator(mode="after")
     def _one_source(self, info: ValidationInfo) -> Measured:

@@ -240,6 +240,8 @@ def value_problems(source: CaseSource, inputs: Sequence[DesignInput]) -> Iterato
                 own = [problem for problem in error.problems if problem.source in sources]
                 name = key_of((*_TABLE, one.name))
                 yield from (replace(problem, source=name) for problem in own)
+                if not one.count:  # the other end of a range has the same
+                    break
 
 
 def require_scatter(inputs: Sequence[DesignInput], source: CaseSource, variation: Variation) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from functools import cached_property
 
 import numpy as np
@@ -20,7 +19,8 @@ from gearwhine.case.optimisation import Aim, Robust
 from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
-from gearwhine.output.named_quantities import statistic_of
+from gearwhine.output.named_quantities import matches, statistic_of
+from gearwhine.variation.statistics import known_limits
 
 NO_AIM = Problem("optimisation.aim", UNSAID, "the name of one quantity or more, each with its sense")
 Worse = dict[str, tuple[float, float]]
@@ -211,7 +211,7 @@ def goals_of(
         if name == YIELD:
             return (YIELD,)
         statistic, pattern = statistic_of(name)
-        found = tuple(one for one in names if one == pattern or ("*" in pattern and _matches(one, pattern)))
+        found = tuple(one for one in names if matches(one, pattern))
         if statistic:
             found = tuple(f"{statistic} of {one}" for one in found)
         if not found:
@@ -219,12 +219,7 @@ def goals_of(
             problems.append(Problem(key_of(("optimisation", table, name)), UNSAID, expected))
         return found
 
-    good = {} if good is None or YIELD not in (*aims, *limits) else good
-    for name in good:
-        if name not in names:
-            expected = f"a quantity that these gearboxes have{did_you_mean(name, names)}; there are: {', '.join(names)}"
-            problems.append(Problem(key_of(("variation", "limit", name)), UNSAID, expected))
-
+    good = {} if good is None or YIELD not in (*aims, *limits) else known_limits(good, names)
     goals = [
         Goal(name, matching("aim", name), 1.0 if aim.sense == "least" else -1.0, aim.weight)
         for name, aim in aims.items()
@@ -233,15 +228,6 @@ def goals_of(
     if problems:
         raise CaseError(problems)
     return Goals(tuple(goals), tuple(ends), robust, good)
-
-
-def _matches(name: str, pattern: str) -> bool:
-    return fnmatchcase(name, plain_pattern(pattern))
-
-
-def plain_pattern(pattern: str) -> str:
-    """Return a pattern in which only ``*`` has a meaning."""
-    return pattern.replace("[", "[[]").replace("?", "[?]")
 
 
 def _ends(name: str, key: str, limit: Limit) -> Iterator[LimitEnd]:

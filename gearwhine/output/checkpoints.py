@@ -1,7 +1,8 @@
 """Checkpoints of a time integration: its blocks in files of the output folder, from which a later run goes on.
 
 A run stores its blocks in a hidden folder of the output folder, each with the state after it, for a later
-restart. The folder bears the key of everything that the integration depends on, and goes when the results are written.
+restart. The folder bears the key of everything that the integration depends on, and goes when the results are written,
+unless these have no pictures: then the same run with pictures takes the motion from it.
 A block and its checkpoint are one file that appears whole: it is written beside, forced to the disk, and renamed. A run
 that is killed, interrupted or fails leaves its blocks; the next run with the same key goes on behind the last one
 before any damage. A run of anything else clears them away.
@@ -24,7 +25,7 @@ from gearwhine.interruption import cleared_at_the_end
 from gearwhine.output.files import clear_stage, exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"
-_MOST_KEPT = 200e6  # bytes of blocks that stay in memory for the result of a run
+_MOST_KEPT = 200e6  # bytes of blocks that stay in memory for the result of a run, or in the folder for its pictures
 _KEY_DIGITS = 16  # digits of the key in the folder's name: no two integrations of one folder share them by chance
 
 
@@ -77,8 +78,13 @@ class BlockFiles:
 
     def keep(self) -> None:
         """Read the blocks into memory, unless they are large: a result reads the motion when their files are gone."""
-        if sum(self._file(number).stat().st_size for number in range(self._count)) <= _MOST_KEPT:
+        if not self.are_large:
             self._kept = [self._read(number) for number in range(self._count)]
+
+    @property
+    def are_large(self) -> bool:
+        """Whether the blocks are too large to keep beside the results."""
+        return sum(self._file(number).stat().st_size for number in range(self._count)) > _MOST_KEPT
 
     def _file(self, number: int) -> Path:
         return self._folder / f"block-{number:08d}.npz"
@@ -103,7 +109,7 @@ class BlockFiles:
 
 
 @contextmanager
-def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
+def stored_record(folder: Path, key: str, *, fresh: bool = False, stays: bool = False) -> Iterator[BlockFiles]:
     """Checkpoint blocks in an output folder under a key, whose files go when the work inside ends well.
 
     If a living run performs the same integration in the same folder, this one stores blocks of its own.
@@ -116,6 +122,8 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
         Key of all inputs of the blocks.
     fresh : bool
         Whether to remove stored blocks, and begin anew.
+    stays : bool
+        Whether the files stay for another run, unless they are large.
     """
     is_new = not folder.exists()
     with room_named(folder), ExitStack() as stack:
@@ -141,7 +149,8 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
                 error.add_note(note)
             raise
         blocks.keep()
-        clear_stage(place, None)
+        if not stays or blocks.are_large:
+            clear_stage(place, None)
 
 
 def _place(folder: Path, name: str, *, fresh: bool) -> Path:

@@ -1,8 +1,9 @@
 """Quantities by names such as ``sensor.top.level_db``: what they are of, and how tables and figures show them."""
 
 import re
+from fnmatch import fnmatchcase
 
-from gearwhine.output.quantity import UNITS, unit_of
+from gearwhine.output.quantity import UNITS, shown_product, unit_of
 
 _STATISTIC = re.compile(r"(mean|standard deviation|quantile 0?\.\d+) of (?=.)")
 """Begin of the name of a statistic over gearboxes, such as ``quantile 0.95 of sensor.top.level_db``."""
@@ -22,6 +23,16 @@ def statistic_of(name: str) -> tuple[str, str]:
     """Return the statistic over gearboxes that a name begins with, empty of a quantity itself, and the quantity."""
     begin = _STATISTIC.match(name)
     return (begin[1], name[begin.end() :]) if begin else ("", name)
+
+
+def matches(name: str, pattern: str) -> bool:
+    """Whether a quantity has a name, in which ``*`` stands for any part."""
+    return name == pattern or ("*" in pattern and fnmatchcase(name, plain_pattern(pattern)))
+
+
+def plain_pattern(pattern: str) -> str:
+    """Return a pattern in which only ``*`` has a meaning."""
+    return pattern.replace("[", "[[]").replace("?", "[?]")
 
 
 def part_of(name: str) -> str:
@@ -47,4 +58,4 @@ def shown_quantity(name: str) -> tuple[str, float]:
 
 def shown_unit(unit: str) -> tuple[str, float]:
     """Return the unit in which values of a varied key are shown, and the factor to it."""
-    return {**_SCALES, "um": ("µm", 1.0), "N*m": ("N m", 1.0)}.get(unit, (unit, 1.0))
+    return {**_SCALES, "um": ("µm", 1.0)}.get(unit, (shown_product(unit), 1.0))

@@ -107,6 +107,11 @@ def _end(name: str) -> str:
     return max((end for end in UNITS if name.endswith(end)), key=len, default="")
 
 
+def shown_product(unit: str) -> str:
+    """Return a unit of a file as texts show it: files have a blank between units, as UDUNITS reads them."""
+    return unit.replace("N m", "N·m").replace("N*m", "N·m")
+
+
 def unit_of(key: str) -> str:
     """Return the unit that a key says at the end of its last step that says one; empty where none does."""
     return next((UNITS[end] for step in reversed(key.split(".")) if (end := _end(step))), "")

@@ -1,5 +1,6 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from textwrap import wrap
 from typing import Any, Literal
@@ -7,17 +8,18 @@ from typing import Any, Literal
 from rich.box import SIMPLE_HEAD
 from rich.cells import cell_len
 from rich.console import Console
-from rich.constrain import Constrain
 from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from gearwhine.output.sections import Column, Document, Section, Table, arrowed, is_number
+from gearwhine.output.sections import Document, Section, Table, arrowed, is_number
 
 _WIDTH, _WIDEST = 120, 10_000  # of a table that is not on a terminal, and where its words are longer
 _MOST_LISTED_FILES = 12  # largest number of files that are named
-_BETWEEN = 3  # columns between the cells of a table
+_BETWEEN, _LEAST_BETWEEN = 3, 1  # columns between the cells of a table, and where it is narrow
 _NARROWEST = 20  # least number of columns of a wrapped text
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:[%°]|[kMGmµ]?[A-Za-zµ][A-Za-z]{0,2}(?:[·/²³][\w·/²³]*)?)(?:[\s,;.)]|$))")
+"""Space between a figure and its unit."""
 
 
 def open_console() -> Console:
@@ -64,11 +66,9 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
     for item in section.content:
         if isinstance(item, Table):
             if item.caption:
-                console.print(f"{' ' * indent}{arrowed(item.caption)}")
+                console.print(f"{' ' * indent}{_hanging(console, arrowed(item.caption), indent)}")
             for grid in _fitting(console, item, indent):
-                least = 1 + sum(_BETWEEN + (column.min_width or 0) for column in grid.columns)
-                padded = Padding(grid, (0, 0, 1, indent), expand=False)
-                console.print(padded if console.is_terminal else Constrain(padded, max(_WIDTH, indent + least)))
+                console.print(Padding(grid, (0, 0, 1, indent), expand=False))
         else:
             console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}")
     for inner in section.inner:
@@ -84,8 +84,8 @@ def _hanging(console: Console, text: str, before: int) -> str:
         return text
     lead = text[: len(text) - len(text.lstrip())]
     width = max(console.width - before - len(lead), _NARROWEST)
-    lines = wrap(text.strip(), width, break_long_words=False, break_on_hyphens=False) or [""]
-    return lead + f"\n{' ' * (before + len(lead))}".join(lines)
+    lines = wrap(_held(text.strip()), width, break_long_words=False, break_on_hyphens=False) or [""]
+    return lead + f"\n{' ' * (before + len(lead))}".join(lines).replace("\u00a0", " ")
 
 
 def show_written(console: Console, document: Document) -> None:
@@ -105,30 +105,68 @@ def show_origin(console: Console, document: Document) -> None:
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 
 
-def _filled(table: Table) -> tuple[tuple[Column, ...], list[list[str]]]:
-    columns, rows = table.filled()
-    return columns, [[arrowed(cell) for cell in row] for row in rows]
-
-
 def _fitting(console: Console, table: Table, indent: int) -> list[Grid]:
-    """Return a table as it fits a terminal: its rows become columns, a few beside each other, where it is too wide."""
-    columns, rows = _filled(table)
-    headings = [column.heading for column in columns]
+    """Return a table in rows, whose texts wrap between words; on a narrow terminal its rows become columns.
+
+    Where not even one row fits beside the headings nothing is won: words are then broken.
+    """
+    columns, rows = table.filled()
+    cells = [[column.heading for column in columns], *([arrowed(cell) for cell in row] for row in rows)]
     room = (console.width if console.is_terminal else _WIDTH) - indent
-
-    def width(cells: Sequence[str]) -> int:
-        return _BETWEEN + max((cell_len(line) for cell in cells for line in cell.split("\n")), default=0)
-
-    whole = sum(width([heading, *(row[place] for row in rows)]) for place, heading in enumerate(headings))
-    first = width(headings)
-    widest = max((width(row) for row in rows), default=0)
+    for between in (_BETWEEN, _LEAST_BETWEEN):
+        widths = _widths([list(column) for column in zip(*cells, strict=True)], room - between * len(columns))
+        if sum(widths) + between * len(widths) <= room:
+            return [_grid(cells, widths, between)]
     if not console.is_terminal:
-        return [_grid(table, breaks_words=whole <= room)]
-    if whole <= room or first + widest > room:  # nothing is won where not even one row fits beside the headings
-        return [_grid(table)]
-    beside = (room - first) // widest
-    groups = [rows[start : start + beside] for start in range(0, len(rows), beside)]
-    return [_turned(headings, group) for group in groups]
+        return [_grid(cells, widths, _BETWEEN)]
+    first, *others = (_BETWEEN + max(map(_width, row), default=0) for row in cells)
+    if first + max(others) > room:
+        while sum(widths) + _LEAST_BETWEEN * len(widths) > room and max(widths) > 1:
+            widths[widths.index(max(widths))] -= 1
+        return [_grid(cells, widths, _LEAST_BETWEEN)]
+    beside = (room - first) // max(others)
+    return [_turned(cells[0], cells[start : start + beside]) for start in range(1, len(cells), beside)]
+
+
+def _width(text: str) -> int:
+    """Return the number of terminal columns of a text's widest line."""
+    return max(map(cell_len, text.split("\n")))
+
+
+def _widths(columns: Sequence[Sequence[str]], room: int) -> list[int]:
+    """Return the widths of columns, each its heading and its cells, whose sum fits a room if words allow it.
+
+    The widest column gives way first: at first only headings wrap, then cells, each down to its longest word.
+    """
+    widths = [max(map(_width, column)) for column in columns]
+    words = [max(_width(word) for text in column for word in _words(text)) for column in columns]
+    cells = [max(map(_width, column[1:]), default=0) for column in columns]
+    for least in ([max(pair) for pair in zip(words, cells, strict=True)], words):
+        while sum(widths) > room:
+            wide = [place for place, width in enumerate(widths) if width > least[place]]
+            if not wide:
+                break
+            widths[max(wide, key=lambda place: widths[place])] -= 1
+    return widths
+
+
+def _words(text: str) -> list[str]:
+    """Return the words of a text, a figure with its unit as one."""
+    return _held(text).split(" ") if "\n" not in text else [word for line in text.split("\n") for word in _words(line)]
+
+
+def _held(text: str) -> str:
+    """Return a text with a no-break space between a figure and its unit."""
+    return _BEFORE_UNIT.sub("\u00a0", text)
+
+
+def _wrapped(text: str, width: int) -> str:
+    """Wrap a text between words, a figure with its unit as one; a longer word is broken, at its hyphens first."""
+    lines = list[str]()
+    for line in text.split("\n"):
+        is_broken = any(_width(word) > width for word in _words(line))
+        lines += wrap(_held(line), max(width, 1), break_on_hyphens=is_broken) or [""]
+    return "\n".join(lines).replace("\u00a0", " ")
 
 
 def _turned(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
@@ -142,23 +180,13 @@ def _turned(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
     return grid
 
 
-def _grid(table: Table, *, breaks_words: bool = True) -> Grid:
-    """Return a table in rows; where words are not broken it may be wider than the console."""
-    columns, rows = _filled(table)
-    grid = Grid(box=SIMPLE_HEAD, show_edge=False)
-    for place, column in enumerate(columns):
-        numbers = any(is_number(row[place]) for row in rows)
-        cells = [row[place] for row in rows]
-        # A key path has no spaces to wrap at; what would be cut off is what the paths differ in.
-        words = " ".join([column.heading, *cells]).split()
-        least = None if breaks_words else max(map(cell_len, words), default=None)
+def _grid(cells: Sequence[Sequence[str]], widths: Sequence[int], between: int) -> Grid:
+    """Return a table in rows, the first of its cells the headings, wrapped at the widths of its columns."""
+    grid = Grid(box=SIMPLE_HEAD, show_edge=False, padding=(0, between // 2))
+    for place, width in enumerate(widths):
+        numbers = any(is_number(row[place]) for row in cells[1:])
         justify: Literal["left", "right"] = "right" if numbers else "left"
-        # A column of paths keeps its width, else the widest is cut first. A column whose heading is wider
-        # than its cells may wrap the heading instead.
-        widest = max(map(cell_len, cells), default=0)
-        is_path = not any(" " in cell for cell in cells) and widest >= cell_len(column.heading)
-        whole = is_path and not breaks_words
-        grid.add_column(column.heading, justify=justify, overflow="fold", min_width=least, no_wrap=whole)
-    for row in rows:
-        grid.add_row(*row)
+        grid.add_column(_wrapped(cells[0][place], width), justify=justify, no_wrap=True, min_width=width)
+    for row in cells[1:]:
+        grid.add_row(*(_wrapped(cell, width) for cell, width in zip(row, widths, strict=True)))
     return grid

@@ -358,6 +358,14 @@ IMPORTED = (
 )
 """Quantities of a gear unit that was imported: the file, its load cases, and what was assumed, changed and left out."""
 
+
+def _keys(key: str, table: str) -> Quantity:
+    """Declare the keys of a table of a study of many gearboxes."""
+    return Quantity(key, lambda study: list(getattr(study, table)))
+
+
+_LIMITS = _keys("limits", "limit")
+
 CHECK = (
     Quantity("title", "case.title"),
     Part("imported", "imported", IMPORTED, optional=True),
@@ -380,6 +388,14 @@ CHECK = (
     Part("operation", lambda checked: ABSENT if checked.case.operation is None else checked.case, OPERATION),
     Part("transient", "case.transient", TRANSIENT, optional=True),
     Part("sweep", "case.sweep", (Quantity("speeds", lambda sweep: len(sweep.speeds)),), optional=True),
+    Part("variation", "case.variation", (Quantity("samples"), _LIMITS, _keys("keys", "vary")), optional=True),
+    Part(
+        "optimisation",
+        "case.optimisation",
+        (Quantity("evaluations"), _LIMITS, _keys("keys", "design"), _keys("aims", "aim")),
+        optional=True,
+    ),
+    Part("detection", "case.detection", (Quantity("fault"), Quantity("severities")), optional=True),
     Part("measured", "case.measured", MEASURED, optional=True),
     Quantity("provenance", lambda checked: checked.case.provenance or None, optional=True),
     Quantity(
@@ -543,10 +559,26 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
         "transient": [_transient_line(document)] if "transient" in document else [],
         "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
+        "vary": _study_lines(document, "variation", "gearboxes", "samples", ("keys", "limits")),
+        "optimise": _study_lines(
+            document, "optimisation", "designs at most", "evaluations", ("keys", "aims", "limits")
+        ),
+        "detect": [
+            f"{study['fault']}: {', '.join(map(str, study['severities']))}"
+            for study in (document.get("detection"),)
+            if study
+        ],
         "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
         "standing": [f"{key}: {text}" for key, text in document.get("provenance", {}).items()],
     }
     return ((part, lines) for part, lines in parts.items() if lines)
+
+
+def _study_lines(document: Document, table: str, what: str, count: str, lists: Sequence[str]) -> list[str]:
+    """Return the number of gearboxes of a study, and its keys and the quantities that are limited by name."""
+    if (study := document.get(table)) is None:
+        return []
+    return [f"{study[count]} {what}", *(f"{kind}: {', '.join(study[kind])}" for kind in lists if study[kind])]
 
 
 def _operation_lines(operation: Document) -> Iterator[str]:

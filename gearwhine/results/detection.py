@@ -237,6 +237,8 @@ def _best_rows(document: Document) -> Iterator[Document]:
 
 
 def _best_columns(document: Document) -> tuple[Column, ...]:
+    unit = f" [{document['shown_unit']}]" if document["shown_unit"] else ""
+
     def text(of: Callable[[Document], str]) -> Callable[[Document], str]:
         return lambda row: of(row) if row["indicator"] is not None else ""
 
@@ -254,8 +256,9 @@ def _best_columns(document: Document) -> tuple[Column, ...]:
     return (
         Column("sensor", "sensor"),
         Column("indicator", lambda row: "none" if row["indicator"] is None else INDICATORS[row["indicator"]].title),
+        Column(f"a90 (a90/95){unit}", text(lambda row: _a90(document, row))),
         Column("healthy mean", text(lambda row: f"{row['healthy_mean']:.4g}")),
         Column("threshold (95 %)", text(threshold)),
-        Column("by", text(lambda row: row["method"])),
+        Column("curve by", text(lambda row: row["method"])),
         *(Column(severity, found(place)) for place, severity in enumerate(document["severities"])),
     )

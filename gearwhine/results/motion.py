@@ -65,7 +65,7 @@ BEARING = (
     Quantity("name", heading="bearing"),
     Quantity("mean_force_n", lambda row: row.parts.mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
     Quantity("rms_force_n", lambda row: row.parts.rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
-    Quantity("mean_moment_n_m", lambda row: row.parts.mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
+    Quantity("mean_moment_n_m", lambda row: row.parts.mean[3:], heading="mean moment x, y [N·m]", shown=".2f"),
     Quantity("rms_moment_n_m", lambda row: row.parts.rms[3:]),
 )
 """Loads of a bearing: forces along x, y, z and moments about x and y; a row is a :class:`NamedParts`."""

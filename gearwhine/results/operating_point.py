@@ -107,7 +107,7 @@ _NAME, _TILT, *_OF_ELEMENTS = columns_of(BEARING)
 _BEARING_COLUMNS = (
     _NAME,
     *(Column(f"{_AXES[axis]} [N]", f"force_n.{axis}", "z.0f") for axis in range(3)),
-    *(Column(f"{_TILTS[axis]} [N m]", f"moment_n_m.{axis}", "z.1f") for axis in range(2)),
+    *(Column(f"{_TILTS[axis]} [N·m]", f"moment_n_m.{axis}", "z.1f") for axis in range(2)),
     _TILT,
 )
 _ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness, numbers=_DIAGONAL))
@@ -536,7 +536,7 @@ _OF_SOUND = ("sound power", "W", "sound_changes", "loudest_line")
 PLANET = (
     Quantity("name", "shaft", heading="planet"),
     Quantity("angle_rad", "angle"),
-    Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".4g"),
+    Quantity("torque_n_m", "torque", heading="torque\n[N·m]", shown=".4g"),
     Quantity("load_share", heading="load share", shown=".4f"),
     Quantity("bearing_force_n", "bearing_force", heading="on its pin\n[N]", shown=".0f"),
     Quantity("pin_error_m", "pin_error", document=list),
@@ -817,7 +817,7 @@ _PICTURES = (
 )
 
 
-_TORQUE_COLUMNS = (Column("torque\n[N m]", "torque_n_m", ".4g"), Column("pair", "pair"), *columns_of(_OUTCOMES))
+_TORQUE_COLUMNS = (Column("torque\n[N·m]", "torque_n_m", ".4g"), Column("pair", "pair"), *columns_of(_OUTCOMES))
 
 _MOST_INFLUENCES = 10  # parameters of a table
 _MOST_BEARINGS = 8  # of a sentence
@@ -938,7 +938,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     if torque == 0.0 and not document["gear_pairs"]:
         yield f"Static equilibrium without torque, under {loads} alone, {_seats(document)}; no flanks carry"
     else:
-        yield f"Static equilibrium at {torque:.5g} N m, {_seats(document)}; friction of the teeth is left out"
+        yield f"Static equilibrium at {torque:.5g} N·m, {_seats(document)}; friction of the teeth is left out"
     caption = "Force and tilting moment of the shafts on their bearings"
     yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
     rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]

@@ -241,6 +241,7 @@ def report(document: Document) -> Section:
 def _content(document: Document) -> Iterator[str | Table]:
     labels = [one["design"] for one in document["chosen"]]
     with_numbers = [f"{one['design']}: design {one['number']}" for one in document["chosen"]]
+    yield from _answer(document)
     keys = [row for key in document["keys"] for row in (key, *({**one, "with": key["key"]} for one in key["with"]))]
     yield from table_of(
         (
@@ -279,6 +280,19 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from _front(document)
     yield from _checked(document)
     yield from _sentences(document)
+
+
+def _answer(document: Document) -> Iterator[str]:
+    """Yield what the first proposed design wins by each aim, and whether it is within the limits."""
+    for one in document["chosen"][:1]:
+        gains = [
+            f"{shown_quantity(aim['name'])[0]} of {_of(aim['name'])} {_text(aim, aim['start'])} → "
+            f"{_text(aim, aim['designs'][0])}"
+            for aim in document["aims"]
+        ]
+        missed = "limits are missed" if document.get("missed") else "all limits are met"
+        held = f"; {missed}" if document["limits"] else ""
+        yield f"Design {one['number']} of {document['designs']} ({one['design']}): {', '.join(gains)}{held}."
 
 
 def _designs(labels: Sequence[str], text: Callable[[Document, Any], str]) -> Iterator[Column]:
@@ -352,7 +366,7 @@ def _checked(document: Document) -> Iterator[str | Table]:
         for of in dict.fromkeys(of for one in solved.values() for of in one.get(key, ()))
     ]
     columns = (Column("of", "of"), Column("quantity", "quantity"), *(Column(label, _cell(label)) for label in solved))
-    speeds = ", ".join(f"{speed:.5g}" for speed in checked["speeds_rpm"])
+    speeds = ", ".join(f"{speed:.5g}" for speed in sorted(checked["speeds_rpm"], key=abs))
     yield from table_of(columns, rows, f"Start and proposed designs by the full machine at {speeds} rpm")
     if len(solved) == len(motions) and checked["start"]["linear_level_db"] and not checked["contradicted"]:
         yield "The transient confirms the ranking by the linear machine."
@@ -362,7 +376,7 @@ _MOTION_ROWS = (
     ("linear_level_db", "sensor ", "lines of the teeth, linear [dB re 1 µm/s²]", ".1f"),
     ("motion_level_db", "sensor ", "transient [dB re 1 µm/s²]", ".1f"),
     ("peak_force_ratio", "", "largest tooth force / mean", ".3f"),
-    ("contact_loss", "", "part of the time apart", ".3f"),
+    ("contact_loss", "", "part of the time without contact", ".3f"),
     ("highest_level_db", "sensor ", "highest over the speed range, linear [dB re 1 µm/s²]", ".1f"),
     ("loudest_speed_rpm", "sensor ", "at the speed [rpm]", ".0f"),
 )

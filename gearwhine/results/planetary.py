@@ -19,7 +19,7 @@ MEMBER = (
     Quantity("name", "shaft", heading="member"),
     Quantity("speed_rpm", lambda member: member.speed * RPM, heading="speed\n[rpm]", shown=".5g"),
     Quantity("relative_speed_rpm", lambda member: member.relative_speed * RPM),
-    Quantity("torque_n_m", "torque", heading="torque\n[N m]", shown=".5g"),
+    Quantity("torque_n_m", "torque", heading="torque\n[N·m]", shown=".5g"),
     Quantity("power_w", "power", heading="power\n[W]", shown=".5g"),
     Quantity("rolling_power_w", "rolling_power"),
     Quantity("state", heading="is"),

@@ -794,7 +794,7 @@ def _torsion(response: Document) -> Iterator[str | Table]:
             numbers=("largest_angle_at_hz",),
         ),
         Column(
-            "largest torque [N m, peak]",
+            "largest torque [N·m, peak]",
             "largest_torque_n_m",
             shown=lambda row: (
                 f"{row['largest_torque_n_m']:.4g} at {row['largest_torque_at_hz']:.5g} Hz"
@@ -808,7 +808,7 @@ def _torsion(response: Document) -> Iterator[str | Table]:
     yield from table_of(columns, response["probes"][:_MOST_TABLE_ROWS], title)
     yield (
         f"The shaft carries most at {1e3 * response['largest_torque_at_m']:.5g} mm: "
-        f"{response['largest_torque_n_m']:.4g} N m at {response['largest_torque_at_hz']:.5g} Hz"
+        f"{response['largest_torque_n_m']:.4g} N·m at {response['largest_torque_at_hz']:.5g} Hz"
     )
 
 

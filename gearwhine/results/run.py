@@ -387,7 +387,7 @@ def _acceleration(run: Document) -> str:
     least, largest = (run["accelerating_torque_n_m"][key] for key in ("least", "largest"))
     between = f"{largest:.3g}" if math.isclose(least, largest, rel_tol=1e-6) else f"{least:.3g} to {largest:.3g}"
     return (
-        f"Beside the load, {between} N m at the first driver accelerate the train, of "
+        f"Beside the load, {between} N·m at the first driver accelerate the train, of "
         f"{run['train_inertia_kg_m2']:.3g} kg m² there"
     )
 

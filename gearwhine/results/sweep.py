@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from gearwhine.coupling.signals.spectrum import from_decibels, rms_of_peak
-from gearwhine.output.quantity import ABSENT, Quantity
+from gearwhine.output.quantity import ABSENT, Quantity, shown_product
 from gearwhine.output.sections import (
     Column,
     Document,
@@ -182,7 +182,9 @@ def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
 def _axes(document: Document) -> list[Column]:
     """Return columns of the swept keys."""
     return [
-        Column(axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""), f"values.{axis['name']}", "g")
+        Column(
+            axis["name"] + (f" [{shown_product(axis['unit'])}]" if axis["unit"] else ""), f"values.{axis['name']}", "g"
+        )
         for axis in document["axes"]
     ]
 

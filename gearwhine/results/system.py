@@ -15,6 +15,7 @@ from gearwhine.output.sections import (
     Picture,
     Section,
     Table,
+    arrowed,
     columns_of,
     counted,
     significant,
@@ -639,6 +640,9 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    if "stability" in document:
+        yield from _stability(document["stability"])
+    yield from _highest_line(document)
     if "load" in document:
         yield from brief(document["load"])
     modes, trusted = document["modes"], document.get("trusted_below_hz")
@@ -664,8 +668,6 @@ def _content(document: Document) -> Iterator[str | Table]:
             f"{certificate['found']} of {certificate['expected']} eigenvalues found, {certificate['zeros']} of them "
             f"zero; residuals up to {certificate['max_residual']:.0e}, sum rule {_sum_rule(certificate)}."
         )
-    if "stability" in document:
-        yield from _stability(document["stability"])
     if error := document.get("static_error"):
         yield static_error_sentence(error)
     if trusted and len(within) < len(modes):
@@ -789,6 +791,25 @@ def _strained(mode: Document) -> str:
     """Return the part with the most strain energy."""
     most = mode.get("strained_most")
     return "" if most is None else f"{_NAMES[most['kind']]}{most['name']} {100 * most['share']:.0f} %"
+
+
+def _highest_line(document: Document) -> Iterator[str]:
+    """Yield the highest line of all sensors at operation."""
+    highest = max(
+        (
+            (level, sensor, line)
+            for line in document.get("mesh_lines", ())
+            for sensor, level in line["sensor_acceleration_m_per_s2"]["together"].items()
+        ),
+        key=lambda one: one[0],
+        default=None,
+    )
+    if highest is not None:
+        level, sensor, line = highest
+        yield (
+            f"Highest line at operation: {level:.3g} m/s² at {line['frequency_hz']:.1f} Hz at {sensor}, "
+            f"{arrowed(line['cause'])}."
+        )
 
 
 def _stability(stability: Document) -> Iterator[str]:

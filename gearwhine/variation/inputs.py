@@ -112,7 +112,10 @@ class Input:
             listed = ", ".join(map(repr, self.law.drawn(coordinate)))
             yield from (f"{key}=[{listed}]" for key, _ in self.keys)
             return
-        value = self.value(coordinate)
+        yield from self.overrides_of(self.value(coordinate))
+
+    def overrides_of(self, value: float) -> Iterator[str]:
+        """Yield the ``key.path=value`` of every key by a value."""
         for key, factor in self.keys:
             yield f"{key}={self.text(value if self.words else factor * value)}"
 

@@ -342,6 +342,41 @@ _ANALYSES: Mapping[str, Callable[[_Gearbox], Named]] = {
 ANALYSES = tuple(_ANALYSES)
 """Names of the analyses, in the order of their quantities."""
 
+_NAMES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    ("gears", "gear_pair", ("transmission_error_peak_to_peak_m", "transmission_error_over_hunting_period_m")),
+    ("gears", "gear_pair", tuple(f"transmission_error_harmonic_{one}_m" for one in range(1, HARMONICS + 1))),
+    ("gears", "gear_pair", ("mesh_stiffness_n_per_m",)),
+    ("load", "gear_pair", ("k_h_beta", "misalignment_rad", "contact_pressure_pa")),
+    ("load", "bearing", ("force_n",)),
+    ("load", "rolling_bearing", ("life_h", "reference_life_h")),
+    ("load", "planetary", ("mesh_load_factor",)),
+    ("rotors", "rotor", tuple(f"critical_speed_{one}_rpm" for one in range(1, _CRITICAL_SPEEDS + 1))),
+    ("mass", "gear", ("mass_kg",)),
+    ("mass", "rotor", ("mass_kg",)),
+    ("mass", "housing", ("mass_kg",)),
+    ("mass", "machine", ("mass_kg",)),
+    ("lines", "sensor", ("level_db", "loudest_speed_rpm")),
+    ("sound", "housing", ("sound_power_db", "sound_power_db_a", "sound_power_db_speed_rpm")),
+    ("sound", "housing", ("sound_power_db_a_speed_rpm",)),
+    ("motion", "sensor", ("motion_level_db",)),
+)
+"""Analyses with the kinds of parts that they have quantities of, and the ends of these quantities' names."""
+
+
+def possible_quantities(parts: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:
+    """Yield the name of every quantity that a gearbox may have, with the analysis that finds it.
+
+    Parameters
+    ----------
+    parts : mapping of str to sequence of str
+        Names of the parts by their kind; one without a name is the only one of its kind.
+    """
+    for analysis, kind, ends in _NAMES:
+        for part in parts.get(kind, ()):
+            begin = f"{kind.removeprefix('rolling_')}.{part}.".replace("..", ".")
+            yield from ((begin + end, analysis) for end in ends)
+
+
 _ANALYSIS_BY_END = {
     "motion_level_db": "motion",
     "level_db": "lines",

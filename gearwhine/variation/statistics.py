@@ -14,6 +14,7 @@ from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import BoolArray, FloatArray
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
+from gearwhine.output.named_quantities import matches
 from gearwhine.output.quantity import unit_of
 from gearwhine.solutions import Failure
 from gearwhine.variation.inputs import Input
@@ -470,24 +471,27 @@ def _cost(one: WidenedInput) -> tuple[float, float]:
     return loss, 0.0 if first is None else first.deviation / (first.deviation_before or 1.0)
 
 
-def require_known_limits(limits: Mapping[str, Limit], names: Sequence[str]) -> None:
-    """Refuse limits of quantities that the gearboxes do not have.
+def known_limits(limits: Mapping[str, Limit], names: Sequence[str]) -> dict[str, Limit]:
+    """Return the limit of each quantity that gearboxes have; of a name with ``*`` all that match have it.
 
     Raises
     ------
     CaseError
+        Where a limit is of a quantity that they do not have.
     """
     from gearwhine.case import CaseError, Problem
     from gearwhine.case.errors import UNSAID, key_of
-    from gearwhine.numerics.names import did_you_mean
+    from gearwhine.numerics.names import one_of
 
-    unknown = [name for name in limits if name not in names]
-    if unknown:
-        raise CaseError(
-            Problem(
-                key_of(("variation", "limit", name)),
-                UNSAID,
-                f"a quantity that these gearboxes have{did_you_mean(name, names)}; there are: {', '.join(names)}",
-            )
-            for name in unknown
-        )
+    limited: dict[str, Limit] = {}
+    problems = list[Problem]()
+    # A quantity that is named has its own limit beside one of a pattern.
+    for pattern in sorted(limits, key=lambda name: "*" not in name):
+        found = [name for name in names if matches(name, pattern)]
+        limited |= dict.fromkeys(found, limits[pattern])
+        if not found:
+            expected = one_of("a quantity that these gearboxes have", pattern, names)
+            problems.append(Problem(key_of(("variation", "limit", pattern)), UNSAID, expected))
+    if problems:
+        raise CaseError(problems)
+    return limited

@@ -125,7 +125,7 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
         {"gear_pairs": [GearPair("a", "x")]},
         "driven is 'x'; expected the name of a gear of this machine .'a', 'b', 'c', 'd'",
     ),
-    ("output", {"outputs": [Output("slow", 10.0)]}, "expected outputs that balance the input torque of 40 N m"),
+    ("output", {"outputs": [Output("slow", 10.0)]}, "expected outputs that balance the input torque of 40 N·m"),
     (
         "no input",
         {"torque": 0.0, "outputs": [Output("middle", 100.0), Output("slow", -120.0)]},
@@ -146,11 +146,11 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
         "expected power to flow from driver to driven; swap the two names",
     ),
     ("brake", {"torque": -40.0}, "'a -> b': backlash is 'None'; expected a backlash: the torque is negative"),
-    ("nothing takes it", {"gears": [], "gear_pairs": []}, "a torque of 40 N m that nothing takes"),
+    ("nothing takes it", {"gears": [], "gear_pairs": []}, "a torque of 40 N·m that nothing takes"),
     (
         "no path",
         {"gears": [], "gear_pairs": [], "outputs": [Output("fast", 30.0), Output("slow", 10.0)]},
-        "'fast' takes in 40 N m and gives out 30 N m; expected torques that balance on shaft 'fast'",
+        "'fast' takes in 40 N·m and gives out 30 N·m; expected torques that balance on shaft 'fast'",
     ),
     (
         "gear off the end",

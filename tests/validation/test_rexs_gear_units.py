@@ -460,7 +460,7 @@ def test_fva_bearings_by_hand(published: Published, remark: Callable[[str, str],
     remark(
         HAND,
         "By hand the teeth bear in mid-face and no bearing resists tilt. In the machine the load stands 1.9 and 5.5 mm "
-        "off the middle, and the 6210 takes 31 N m of load case 1; with both counted, sums of forces and moments of "
+        "off the middle, and the 6210 takes 31 N·m of load case 1; with both counted, sums of forces and moments of "
         "every shaft vanish. The induced thrust F_r / 2Y of a catalogue assumes half the circle loaded; less of a row "
         "that external thrust relieves is.",
     )
@@ -509,7 +509,7 @@ def test_sew_bearings_by_hand(published: Published, remark: Callable[[str, str],
     remark(
         SEW_HAND,
         "By hand the teeth bear in the middle of the common face and no bearing resists tilt. In the machine the load "
-        "stands 1 mm off it, on a span of 48 mm of the shaft RW3, and the 6308 takes 10 N m.",
+        "stands 1 mm off it, on a span of 48 mm of the shaft RW3, and the 6308 takes 10 N·m.",
     )
     machine, point = sew_equilibrium()
     for shaft, names in {"ANW": ("6305", "6205"), "RW3": ("6202 left", "6202 right"), "ABW": ("6207", "6308")}.items():

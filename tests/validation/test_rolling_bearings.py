@@ -97,7 +97,7 @@ def test_ball_bearing_under_combined_load(
     lever = 1.0 + (0.52 - 0.5) * 11.5 / (0.5 * 43.5)
     bearing = RollingBearing([row])
     state = rolling_equilibrium(bearing, np.array([load[0], 0.0, load[1], lever * load[2], 0.0]))
-    under = f"{clearance:.0f} µm clearance, {load[0]:.0f} N radially, {load[1]:.0f} N axially, {load[2]:.0f} N m"
+    under = f"{clearance:.0f} µm clearance, {load[0]:.0f} N radially, {load[1]:.0f} N axially, {load[2]:.0f} N·m"
     x, y, z, about_x, about_y = state.displacement
     for what, printed, found, unit in (
         ("radial displacement", radial, 1e6 * math.hypot(x, y), "µm"),

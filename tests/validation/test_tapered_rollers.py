@@ -221,7 +221,7 @@ def test_double_row_under_radial_and_axial_load_and_a_moment(
         "1.4 % less. Its centrifugal force is a least load of the outer raceway, here the roller's own equilibrium.",
     )
     load = [radial, 0.0, axial, 0.0, -20.0]
-    under = f"{radial:.0f} N radially, {axial:.0f} N axially, 20 N m"
+    under = f"{radial:.0f} N radially, {axial:.0f} N axially, 20 N·m"
     ours, parts = worst_loads(1, load), ("outer raceway", "inner raceway", "rib")
     for what, value, found, rel in zip(parts, printed, ours, (0.006, 0.006, 0.015), strict=True):
         published(HH926700, f"worst roller, {what}, {under}", value, found, "N", rel=rel)

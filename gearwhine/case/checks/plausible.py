@@ -11,6 +11,7 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from gearwhine.case.acoustics import Acoustics
@@ -20,6 +21,7 @@ from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
 from gearwhine.case.errors import LOOK_UP, UNSAID, Finding, Location, key_of, label_of, look_up, show_value
 from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.housing import Housing, Material, Seat
+from gearwhine.case.measured import Measured
 from gearwhine.case.model import Case
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.rotors import Rotor
@@ -42,6 +44,8 @@ def library_findings(case: Case) -> Iterator[Finding]:
         return  # nothing can be made of them
     if case.housing is not None:
         yield from _of_housing(case.housing)
+    if case.measured is not None:
+        yield from _of_measured(case.measured, None if case.housing is None else case.housing.frequency_limit)
     if case.acoustics is not None:
         yield from _of_acoustics(case.acoustics, None if case.housing is None else case.housing.frequency_limit)
     if case.operation is not None:
@@ -118,8 +122,27 @@ def _of_speed(speed: float) -> Iterator[Finding]:
 
 
 _MOST_DAMPED = 0.1
+_LEAST_MEASURED = 0.05  # part of the housing's range below which not all measured modes lie
+_WIDEST_GAP = 50.0  # ratio of neighbouring measured frequencies of one unit
 _LOWEST_LIMIT = 10.0
 """Limit of a housing's modes from which a unit may be forgotten [Hz]."""
+
+
+def _of_measured(measured: Measured, limit_hz: float | None) -> Iterator[Finding]:
+    """Yield measured frequencies that look like those of another unit, by the housing's range and by each other."""
+    frequencies = measured.frequencies_hz
+    if not frequencies:
+        return
+    least = _LOWEST_LIMIT if limit_hz is None else _LEAST_MEASURED * limit_hz
+    range_ = "below which housings have no modes" if limit_hz is None else "a part of housing.frequency_limit"
+    place = ("measured", "frequencies" if measured.frequencies is not None else "file")
+    if frequencies[-1] < least:
+        expected = f"modes up to {least:.4g} Hz or more, {range_}; the highest is {frequencies[-1]:.4g} Hz: is it kHz?"
+        yield Finding(place, expected, warns=True)
+    for low, high in pairwise(frequencies):
+        if high > _WIDEST_GAP * low:
+            expected = f"all frequencies in one unit; {high:.4g} Hz follows {low:.4g} Hz: is that kHz?"
+            yield Finding(place, expected, warns=True)
 
 
 def _of_housing(housing: Housing) -> Iterator[Finding]:

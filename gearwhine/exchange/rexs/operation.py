@@ -118,7 +118,7 @@ def find_drive(unit: GearUnit, speed: tuple[Body, float], loads: list[Load], rat
             power = load.torque * turns if load.torque else load.power
             powered += [(load, power)] if power else []
     if not powered:
-        unit.notes.assumed("loads", "no torque: 0 N m", "operation", "torque")
+        unit.notes.assumed("loads", "no torque: 0 N·m", "operation", "torque")
         return Drive(speed[0], speed[1], 0.0, None)
     first, power = powered[0]
     if power > 0.0:

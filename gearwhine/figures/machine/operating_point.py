@@ -459,7 +459,7 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
             axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
         axes.set_ylabel(label)
         axes.set_xlim(*sorted((0.0, float(torques[np.abs(torques).argmax()]))))
-    name_lowest(panels, "torque of the first driver [N m]")
+    name_lowest(panels, "torque of the first driver [N·m]")
     legend(figure, handles[:4])
     return figure
 

@@ -34,6 +34,7 @@ from gearwhine.figures.style import (
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output import file_stems
+from gearwhine.output.quantity import shown_product
 from gearwhine.output.sections import arrowed, rms_of_band
 
 if TYPE_CHECKING:
@@ -328,7 +329,7 @@ def _name_values(axis: Any, data: xr.Dataset, along: str) -> None:
 
 def _axis_label(dataset: xr.Dataset, along: str) -> str:
     unit, name = _unit(dataset, along), _key(dataset, along)
-    return f"{name} [{unit}]" if unit not in ("", "1") else name
+    return f"{name} [{shown_product(unit)}]" if unit not in ("", "1") else name
 
 
 def _unit(dataset: xr.Dataset, along: str) -> str:

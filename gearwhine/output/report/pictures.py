@@ -18,7 +18,8 @@ from gearwhine.output.sections import Picture, Section, arrowed
 _LARGEST_PICTURE_FILE = 8 << 20  # size of a file up to which it is taken as a picture [bytes]
 _LARGEST_UNPACKED_FILE = 512  # size of a file up to which it is not packed [bytes]
 _TALL = 1.2  # height over width of a picture that fills a printed page
-_COLOURS, _QUALITY = 256, 85  # colours of a palette, and quality of WebP
+_COLOURS, _QUALITY, _EFFORT = 256, 85, 2  # colours of a palette; quality and effort of WebP
+_EACH, _SHADED = 4, 3500  # distance of sampled pixels, and number of colours among them above which a picture is shaded
 _KEPT_PICTURES = 128  # number of packed pictures that are kept for the next one like them
 _SMALL, _WIDE = 720, 1400  # largest width of a small picture, and of any [pixels]
 
@@ -98,7 +99,7 @@ def figure(picture: Shown, identifier: str) -> str:
 
 @lru_cache(maxsize=_KEPT_PICTURES)
 def _packed(content: bytes, widest: int) -> tuple[str, bytes, tuple[int, int]] | None:
-    """Return media type, content and size of a picture in the form that takes fewest bytes; None if it is none.
+    """Return media type, content and size of a picture, packed as it is shaded or not; None if it is none.
 
     Commands of one folder draw some pictures alike, which are packed once.
     """
@@ -113,13 +114,14 @@ def _packed(content: bytes, widest: int) -> tuple[str, bytes, tuple[int, int]] |
         return "image/png", content, size
     if size[0] > widest:
         flat = flat.resize((widest, max(round(size[1] * widest / size[0]), 1)), Image.Resampling.LANCZOS)
-    buffer, shaded = BytesIO(), BytesIO()
-    # Without dithering, which spoils the compression of flat areas.
-    flat.quantize(_COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)
-    flat.save(shaded, "WEBP", quality=_QUALITY)
-    forms = [
-        ("image/png", content, size),
-        ("image/png", buffer.getvalue(), flat.size),
-        ("image/webp", shaded.getvalue(), flat.size),
-    ]
-    return min(forms, key=lambda form: len(form[1]))
+    buffer = BytesIO()
+    sampled = flat.resize((max(flat.width // _EACH, 1), max(flat.height // _EACH, 1)), Image.Resampling.NEAREST)
+    is_shaded = sampled.getcolors(_SHADED) is None
+    if is_shaded:
+        flat.save(buffer, "WEBP", quality=_QUALITY, method=_EFFORT)
+    else:
+        # Without dithering, which spoils the compression of flat areas.
+        flat.quantize(_COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(buffer, "PNG")
+    if buffer.tell() >= len(content):
+        return "image/png", content, size
+    return "image/webp" if is_shaded else "image/png", buffer.getvalue(), flat.size

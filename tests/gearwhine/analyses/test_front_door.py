@@ -342,7 +342,7 @@ def test_a_changed_study_solves_its_housing_again_only_where_it_has_to(study: gw
 def test_machines_and_operating_points_print_in_a_line() -> None:
     machine = gw.load("spur-pair").machine
     text = repr(machine)
-    assert text == "<Machine: 2 shafts, 4 bearings, 2 gears, 1 gear pair, without housing; 5500 rpm, 71.77 N m>"
+    assert text == "<Machine: 2 shafts, 4 bearings, 2 gears, 1 gear pair, without housing; 5500 rpm, 71.77 N·m>"
     text = repr(machine.operating_point())
     assert text.startswith("<OperatingPoint: input-back 859.12 N, input-front 859.12 N, output-back 859.12 N, ")
     assert text.endswith(" µrad>")

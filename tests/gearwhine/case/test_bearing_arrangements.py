@@ -141,7 +141,7 @@ def test_moments_stand_beside_the_forces() -> None:
     forces, rolling, *_ = sections(result.document)[0].tables
     columns, texts = forces.filled()
     headings = [column.heading.replace("\n", " ") for column in columns]
-    assert headings == ["bearing", "x [N]", "y [N]", "z [N]", "about x [N m]", "about y [N m]", "tilt [µrad]"]
+    assert headings == ["bearing", "x [N]", "y [N]", "z [N]", "about x [N·m]", "about y [N·m]", "tilt [µrad]"]
     for one, row in zip(result.solved.point.bearings, texts, strict=True):
         shown = np.array([float(text) for text in row[1:6]])
         np.testing.assert_allclose(shown, one.force, atol=0.51)

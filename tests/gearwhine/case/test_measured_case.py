@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from case_housings import mesh_of
 
+import gearwhine as gw
 from gearwhine.case import CaseError, case_document, dump_case, load_case, parse_case
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
 from gearwhine.housing.measured.survey_planning import survey_grid
@@ -165,3 +166,24 @@ def test_the_survey_is_laid_on_the_housing(tmp_path: Path, rig_mesh: Mesh) -> No
     np.testing.assert_allclose(survey.shapes(field), grid.normal_motion(field), atol=1e-9)
     with pytest.raises(CaseError, match=r"measured\.file.*can be aligned"), refused_by_key():
         modal_test_of(case_with(tmp_path, file="s.csv").measured).mapped(rig_mesh, geometry)
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "said"),
+    [
+        (["0.658 Hz", "1.049 Hz", "2.722 Hz"], "the highest is 2.722 Hz: is it kHz?"),
+        (["0.658 Hz", "1.049 Hz", "2722 Hz"], "2722 Hz follows 1.049 Hz"),
+        (["658 Hz", "1049 Hz", "2722 Hz"], ""),
+        (["200 Hz", "1049 Hz", "2722 Hz"], ""),
+    ],
+)
+def test_measured_frequencies_of_another_unit_are_doubted(frequencies: list[str], said: str) -> None:
+    case = gw.load("nasa-gear-noise-rig", {"measured": {"frequencies": frequencies}})
+    doubts = [text for text in case.warnings if "measured.frequencies" in text]
+    assert [said in text for text in doubts] == [True] * bool(said)
+
+
+def test_measured_radians_in_place_of_hertz_are_named_where_the_range_falls_short() -> None:
+    radians = [f"{2.0 * np.pi * frequency} Hz" for frequency in (658.0, 1049.0, 2722.0)]
+    with pytest.raises(CaseError, match="in Hz, if these are in rad/s"):
+        gw.load("nasa-gear-noise-rig", {"measured": {"frequencies": radians}}).check()

@@ -292,8 +292,8 @@ BAD = {
         "a length",
     ),
     "no aim": ('"bearing.right.force_n" = { sense = "least" }', "", "the name of one quantity or more"),
-    "unknown aim": ('"bearing.right.force_n"', '"bearing.rihgt.force_n"', "did you mean 'bearing.right.force_n'"),
-    "unknown limit": ('"bearing.left.force_n"', '"bearing.*.weight_kg"', "there are: bearing.left.force_n"),
+    "unknown aim": ('"bearing.right.force_n"', '"bearing.rihgt.force_n"', "did you mean 'right'"),
+    "unknown limit": ('"bearing.left.force_n"', '"bearing.*.weight_kg"', "a quantity of bearing.* (force_n)"),
     "sense": ('sense = "least"', 'sense = "lowest"', "one of 'least' or 'most'"),
     "two kinds": ('["100 N", "900 N"]', '["100 N", "900 N"], values = [1.0]', "either 'range' or 'values'"),
     "lists apart": (
@@ -394,6 +394,7 @@ def test_quantities_of_your_own_are_taken_and_wrong_ones_refused() -> None:
         ({"limits": {"stiffness": 0.2}}, "a least and a largest value"),
         ({"aims": {"area_m2": "least", "stiffness": Aim(sense="most", weight=1.0)}}, "expected one on all"),
         ({"analyses": ["noise"]}, "expected some of gears"),
+        ({"evaluations": 0}, "expected a whole number of 1 or more"),
     ):
         given = {"laws": ranges, "aims": {"area_m2": "least"}, **problem}
         with pytest.raises(gw.CouplingError, match=message):

@@ -195,8 +195,24 @@ def test_rows_of_a_table_too_wide_for_the_terminal_become_columns() -> None:
     many = Table(tuple(Column(f"displacement {number}", "name") for number in range(12)), rows)
     lines = _said(lambda _: (Section("", (many,)),), {}).splitlines()
     assert (lines[0].split().count("displacement"), lines[3].split()) == (12, 12 * ["pinion"])
-    wide, narrow = drawn(200), drawn(80)
+    wide, wrapped, narrow = drawn(200), drawn(80), drawn(60)
     assert sum("quantity 0 [mm]" in line and "quantity 7 [mm]" in line for line in wide) == 1
-    assert not any("…" in line or len(line.rstrip()) > 80 for line in narrow)
+    assert [line.split() for line in wrapped if "pinion" in line] == [["pinion", *(f"{one}.125" for one in range(8))]]
+    assert wrapped[0].split() == 8 * ["quantity"]
+    assert not any("…" in line or len(line.rstrip()) > width for width in (60, 80) for line in drawn(width))
     assert narrow[0].split() == ["gear", "pinion", "wheel"]
     assert [line.split() for line in narrow if "quantity 7" in line] == [["quantity", "7", "[mm]", "7.125", "7.125"]]
+
+
+@pytest.mark.parametrize("width", range(24, 120, 5))
+def test_a_figure_stands_beside_its_unit_at_every_width(width: int) -> None:
+    parts = "housing mode 5: 136 %, local compliance: -22 %, 12.5 m/s² at 0.5 mm, 3 N·m by 4 gears"
+    columns = (Column("line", "name"), Column("mostly by", "parts"), Column("level [dB]", "level", "d"))
+    rows = ({"name": "1× pinion → wheel", "parts": parts, "level": 136},)
+    console = Console(file=io.StringIO(), force_terminal=True, width=width, color_system=None, markup=False)
+    show_section(console, Section("", (parts, Table(columns, rows))))
+    assert isinstance(console.file, io.StringIO)
+    lines = console.file.getvalue().splitlines()
+    assert max(map(len, map(str.rstrip, lines))) <= width
+    for words in ("136 %", "-22 %", "12.5 m/s²", "0.5 mm", "3 N·m"):
+        assert sum(line.count(words) for line in lines) == 2, words

@@ -65,7 +65,7 @@ def test_a_point_of_a_sweep_shows_the_largest_force_of_its_teeth() -> None:
     columns, rows = section.tables[0].filled()
     cells = dict(zip((column.heading for column in columns), rows[0], strict=True))
     assert cells == {
-        "torque [N m]": "20",
+        "torque [N·m]": "20",
         "top\nrms [m/s²]": "1.5",
         "a → b\nlargest [N]": "150",
         "apart": "25 %",

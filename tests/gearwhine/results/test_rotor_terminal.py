@@ -266,7 +266,7 @@ def test_torsional_response_shows_its_largest() -> None:
     text = said(torsional_response=response)
     assert re.search(r"fan, 100 mm\s+2 at 44 Hz\s+120 at 45 Hz", text)
     assert re.search(r"end, 100 mm\s+2 at 44 Hz\s+0\s", text)
-    assert "carries most at 200 mm: 150 N m at 45 Hz" in text
+    assert "carries most at 200 mm: 150 N·m at 45 Hz" in text
 
 
 def test_the_proof_is_told() -> None:

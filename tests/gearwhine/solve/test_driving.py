@@ -186,7 +186,7 @@ def test_free_speed_approaches_its_end_exponentially() -> None:
 
 
 def test_machines_that_do_not_run_say_so() -> None:
-    with pytest.raises(TransientError, match=r"cannot start: at rest its motor gives 5 N m against a load of 8 N m"):
+    with pytest.raises(TransientError, match=r"cannot start: at rest its motor gives 5 N·m against a load of 8 N·m"):
         free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=0.0, duration=1.0, nominal=100.0)
     # ω' = -(3 + 5 ω/100)/0.1 from 50 rad/s: at rest after (100/5) 0.1 ln(1 + 5·50/(3·100)).
     when = 2.0 * math.log(1.0 + 2.5 / 3.0)

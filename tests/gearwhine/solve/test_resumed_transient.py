@@ -5,7 +5,7 @@ import os
 import random
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 from coupled_cases import coupled
 
+import gearwhine as gw
 from gearwhine.case import load_case
-from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
+from gearwhine.coupling.analyses.transient import SolvedTransient, integrate_blocks, solve_transient
 from gearwhine.output.checkpoints import BlockFiles, stored_record
 from gearwhine.output.files import held_lock
 from gearwhine.solve.machine import plan_of
@@ -118,6 +119,38 @@ def test_blocks_come_back_until_the_work_is_done(tmp_path: Path) -> None:
         assert [float(blocks[n]["columns"][0, 0]) for n in range(3)] == [0.0, 1.0, 2.0]
         assert blocks[2]["time"].shape == ()
     assert not list(out.iterdir())
+
+
+def test_a_motion_stays_for_pictures_unless_it_is_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with stored_record(tmp_path, "a", stays=True) as blocks:
+        blocks.append(some(4))
+    with stored_record(tmp_path, "a") as blocks:
+        assert float(blocks[0]["columns"][0, 0]) == 4.0
+    assert not list(tmp_path.iterdir())
+
+    monkeypatch.setattr("gearwhine.output.checkpoints._MOST_KEPT", 10.0)
+    with stored_record(tmp_path, "a", stays=True) as blocks:
+        blocks.append(some(4))
+    assert not list(tmp_path.iterdir())
+
+
+def test_pictures_are_drawn_of_the_motion_that_a_run_without_them_solved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = gw.load("spur-pair", {"transient.revolutions": 4, "transient.discard": 1})
+    first = study.run_into(tmp_path, pictures=False).document
+    left = []
+
+    def rest(*arguments: Any, **options: Any) -> Iterator[Any]:
+        left.extend(integrate_blocks(*arguments, **options))
+        return iter(left)
+
+    monkeypatch.setattr("gearwhine.coupling.analyses.transient.integrate_blocks", rest)
+    drawn = study.run_into(tmp_path).document
+    assert not left
+    assert all(drawn[part] == first[part] for part in ("steps", "energy_j", "gear_pairs", "bearings"))
+    assert any(tmp_path.glob("*.png"))
+    assert not any(tmp_path.glob(".resume-*"))
 
 
 def test_another_march_and_a_fresh_one_begin_anew(tmp_path: Path) -> None:

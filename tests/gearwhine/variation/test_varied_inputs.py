@@ -1,6 +1,7 @@
 """Varied keys: what a distribution in a case changes, and what is refused."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,14 @@ import pytest
 from scipy import stats
 
 import gearwhine as gw
-from gearwhine.analyses.variation_result import sensor_problems
+from gearwhine.analyses.variation_result import name_problems, parts_of, wanted_of
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
+from gearwhine.case.variation import Variation
+from gearwhine.results.check import summary
 from gearwhine.variation.inputs import Input, varied_inputs
+from gearwhine.variation.quantities import Wanted, possible_quantities
+from gearwhine.variation.samples import VariedCase
 
 HELIX = "errors.helix.slope"
 
@@ -198,16 +203,31 @@ def test_tables_that_hold_no_distribution_are_refused(tmp_path: Path, content: s
         _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv" } }')
 
 
-def test_names_of_sensors_are_refused_before_the_housing_is_solved(
+def test_names_of_quantities_are_refused_before_the_housing_is_solved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     meant = "did you mean 'top'?"
-    wrong = {"sensor.tpo.level_db": meant, "mean of sensor.tpo.level_db": meant, "sensor.top.level": "level_db"}
-    right = ["sensor.top.level_db", "quantile 0.95 of sensor.top.level_db", "sensor.*.level_db", "machine.mass_kg"]
+    wrong = {
+        "sensor.tpo.level_db": meant,
+        "mean of sensor.tpo.level_db": meant,
+        "sensor.top.level": "level_db",
+        "sensor.top.motion_level_db": "'motion' among the analyses",
+        "bearing.input-bak.force_n": "did you mean 'input-back'?",
+        "bearing.input-back.life_h": "a life is that of a rolling bearing",
+        "gear_pair.pinion-whel.k_h_beta": "a gear pair of this case (pinion-wheel)",
+        "gear_pair.*.contact_pressure_mpa": "did you mean 'contact_pressure_pa'?",
+        "machine.mas_kg": "'mass_kg'",
+        "boring.x": "a quantity of this case",
+    }
+    right = ["sensor.top.level_db", "quantile 0.95 of sensor.top.level_db", "sensor.*.level_db", "bearing.*.force_n"]
     case = load_case("small-gearbox").case
-    problems = list(sensor_problems(case.housing, {("variation", "limit"): [*right, *wrong]}))
+    wanted = wanted_of(case, Variation())
+    problems = list(name_problems(case, wanted, ("variation", "limit"), [*right, *wrong]))
     assert [one.key for one in problems] == [f"variation.limit.'{name}'" for name in wrong]
     assert all(said in one.expected for one, said in zip(problems, wrong.values(), strict=True))
+    few = replace(wanted, names=("gear_pair.*",))
+    (left_out,) = name_problems(case, few, ("variation", "limit"), ["bearing.input-back.force_n"])
+    assert "among the quantities" in left_out.expected
 
     for module in ("variation_result", "optimisation_result"):
         monkeypatch.setattr(f"gearwhine.analyses.{module}.in_solved_housing", lambda *_: pytest.fail("solved"))
@@ -224,3 +244,34 @@ def test_names_of_sensors_are_refused_before_the_housing_is_solved(
         study.vary(2, folder=tmp_path)
     with pytest.raises(CaseError, match=r"optimisation\.limit.*did you mean 'top'"):
         study.optimise(2, folder=tmp_path)
+
+
+def test_every_quantity_of_a_gearbox_may_be_named_in_a_limit() -> None:
+    source = load_case("helical-pair")
+    wanted = Wanted(("gears", "load", "rotors", "mass"))
+    found = VariedCase(source, (), wanted).evaluation(source.case).numbers
+    named = dict(possible_quantities(parts_of(source.case)))
+    possible = {name for name, analysis in named.items() if analysis in wanted.analyses}
+    # All mesh periods are alike, and one shaft has two critical speeds in the range that is searched.
+    lacking = {"gear_pair.pinion-wheel.transmission_error_over_hunting_period_m", "rotor.output.critical_speed_3_rpm"}
+    assert set(found) == possible - lacking
+
+
+def test_check_refuses_studies_that_would_fail_later_and_names_their_keys() -> None:
+    varied = {"operation.torque": {"uniform": ["100 N*m", "150 N*m"]}}
+    limit = {"gear_pair.*.k_h_beta": {"at_most": 1.5}}
+    study = gw.load("helical-pair", {"variation": {"samples": 8, "vary": varied, "limit": limit}})
+    document = study.check().document
+    assert document["variation"] == {"samples": 8, "limits": [*limit], "keys": [*varied]}
+    shown = [text for section in summary(document) for text in (section.note, *section.content)]
+    assert any("8 gearboxes" in str(text) for text in shown)
+    for change, said in (
+        ({"variation.vary": {}}, "a distribution of one key or more"),
+        ({"variation.vary": {"operation.torqe": varied["operation.torque"]}}, "did you mean 'torque'"),
+        ({"variation.vary": {"gear.pinion.teeth": {"uniform": [22, 24]}}}, "a whole number"),
+        ({"variation.vary": {"rotor.input.mass": {"values": ["lumped", "distibuted"]}}}, "one of"),
+        ({"variation.limit": {"bearing.left.force_n": {"at_most": 1.0}}}, "a bearing of this case"),
+        ({"optimisation": {"design": {"operation.torque": {"values": [1, 2]}}}}, "the name of one quantity or more"),
+    ):
+        with pytest.raises(CaseError, match=said):
+            gw.load("helical-pair", {"variation": {"vary": varied, "limit": limit}} | change).check()

@@ -280,7 +280,7 @@ def test_workers_that_are_asked_for_are_taken_however_short_the_study_is(
 
 def test_limits_of_unknown_quantities_and_analyses_without_their_tables_are_refused(tmp_path: Path) -> None:
     wrong = SHAFT.replace(LEFT, "bearing.lift.force_n")
-    with pytest.raises(CaseError, match=r"did you mean 'bearing\.left\.force_n'"):
+    with pytest.raises(CaseError, match=r"a bearing of this case \(left, right\); did you mean 'left'"):
         gw.load(_shaft(tmp_path, wrong)).vary(4, folder=tmp_path / "out", workers=1)
     with pytest.raises(CaseError, match="at least one pair of gears"):
         gw.load(_shaft(tmp_path, SHAFT.replace("samples = 256", 'analyses = ["gears"]'))).vary(folder=tmp_path / "o")
@@ -326,8 +326,11 @@ def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
     assert found.document["yield"]["share"] == 1.0
     with pytest.raises(gw.CouplingError, match="expected some of gears, load"):
         gw.vary(made, laws, 4, analyses=["noise"])
-    with pytest.raises(gw.CouplingError, match="one value or more"):
-        gw.vary(made, {}, 4)
+    for given in ({"laws": {}}, {"samples": 0}, {"samples": "16"}):
+        with pytest.raises(gw.CouplingError, match="one value or more, and one sample or more"):
+            gw.vary(made, **{"laws": laws, "samples": 4, **given})
+    with pytest.raises(gw.CouplingError, match="no quantity of gears"):
+        gw.vary(made, laws, 4, analyses=["gears"])
     with pytest.raises(gw.CouplingError, match="a least and a largest value"):
         gw.vary(made, laws, 4, limits={name: (2.0, 1.0)})
 

@@ -627,7 +627,7 @@ CELLS = {
             "mean_moment_n_m": [7.0, 8.0],
         },
         "bearing: left; mean force x, y, z [N]: 1.0, -2.0, 3.0; "
-        "a.c. force x, y, z [N rms]: 4.00, 5.00, 6.00; mean moment x, y [N m]: 7.00, 8.00",
+        "a.c. force x, y, z [N rms]: 4.00, 5.00, 6.00; mean moment x, y [N·m]: 7.00, 8.00",
     ),
     "PARAMETERS": (
         {"name": "wall", "before": 0.012, "after": 0.013, "standard_deviation": 0.0016},
