@@ -67,10 +67,9 @@ default: a shorter one is solved within seconds."""
 _PHASES = 8192  # least number of phases at which the neglected force is evaluated
 _PHASES_OF_A_MESH = 16  # of these in each mesh cycle of a hunting period
 _MOST_PHASES = 2**18
-_MOST_SAMPLES = 2**19  # of the neglected force over a common period
 _MOST_CYCLES = 2**14  # longest common period over which the neglected force is solved, in cycles of the fastest mesh
 _MANY_CYCLES = 2**9  # record of the neglected force where there is none
-_SAMPLES = 512  # of the neglected force in such a cycle
+_SAMPLES, _SAMPLES_OF_LINES = 64, 512  # of the neglected force in such a cycle, and where its lines are to settle
 _HARMONICS = 32  # of the fastest mesh up to which the motion by the neglected force counts
 _REPETITIONS, _SETTLED = 10, 0.02  # of that motion's own part in the force, and the change that is small enough
 _SPACING = 0.6180339887498949  # sample spacing over the slowest period: its multiples cover all phases evenly
@@ -205,8 +204,8 @@ class SuperposedResponse:
         """Spectrum of the neglected force of each contact, shape (c, m) [N], and whether its lines have settled.
 
         Over a common period the force is that of the sum with the motion that the force itself adds, the machine linear
-        about its mean meshes: a fixed point, found by repetition as long as its changes fall. Without one, or where
-        that is too long, the record has many cycles, and the force is that of the sum alone.
+        about its mean meshes: a fixed point, found by repetition as long as its changes fall. Where that is too long
+        the force is that of the sum alone, without one or where it is longer still over a record of many cycles.
 
         Parameters
         ----------
@@ -214,17 +213,19 @@ class SuperposedResponse:
             Compressions of the contacts by unit forces along them at frequencies [rad/s], shape (c, c, m) [m/N].
         """
         cycles = self._common_cycles or _MANY_CYCLES
-        count, period = cycles * min(_SAMPLES, _MOST_SAMPLES // cycles), cycles / self._fastest
+        repeats = self._common_cycles is not None and cycles * _SAMPLES_OF_LINES <= _MOST_PHASES
+        count = cycles * (_SAMPLES_OF_LINES if repeats else min(_SAMPLES, _MOST_PHASES // cycles))
+        period = cycles / self._fastest
         times = period * (np.arange(count) + 0.5) / count
         compression, rate, assumed = self._sum_at(times)
         stiffness = np.array([mean.stiffness for mean in self.means])
         damping = np.array([one.contact.damping if one.loaded else 0.0 for one in self.system.contacts])
         w = 2.0 * np.pi / period * np.arange(min(_HARMONICS * cycles, count // 2 - 1) + 1, dtype=np.float64)
-        answers = receptance(w)
+        answers = receptance(w if repeats else w[:1])
         further: FloatArray = np.zeros_like(compression)
         further_rate, found, left = further, None, np.inf
         before = np.zeros((len(stiffness), count // 2), dtype=np.complex128)
-        for _ in range(_REPETITIONS if self._common_cycles else 1):
+        for _ in range(_REPETITIONS):
             force = self._law_force(times, compression + further, rate + further_rate) - assumed
             force = force - further * stiffness - further_rate * damping
             spectrum = amplitude_spectrum(force.T, period / count)
@@ -233,7 +234,7 @@ class SuperposedResponse:
             if not changed < left:
                 break
             found, before, left = spectrum, lines, changed
-            if left <= _SETTLED:
+            if left <= _SETTLED or not repeats:
                 break
             moved = -0.5 * count * np.einsum("cdm,dm->mc", answers, spectrum.lines[:, : len(w)])
             further = np.asarray(np.fft.irfft(moved, count, axis=0), dtype=np.float64)
