@@ -200,9 +200,12 @@ class SolvedSteady:
         Loudest point of each sensor on the branch.
     assumed_damping : tuple of str
         Gear pairs whose mesh damping the case leaves to the default.
-    neglected_acceleration : dict of str to float
-        Rms acceleration of each sensor up to the trusted limit by the forces that the sum of motions leaves out, of the
+    neglected_acceleration : dict of str to Spectrum
+        Acceleration of each sensor up to the trusted limit by the forces that the sum of motions leaves out, of the
         machine with the mean mesh stiffness [m/s²]: an estimate of its error.
+    neglected_settles : bool
+        Whether these forces are those of the sum with the motion that they add, over a common period: their lines are
+        then those that the sum lacks.
     """
 
     machine: CoupledMachine
@@ -212,7 +215,8 @@ class SolvedSteady:
     superposed: SuperposedResponse | None = None
     loudest: tuple[LoudestPoint, ...] = ()
     assumed_damping: tuple[str, ...] = ()
-    neglected_acceleration: dict[str, float] = field(default_factory=dict)
+    neglected_acceleration: dict[str, Spectrum] = field(default_factory=dict)
+    neglected_settles: bool = False
 
     @property
     def contact_loss(self) -> FloatArray:
@@ -308,8 +312,8 @@ class SolvedSteady:
             warnings.append(
                 warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss)
             )
-        for name, rms in self.neglected_acceleration.items():
-            part = rms / max(self.rms_of_sum(name), np.finfo(np.float64).tiny)
+        for name, neglected in self.neglected_acceleration.items():
+            part = float(neglected.rms(np.inf)) / max(self.rms_of_sum(name), np.finfo(np.float64).tiny)
             if part > _DOUBTFUL_SENSOR_SHARE:
                 message = (
                     f"superposed motions are doubtful at sensor {name}: what the sum leaves out makes some "
@@ -478,29 +482,46 @@ def _superposed(
         for one in superposed.motions
         for of_group in [loads if loads.base is None else replace(loads, base=one.group.part_of(loads.base))]
     )
-    neglected = _neglected_acceleration(machine, superposed, motions[0].trusted_limit)
-    return SolvedSteady(machine, motions, superposed=superposed, neglected_acceleration=neglected)
+    neglected, settled = _neglected_acceleration(machine, superposed, motions[0].trusted_limit)
+    return SolvedSteady(
+        machine, motions, superposed=superposed, neglected_acceleration=neglected, neglected_settles=settled
+    )
 
 
-def _neglected_acceleration(machine: CoupledMachine, superposed: SuperposedResponse, limit: float) -> dict[str, float]:
-    """Rms acceleration of each sensor up to a limit [Hz] by the neglected forces, at the mean mesh stiffness [m/s²]."""
+def _neglected_acceleration(
+    machine: CoupledMachine, superposed: SuperposedResponse, limit: float
+) -> tuple[dict[str, Spectrum], bool]:
+    """Acceleration of each sensor up to a limit [Hz] by the neglected forces [m/s²], and whether these settle."""
     rows = transient_outputs(machine).acceleration
     if not len(rows) or not any(contact.mesh_frequency for contact in machine.system.contacts):
-        return {}
-    spectrum, system = superposed.neglected_spectrum, machine.system
+        return {}, False
+    system = machine.system
     state = ContactState(
         np.array([mean.stiffness for mean in superposed.means]),
         np.array([contact.contact.damping if contact.loaded else 0.0 for contact in system.contacts]),
     )
-    damped = DampedMachine(*linear_matrices(system, state))
+    damped, directions = DampedMachine(*linear_matrices(system, state)), system.contact_directions
+    loaded = [number for number, contact in enumerate(system.contacts) if contact.loaded]
+
+    def receptance(w: FloatArray) -> npt.NDArray[np.complex128]:
+        found = np.zeros((directions.shape[1], directions.shape[1], w.size), dtype=np.complex128)
+        for number in loaded:
+            found[:, number] = damped.answers(directions.T, directions[:, number], w)
+        return found
+
+    spectrum, settled = superposed.neglected_spectrum(receptance)
     inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
     w = 2.0 * np.pi * spectrum.frequencies[inside]
     moved = np.zeros((len(rows), w.size), dtype=np.complex128)
-    for number, contact in enumerate(system.contacts):
-        if contact.loaded:
-            moved += damped.answers(rows, system.contact_directions[:, number], w) * spectrum.lines[number, inside]
-    rms = np.linalg.norm(w**2 * moved, axis=1) / np.sqrt(2.0)
-    return dict(zip(machine.sensor_rows, rms.tolist(), strict=True))
+    for number in loaded:
+        moved += damped.answers(rows, directions[:, number], w) * spectrum.lines[number, inside]
+    # The force of a mesh acts against its line of action.
+    lines = w**2 * moved
+    spectra = (
+        Spectrum(spectrum.frequencies[inside], np.abs(of_sensor), np.angle(of_sensor), spectrum.window)
+        for of_sensor in lines
+    )
+    return dict(zip(machine.sensor_rows, spectra, strict=True)), settled
 
 
 def _motion(

@@ -33,7 +33,7 @@ of the second order: lines at k1/z1 + k2/z2 of the mesh frequency, by teeth of b
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -54,6 +54,7 @@ from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_meshes
 from gearwhine.coupling.time.step_matrices import contact_arrays
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 LONGEST_COMMON_PERIOD = 40
 """Number of cycles of the fastest mesh in a common period beyond which excitations are superposed by default: the cost
@@ -68,7 +69,9 @@ _PHASES_OF_A_MESH = 16  # of these in each mesh cycle of a hunting period
 _MOST_PHASES = 2**18
 _MOST_CYCLES = 2**14  # longest common period over which the neglected force is solved, in cycles of the fastest mesh
 _MANY_CYCLES = 2**9  # record of the neglected force where there is none
-_SAMPLES = 64  # of the neglected force in such a cycle
+_SAMPLES, _SAMPLES_OF_LINES = 64, 512  # of the neglected force in such a cycle, and where its lines are to settle
+_HARMONICS = 32  # of the fastest mesh up to which the motion by the neglected force counts
+_REPETITIONS, _SETTLED = 10, 0.02  # of that motion's own part in the force, and the change that is small enough
 _SPACING = 0.6180339887498949  # sample spacing over the slowest period: its multiples cover all phases evenly
 _SAME_FREQUENCY = 1e-9
 
@@ -149,15 +152,16 @@ class SuperposedResponse:
         slowest = max(motion.response.period for motion in self.motions)
         count = min(max(_PHASES, _PHASES_OF_A_MESH * hunting_period(self.system)), _MOST_PHASES)
         times = slowest * _SPACING * np.arange(count, dtype=np.float64)
-        parts = [self._forces(piece) for piece in np.array_split(times, -(-count // _PHASES))]
-        compression, force, assumed = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return compression, force, assumed
+        compression, rate, assumed = self._sum_at(times)
+        return compression, self._law_force(times, compression, rate), assumed
 
-    def _forces(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Compression, force by the law and assumed force at times [s], shape (t, c) each."""
-        from gearwhine.coupling.collocation.arrays import element_work
-        from gearwhine.coupling.collocation.integration_kernels import forces_at
+    def _sum_at(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Compression, its rate and the assumed force of the sum at times [s], shape (t, c) each."""
+        parts = [self._piece_of_sum(piece) for piece in np.array_split(times, -(-len(times) // _PHASES))]
+        compression, rate, assumed = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return compression, rate, assumed
 
+    def _piece_of_sum(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         at_rest = self.system.contact_directions.T @ self.rest
         contacts = self.system.contacts
         compression = np.tile(at_rest - [contact.clearance for contact in contacts], (len(times), 1))
@@ -171,30 +175,72 @@ class SuperposedResponse:
             compression = compression + weight * (delta - (at_rest - clearance))
             rate = rate + weight * speed
             assumed += weight * (force - mean_force)
-        work = element_work(1, 1, len(contacts))
-        law_force = np.zeros((len(times), len(contacts)))
-        forces_at(contact_arrays(self.system), times, compression, rate, work, law_force)
-        return compression, law_force, assumed
+        return compression, rate, assumed
+
+    def _law_force(self, times: FloatArray, compression: FloatArray, rate: FloatArray) -> FloatArray:
+        """Force of the contacts by their law [N], shape (t, c)."""
+        from gearwhine.coupling.collocation.arrays import element_work
+        from gearwhine.coupling.collocation.integration_kernels import forces_at
+
+        force = np.zeros_like(compression)
+        forces_at(contact_arrays(self.system), times, compression, rate, element_work(1, 1, force.shape[1]), force)
+        return force
 
     @cached_property
-    def neglected_spectrum(self) -> Spectrum:
-        """Spectrum of the neglected force of each contact, shape (c, m) [N].
-
-        Its lines are of the common period, or of many cycles where this is too long or there is none.
-        """
-        fastest = max(abs(contact.mesh_frequency) for contact in self.system.contacts)
+    def _common_cycles(self) -> int | None:
+        """Cycles of the fastest mesh in the common period; None where that is too long or there is none."""
         try:
-            cycles = round(fastest * common_period(self.system))
+            cycles = round(self._fastest * common_period(self.system))
         except CouplingError:
-            cycles = 0
-        if not 0 < cycles <= _MOST_CYCLES:
-            cycles = _MANY_CYCLES
-        count = cycles * min(_SAMPLES, _MOST_PHASES // cycles)
-        times = cycles / fastest * (np.arange(count) + 0.5) / count
-        parts = [self._forces(piece) for piece in np.array_split(times, -(-count // _PHASES))]
-        neglected = np.concatenate([force - assumed for _, force, assumed in parts]).T
-        spectrum = amplitude_spectrum(neglected, cycles / fastest / count)
-        return replace(spectrum, phase=spectrum.phase - 2.0 * np.pi * spectrum.frequencies * times[0])
+            return None
+        return cycles if 0 < cycles <= _MOST_CYCLES else None
+
+    @property
+    def _fastest(self) -> float:
+        """Highest mesh frequency [Hz]."""
+        return max(abs(contact.mesh_frequency) for contact in self.system.contacts)
+
+    def neglected_spectrum(self, receptance: Callable[[FloatArray], ComplexArray]) -> tuple[Spectrum, bool]:
+        """Spectrum of the neglected force of each contact, shape (c, m) [N], and whether its lines have settled.
+
+        Over a common period the force is that of the sum with the motion that the force itself adds, the machine linear
+        about its mean meshes: a fixed point, found by repetition as long as its changes fall. Where that is too long
+        the force is that of the sum alone, without one or where it is longer still over a record of many cycles.
+
+        Parameters
+        ----------
+        receptance : callable
+            Compressions of the contacts by unit forces along them at frequencies [rad/s], shape (c, c, m) [m/N].
+        """
+        cycles = self._common_cycles or _MANY_CYCLES
+        repeats = self._common_cycles is not None and cycles * _SAMPLES_OF_LINES <= _MOST_PHASES
+        count = cycles * (_SAMPLES_OF_LINES if repeats else min(_SAMPLES, _MOST_PHASES // cycles))
+        period = cycles / self._fastest
+        times = period * (np.arange(count) + 0.5) / count
+        compression, rate, assumed = self._sum_at(times)
+        stiffness = np.array([mean.stiffness for mean in self.means])
+        damping = np.array([one.contact.damping if one.loaded else 0.0 for one in self.system.contacts])
+        w = 2.0 * np.pi / period * np.arange(min(_HARMONICS * cycles, count // 2 - 1) + 1, dtype=np.float64)
+        answers = receptance(w if repeats else w[:1])
+        further: FloatArray = np.zeros_like(compression)
+        further_rate, found, left = further, None, np.inf
+        before = np.zeros((len(stiffness), count // 2), dtype=np.complex128)
+        for _ in range(_REPETITIONS):
+            force = self._law_force(times, compression + further, rate + further_rate) - assumed
+            force = force - further * stiffness - further_rate * damping
+            spectrum = amplitude_spectrum(force.T, period / count)
+            lines = spectrum.lines[:, 1:]
+            changed = float(np.linalg.norm(lines - before) / max(np.linalg.norm(lines), np.finfo(np.float64).tiny))
+            if not changed < left:
+                break
+            found, before, left = spectrum, lines, changed
+            if left <= _SETTLED or not repeats:
+                break
+            moved = -0.5 * count * np.einsum("cdm,dm->mc", answers, spectrum.lines[:, : len(w)])
+            further = np.asarray(np.fft.irfft(moved, count, axis=0), dtype=np.float64)
+            further_rate = np.asarray(np.fft.irfft(1j * w[:, None] * moved, count, axis=0), dtype=np.float64)
+        assert found is not None
+        return replace(found, phase=found.phase - 2.0 * np.pi * found.frequencies * times[0]), left <= _SETTLED
 
     @property
     def mean_force(self) -> FloatArray:

@@ -137,9 +137,26 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
                 motions[0].trusted_limit,
             ),
         }
-        | ({"neglected_rms_m_per_s2": solved.neglected_acceleration[name]} if motion is None else {})
+        | (_neglected(solved, name) if motion is None and name in solved.neglected_acceleration else {})
         for name in motions[0].histories.sensor_acceleration
     ]
+
+
+def _neglected(solved: "SolvedSteady", sensor: str) -> dict[str, Any]:
+    """Acceleration of a sensor by what the sum of motions leaves out: rms, and highest lines over a common period."""
+    from gearwhine.coupling.analyses.steady_state import highest_lines
+
+    spectrum = solved.neglected_acceleration[sensor]
+    told: dict[str, Any] = {"neglected_rms_m_per_s2": float(spectrum.rms(np.inf))}
+    if solved.neglected_settles:
+        highest = highest_lines(spectrum)
+        tolerance = _EXACT_LINE_DISTANCE * float(spectrum.frequencies[0])
+        names = line_names(solved.machine, [line[0] for line in highest], tolerance)
+        told["neglected_lines"] = [
+            {"frequency_hz": frequency, "amplitude_m_per_s2": amplitude, "name": name.name, "order": name.order}
+            for (frequency, amplitude, _), name in zip(highest, names, strict=True)
+        ]
+    return told
 
 
 def _lines(
@@ -535,7 +552,12 @@ def _motion(motion: Document, name: str, columns: tuple[Column, ...]) -> Iterato
                 f"{percent(pair['neglected_part'])} of its varying force"
             )
         for sensor in motion["sensors"]:
-            yield f"  by that at {sensor['name']}, estimated: {sensor['neglected_rms_m_per_s2']:.3g} m/s² rms"
+            highest = [
+                f", highest {line['amplitude_m_per_s2']:.3g} m/s² at {line['frequency_hz']:.1f} Hz ({line['name']})"
+                for line in sensor.get("neglected_lines", ())[:1]
+            ]
+            rms = f"{sensor['neglected_rms_m_per_s2']:.3g} m/s² rms"
+            yield f"  by that at {sensor['name']}, estimated: {rms}{''.join(highest)}"
     else:
         yield _proof(motion, name)
     yield from map(mesh_sentence, motion["gear_pairs"])
