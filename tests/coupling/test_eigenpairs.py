@@ -23,13 +23,19 @@ def test_free_chain_has_one_double_zero() -> None:
     a, b, k = 0.4, 1.7, 350.0
     root = np.sqrt(np.array([a, b]))
     stiffness = k * np.array([[1.0, -1.0], [-1.0, 1.0]]) / np.outer(root, root)
-    modes = coupled_modes(one(stiffness, np.zeros((2, 2))))
+    system = one(stiffness, np.zeros((2, 2)))
+    modes = coupled_modes(system)
     assert modes.kinds == ("rigid", "torsion")
     assert modes.eigenvalues[0] == 0.0
     assert modes.eigenvalues[1] == pytest.approx(1j * np.sqrt(k / a + k / b), rel=1e-14)
     # Both turn by one angle: coordinates in proportion to the roots of the inertias.
     np.testing.assert_allclose(np.abs(modes.shapes[0]), root / np.linalg.norm(root), rtol=1e-13)
     assert (modes.certificate.expected, modes.certificate.found, modes.certificate.zeros) == (4, 4, 2)
+    # Superposed, the free motion answers by -1/w², the other by 1/(ω² - w²).
+    w, free = np.array([3.0, 70.0]), np.outer(root, root) / (a + b)
+    gains = 1.0 / (np.array([0.0, k / a + k / b])[:, None, None, None] - w[:, None, None] ** 2)
+    found = receptance(system, np.eye(2), np.eye(2), w, modes=modes)
+    np.testing.assert_allclose(found, gains[0] * free + gains[1] * (np.eye(2) - free), rtol=1e-12)
 
 
 @pytest.mark.parametrize("soft", [1e-4, 1e-7, 1e-9, 1e-12])

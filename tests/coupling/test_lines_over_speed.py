@@ -18,13 +18,15 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
     machine = small_gearbox().machine
     point = machine.operating_point()
     coupled = load_machine(machine, point).coupled
-    parts = (0.3, 0.62, 1.0, 1.4)
+    # At the lowest speed more orders couple than in the machine there, and than are kept at the others.
+    parts = (0.05, 0.62, 1.0, 1.4)
     found = lines_over_speed(coupled, [part * machine.speed for part in parts], LIMIT)
     assert found.sensors == tuple(coupled.sensor_rows)
     assert len(found.sensors) == 2
     felt = list[float]()
     for place, part in enumerate(parts):
         there = load_machine(replace(machine, speed=part * machine.speed), point).coupled
+        tolerance = 1e-7 if place else 2e-3
         lines = MeshHarmonicModel(there).responses(LIMIT)
         mean = MeshHarmonicModel(there, stiffness_varies=False).responses(LIMIT)
         sensors, housing = np.array(list(there.sensor_rows.values())), there.housing
@@ -37,16 +39,16 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
         moves = there.rows(housing.name, np.eye(housing.size))
         rates = np.array([1j * line.frequency * (moves @ line.motion) for line in lines])
         felt.append(np.max(np.abs(expected / constant - 1.0)))
-        assert np.allclose(amplitudes[:, : len(lines)], expected, rtol=1e-8, atol=1e-10 * expected.max())
+        assert np.allclose(amplitudes[:, : len(lines)], expected, rtol=tolerance, atol=1e-10 * expected.max())
         assert np.allclose(
             found.orders[: len(lines)] * part * abs(machine.speed), [line.frequency for line in lines], rtol=1e-12
         )
-        assert np.allclose(found.rates[place, : len(lines)], rates, rtol=1e-7, atol=1e-9 * np.abs(rates).max())
+        assert np.allclose(found.rates[place, : len(lines)], rates, rtol=tolerance, atol=1e-9 * np.abs(rates).max())
         assert not found.rates[place, len(lines) :].any()
-        assert np.allclose(housing_rates(there, LIMIT)[1], rates, rtol=1e-7, atol=1e-9 * np.abs(rates).max())
+        assert np.allclose(housing_rates(there, LIMIT)[1], rates, rtol=tolerance, atol=1e-9 * np.abs(rates).max())
         together = np.sqrt(np.sum((expected / np.sqrt(2.0)) ** 2, axis=1))
-        assert np.allclose(found.rms[:, place], together, rtol=1e-8)
-        assert np.allclose(sensor_rms(there, LIMIT), together, rtol=1e-8)
+        assert np.allclose(found.rms[:, place], together, rtol=tolerance)
+        assert np.allclose(sensor_rms(there, LIMIT), together, rtol=tolerance)
     assert max(felt) > 0.05
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.meshes.gmsh_meshing import gmsh_session
+from gearwhine.results.mesh import bore_line
 
 STEEL = """
 [material.steel]
@@ -70,6 +71,8 @@ def test_a_drawing_becomes_a_mesh_file_of_the_default_format(gearwhine: Any, cas
     outcome = gearwhine("mesh", case(), "-o", "out", "--json", "-q")
     assert outcome.code == 0, outcome.err
     assert outcome.document["bores"][0]["diameter_m"] == pytest.approx(0.04)
+    (bore,) = [one for one in outcome.document["bores"] if one["center_m"][2] < 0.0]
+    assert bore_line(bore) == "bore of 40 mm at (-40, 75, -55) mm, 10 mm long"
     mesh = read_mesh(tmp_path / "out" / "mesh.msh")
     assert mesh.element_volumes.sum() == pytest.approx(SOLID, rel=1e-3)
     assert list(mesh.surfaces) == ["input"]

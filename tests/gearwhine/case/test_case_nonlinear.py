@@ -76,6 +76,11 @@ def test_a_worn_cage_that_slips() -> None:
     assert "cage" not in line.name
     with pytest.raises(CaseError, match="the gap to the next element"):
         spur_pair(**rolling("nonlinear"), fault=CAGE | {"length": "8 mm"})
+    # A phase of f / f_e times that of the passing elements has a random walk of as many times their steps.
+    case = spur_pair(**rolling("nonlinear"), fault=SPALL | {"on": "element"}, slip={"mean": 0.02, "scatter": 0.01})
+    (strikes,) = spall_strikes(case.parts.machine.assembled.system)
+    assert strikes.frequency == pytest.approx(2.0 * cage * 46.0 / 9.0 * (1.0 + 9.0 / 46.0))
+    assert strikes.half_width == pytest.approx(math.pi * 0.01**2 * strikes.frequency**2 / (9 * cage))
 
 
 def test_laws_of_bearings() -> None:

@@ -6,6 +6,7 @@ from gearwhine.output.sections import Table
 from gearwhine.results.mesh_lines import line_content
 from gearwhine.results.system import sections
 
+STRAINED = {"kind": "gear_meshes", "name": "s -> p", "share": 0.62}
 CERTIFICATE = {"found": 8, "expected": 8, "zeros": 2, "max_residual": 1e-12}
 
 
@@ -14,7 +15,7 @@ def _mode(hertz: float, ratio: float) -> dict[str, Any]:
         "rotor": 1.0
     }
     mode = {"number": 1, "frequency_hz": hertz, "damped_frequency_hz": hertz, "damping_ratio": ratio}
-    return mode | {"kind": "rotor", "where": "sun", "energy": energy, "strained_most": None}
+    return mode | {"kind": "rotor", "where": "sun", "energy": energy, "strained_most": STRAINED}
 
 
 def _told(sum_rule: float, *, complete: bool, whirl: float = 0.0) -> tuple[str, list[Any]]:
@@ -35,6 +36,7 @@ def test_a_peak_that_nothing_damps_comes_last_without_a_height() -> None:
     text, content = _told(1e-14, complete=True)
     cells = [cell for table in content if isinstance(table, Table) for row in table.filled()[1] for cell in row]
     assert "800 (3)  500 (undamped)" in cells
+    assert cells.count("teeth of s -> p 62 %") == 2
     assert "damping ratio is below 0.001" in text
 
 

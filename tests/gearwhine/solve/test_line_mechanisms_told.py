@@ -1,10 +1,14 @@
 """Mechanisms of lines in the documents of all motions: a linear machine has the sum of their parts in every line."""
 
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from sounding_gearbox import sounding_gearbox
+
+from gearwhine.results import sensor_line_estimates
 
 LINEAR = {
     "gear_pair.0.stiffness": {"model": "constant", "value": "3e8 N/m"},
@@ -64,3 +68,12 @@ def test_a_line_that_nothing_excites_has_no_parts() -> None:
     for (_, order), line in lines_of(*ALL).items():
         if order not in ORDERS.values():
             assert "parts" not in line
+
+
+def test_errors_of_the_basis_stand_in_their_bands() -> None:
+    """An error that is the frequency in hertz: its median is a band's middle, its largest just below the band's end."""
+    error: Any = SimpleNamespace(at=lambda w: {"top": w / (2.0 * np.pi)})
+    for band in sensor_line_estimates._bands(error, 800.0):
+        (top,) = band["sensors"]
+        assert top["median"] == pytest.approx(0.5 * (band["from_hz"] + band["to_hz"]))
+        assert 0.5 * (top["median"] + band["to_hz"]) < top["largest"] < band["to_hz"]

@@ -102,7 +102,7 @@ def widened_study() -> VariedResult:
 def test_wider_inputs_are_told_with_their_factor_and_by_what_they_change_where_the_yield_does_not() -> None:
     study = widened_study()
     document = varied_document(study)
-    sentences, _ = shown(document)
+    sentences, tables = shown(document)
     captions = [item.caption for item in sections(document)[0].content if isinstance(item, Table)]
     assert any(caption.startswith("What tolerances wider by a factor of 1.4 cost") for caption in captions)
     first, second = document["widened"]
@@ -110,9 +110,11 @@ def test_wider_inputs_are_told_with_their_factor_and_by_what_they_change_where_t
     # Of equal changes of the yield the one that scatters more is the dearer.
     assert first["input"].endswith("e1")
     # -1 of 40: interval -0.1 to 0.05 about; half over the change to the square, times 40.
-    assert first["change"]["low"] < 0.0 < first["change"]["high"]
+    low, high = (100.0 * first["change"][end] for end in ("low", "high"))
+    assert low < 0.0 < high
+    assert tables["What tolerances"][0]["95 % interval"] == f"{low:+.1f} to {high:+.1f}"
     (said,) = [one for one in sentences if one.startswith("No change of the yield is proven")]
-    half = 0.5 * (first["change"]["high"] - first["change"]["low"])
+    half = 0.005 * (high - low)
     assert f"About {float(f'{40.0 * (half * 40.0) ** 2:.1g}'):.0f} gearboxes of each in place of 40" in said
     (_, figure) = next(one for one in draw_variation("By hand", study) if one[0] == "vary-widening")
     assert any("by a factor of 1.4" in text.get_text() for text in figure.texts)

@@ -323,10 +323,13 @@ def test_the_first_page_marks_each_proof(tmp_path: Path) -> None:
     assert found["Teeth run out by 3 µm. "] == "warned"
     assert "checks passed, 1 did not; 1 warning." in read(tmp_path).text
     assert next(kind for text, kind in found.items() if text.startswith("Housing: 1 modes found")) == "passed"
-    write(tmp_path, document | {"housing": missing, "energy_error": 0.02}, 'title = "x"')
+    write(tmp_path, document | {"housing": missing, "energy_error": 0.0101}, 'title = "x"')
     found = marks(tmp_path)
     assert next(kind for text, kind in found.items() if text.startswith("Housing: 0 modes found")) == "failed"
     assert next(kind for text, kind in found.items() if text.startswith("Motion: the energy")) == "failed"
+    for residual, passed in ((9e-7, True), (1.1e-6, False)):
+        load = {"residual": residual, "gear_pairs": [], "bearings": []}
+        assert first_page(None, [{"command": "load", "load": load}], [])[0].content[1].passed is passed  # type: ignore[union-attr]
 
 
 def test_results_of_another_case_fail_on_the_first_page(tmp_path: Path) -> None:
