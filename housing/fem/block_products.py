@@ -88,7 +88,7 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
 
 
 _ALONE = {4: _products_of(4, has_mass=False), 16: _products_of(16, has_mass=False)}
-_BOTH = {16: _products_of(16, has_mass=True)}
+_BOTH = {8: _products_of(8, has_mass=True)}
 """Kernels of K alone, and of K and M, by the number of columns that they multiply at once."""
 
 
@@ -144,8 +144,10 @@ class BlockProduct:
 
     def _products(self, vectors: npt.NDArray[Any], *, has_mass: bool) -> list[FloatArray]:
         columns = vectors.reshape(len(vectors), -1)
+        at_most = max(_BOTH if has_mass else _ALONE)
+        if columns.shape[1] <= at_most:
+            return [part.reshape(vectors.shape) for part in self._few_products(columns, has_mass=has_mass)]
         found = [np.empty(columns.shape) for _ in range(1 + has_mass)]
-        at_most = max(_ALONE)
         for begin in range(0, columns.shape[1], at_most):
             few = slice(begin, begin + at_most)
             for whole, part in zip(found, self._few_products(columns[:, few], has_mass=has_mass), strict=True):
