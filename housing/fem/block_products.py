@@ -19,8 +19,6 @@ from gearwhine.numerics.arrays import FloatArray, IntArray
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
 
-_ROWS_AT_ONCE = 2**14  # rows moved in place
-
 
 def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
     """Kernel that multiplies so many columns at once, a number known to the compiler, with the mass or without."""
@@ -36,26 +34,32 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
         lower_places: npt.NDArray[np.int32],
         entries: FloatArray,
         node_mass: FloatArray,
+        number: npt.NDArray[np.int32],
         motions: FloatArray,
         forces: FloatArray,
         inertia: FloatArray,
     ) -> None:
         """Write K u to forces and (m ⊗ I₃) u to inertia at nodes ``first`` to ``last`` - 1.
 
-        Entries are those of all blocks, flat; motions, forces and inertia have three rows for each node. The lower
-        pattern has the places of blocks below the diagonal, which are kept above it, transposed.
+        Entries are those of all blocks, flat; motions, forces and inertia have a row for each free degree of freedom,
+        whose number those of all nodes have, -1 where it is fixed. The lower pattern has the places of blocks below the
+        diagonal, which are kept above it, transposed.
         """
-        own = np.empty((6, columns))
+        own, part = np.empty((6, columns)), np.empty((3, columns))
         for i in range(first, last):
             own[:] = 0.0
             for place in range(pointer[i], pointer[i + 1]):
                 other = 3 * neighbors[place]
+                for component in range(3):
+                    row = number[other + component]
+                    for k in range(columns):
+                        part[component, k] = motions[row, k] if row >= 0 else 0.0
                 xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
                 yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
                 zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
                 m = node_mass[place]
                 for k in range(columns):
-                    x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                    x, y, z = part[0, k], part[1, k], part[2, k]
                     own[0, k] += xx * x + xy * y + xz * z
                     own[1, k] += yx * x + yy * y + yz * z
                     own[2, k] += zx * x + zy * y + zz * z
@@ -63,14 +67,18 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
                         own[3, k] += m * x
                         own[4, k] += m * y
                         own[5, k] += m * z
-            for number in range(lower_pointer[i], lower_pointer[i + 1]):
-                other, place = 3 * lower_neighbors[number], lower_places[number]
+            for below in range(lower_pointer[i], lower_pointer[i + 1]):
+                other, place = 3 * lower_neighbors[below], lower_places[below]
+                for component in range(3):
+                    row = number[other + component]
+                    for k in range(columns):
+                        part[component, k] = motions[row, k] if row >= 0 else 0.0
                 xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
                 yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
                 zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
                 m = node_mass[place]
                 for k in range(columns):
-                    x, y, z = motions[other, k], motions[other + 1, k], motions[other + 2, k]
+                    x, y, z = part[0, k], part[1, k], part[2, k]
                     own[0, k] += xx * x + yx * y + zx * z
                     own[1, k] += xy * x + yy * y + zy * z
                     own[2, k] += xz * x + yz * y + zz * z
@@ -79,16 +87,18 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
                         own[4, k] += m * y
                         own[5, k] += m * z
             for component in range(3):
-                for k in range(columns):
-                    forces[3 * i + component, k] = own[component, k]
-                    if has_mass:
-                        inertia[3 * i + component, k] = own[3 + component, k]
+                row = number[3 * i + component]
+                if row >= 0:
+                    for k in range(columns):
+                        forces[row, k] = own[component, k]
+                        if has_mass:
+                            inertia[row, k] = own[3 + component, k]
 
     return write_products
 
 
 _ALONE = {4: _products_of(4, has_mass=False), 16: _products_of(16, has_mass=False)}
-_BOTH = {16: _products_of(16, has_mass=True)}
+_BOTH = {8: _products_of(8, has_mass=True)}
 """Kernels of K alone, and of K and M, by the number of columns that they multiply at once."""
 
 
@@ -104,7 +114,7 @@ class BlockProduct:
     node_mass : ndarray, shape (n_blocks,)
         Scalar mass m.
     free : ndarray of int, shape (n,)
-        Free degrees of freedom, ascending.
+        Free degrees of freedom.
     threads : int
         Number of threads; each multiplies a share of the rows.
     """
@@ -127,8 +137,9 @@ class BlockProduct:
         )
         lower = sparse.csc_array(upper)
         below = lower.indptr, lower.indices, lower.data
-        self._blocks: tuple[Any, ...] = pointer, neighbors, *below, blocks.ravel(), node_mass
-        self._order, self._free = 3 * n_nodes, free
+        number = np.full(3 * n_nodes, -1, dtype=np.int32)
+        number[free] = np.arange(len(free), dtype=np.int32)
+        self._blocks: tuple[Any, ...] = pointer, neighbors, *below, blocks.ravel(), node_mass, number
         ends = np.searchsorted(pointer, np.linspace(0, pointer[-1], threads + 1)).tolist()
         self._shares = list(pairwise(ends))
         self.shape = (len(free), len(free))
@@ -144,8 +155,10 @@ class BlockProduct:
 
     def _products(self, vectors: npt.NDArray[Any], *, has_mass: bool) -> list[FloatArray]:
         columns = vectors.reshape(len(vectors), -1)
+        at_most = max(_BOTH if has_mass else _ALONE)
+        if columns.shape[1] <= at_most:
+            return [part.reshape(vectors.shape) for part in self._few_products(columns, has_mass=has_mass)]
         found = [np.empty(columns.shape) for _ in range(1 + has_mass)]
-        at_most = max(_ALONE)
         for begin in range(0, columns.shape[1], at_most):
             few = slice(begin, begin + at_most)
             for whole, part in zip(found, self._few_products(columns[:, few], has_mass=has_mass), strict=True):
@@ -156,15 +169,10 @@ class BlockProduct:
         """Multiply as many columns as a kernel takes, or fewer."""
         n, width = columns.shape
         at_most, write = next(one for one in (_BOTH if has_mass else _ALONE).items() if one[0] >= width)
-        motions = np.zeros((self._order, at_most))
-        pieces = [slice(first, min(first + _ROWS_AT_ONCE, n)) for first in range(0, n, _ROWS_AT_ONCE)]
-        for few in pieces:
-            motions[self._free[few], :width] = columns[few]
+        motions = np.ascontiguousarray(columns, dtype=np.float64)
+        if width < at_most:
+            motions = np.zeros((n, at_most))
+            motions[:, :width] = columns
         forces, inertia = np.empty_like(motions), np.empty_like(motions if has_mass else motions[:0])
         at_once([partial(write, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
-        products = [forces, inertia] if has_mass else [forces]
-        for product in products:
-            # The free degrees of freedom ascend: none is overwritten before it is read.
-            for few in pieces:
-                product[few] = product[self._free[few]]
-        return [product[:n, :width] for product in products]
+        return [product[:, :width] for product in ([forces, inertia] if has_mass else [forces])]

@@ -34,6 +34,7 @@ from queue import SimpleQueue
 from typing import Any, Literal, Protocol
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
@@ -54,7 +55,7 @@ class NumericFactor(Protocol):
     def negative(self) -> int:
         """Number of negative eigenvalues of the matrix."""
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right: npt.NDArray[Any]) -> FloatArray:
         """Solve for contiguous right-hand sides, shape (n,) or (n, m)."""
 
 
@@ -113,6 +114,10 @@ class RslabSolver:
             nd_init_trials=4,
         )
 
+    def forget(self) -> None:
+        """Give up the ordering."""
+        self._symbolic = None
+
     def memory(self, matrix: FactorableMatrix, precision: Precision) -> float:
         """Memory that a factor and its solutions take, beside that of the ordering, which is found if need be."""
         if self._symbolic is None:
@@ -133,7 +138,7 @@ class _RslabFactor:
         self._handle, self._kind = handle, kind
         self.negative, self.fill = int(handle.inertia[1]), int(handle.factor_nnz)
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right: npt.NDArray[Any]) -> FloatArray:
         solve = self._handle.solve if right.ndim == 1 else self._handle.solve_many
         return np.asarray(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
 
@@ -143,6 +148,9 @@ class SuperluSolver:
 
     def order(self, matrix: FactorableMatrix) -> None:
         """Do nothing: SuperLU orders each matrix anew."""
+
+    def forget(self) -> None:
+        """Do nothing, as there is no ordering to give up."""
 
     def memory(self, matrix: FactorableMatrix, precision: Precision) -> float:
         """Return 0: SuperLU does not foresee its memory."""
@@ -166,7 +174,7 @@ class _SuperluFactor:
         self._handle = handle
         self.negative, self.fill = int(np.count_nonzero(handle.U.diagonal() < 0.0)), int(handle.L.nnz)
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right: npt.NDArray[Any]) -> FloatArray:
         return np.asarray(self._handle.solve(right))
 
 
@@ -188,6 +196,8 @@ class _Solver(Protocol):
     """A sparse solver that knows the pattern of the matrices to come."""
 
     def order(self, matrix: FactorableMatrix) -> None: ...
+
+    def forget(self) -> None: ...
 
     def memory(self, matrix: FactorableMatrix, precision: Precision) -> float: ...
 
@@ -261,10 +271,10 @@ class Factorization:
             "move the limit a little, or give more memory, which a factor in double precision needs"
         )
 
-    def solve_approximately(self, right: FloatArray) -> FloatArray:
-        """Solve in the precision of the factor, F x = b, without refinement."""
+    def solve_approximately(self, right: npt.NDArray[Any]) -> FloatArray:
+        """Solve in the precision of the factor, F x = b, without refinement; b may be in single precision as well."""
         right = np.ascontiguousarray(right)
-        if self.precision == "double":
+        if self.precision == "double" or right.dtype == np.float32:
             return self._factor.solve(right)
         # Small numbers in double precision may be none in single.
         scale = np.maximum(right.max(axis=0), -right.min(axis=0))
@@ -328,6 +338,10 @@ class Factorizer:
         pool = ThreadPoolExecutor(1)
         self._ordering = pool.submit(self._solver.order, matrix)
         pool.shutdown(wait=False)
+
+    def forget_ordering(self) -> None:
+        """Give up the ordering, which is a tenth of the memory that a factor takes; a later factor finds it again."""
+        self._solver.forget()
 
     def factor(self, matrix: FactorableMatrix | sparse.csr_array) -> Factorization:
         """Factor a matrix and check that the factor solves.

@@ -104,6 +104,8 @@ class CertifiedSearch:
         progress("counting the modes below the limit")
         shift = limit**2
         factor = self._factor(shift)
+        if isinstance(self._factorizer, Factorizer):
+            self._factorizer.forget_ordering()  # a second factor is hardly ever needed
         count = factor.negative
         if count == 0:
             raise HousingError(f"the housing has no mode below {limit / (2 * np.pi):g} Hz; raise the limit")

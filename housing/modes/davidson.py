@@ -20,7 +20,8 @@ where both matrices are products in double precision of the vectors as they are 
 their rounding, without M, which is enough for the small problem to be well conditioned. Where S is full, it keeps the
 lowest Ritz vectors; the rounding of the wanted ones to single precision is kept in vectors of its own.
 
-A block has sixteen columns, since the direct solver takes as long for eight.
+A block has sixteen columns, since the direct solver takes as long for eight. Its residuals are given to the solver in
+single precision, and are products of half of it at a time: at the peak of the memory every column counts.
 """
 
 from collections.abc import Callable
@@ -34,6 +35,7 @@ from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.numerics.arrays import FloatArray
 
 _BLOCK = 16
+_AT_ONCE = 8  # columns multiplied at once by K and M
 _STEPS = 40  # beside those of eight times the number of modes
 _CLOSE = 1e-7  # residual below which every correction gains, unless rounding ends it
 _WITHIN = 1e-12  # squared length of a vector outside the space, below which it is the rounding of a solution
@@ -43,7 +45,7 @@ _WELL_OUTSIDE = 1e-8  # the same, above which one projection leaves it orthogona
 def davidson_modes(
     size: int,
     products: Callable[[npt.NDArray[Any]], tuple[FloatArray, FloatArray]],
-    solve_approximately: Callable[[FloatArray], FloatArray],
+    solve_approximately: Callable[[npt.NDArray[np.float32]], FloatArray],
     count: int,
     *,
     floor: float,
@@ -60,8 +62,8 @@ def davidson_modes(
     products : callable
         K X [N/m] and M X [kg] in double precision, of X of shape (n, m) in either.
     solve_approximately : callable
-        X from (K - σM) X = Y, shape (n, m) both, with a relative error well below 1; σ next to the modes wanted or
-        among them.
+        X from (K - σM) X = Y, shape (n, m) both, Y in single precision, with a relative error well below 1; σ next to
+        the modes wanted or among them.
     count : int
         Number of modes.
     floor : float
@@ -84,12 +86,11 @@ def davidson_modes(
     width = min(_BLOCK * 2**seed, size)
     space = _RitzSpace(products, 4 * count + 9 * width, BlockAlgebra(size, threads))
     residuals = np.full(count, np.inf)
-    block = np.random.default_rng(seed).standard_normal((size, width))
+    block = np.random.default_rng(seed).standard_normal((size, width), dtype=np.float32)
     for _ in range(_STEPS + 8 * count // width):
         if space.is_full(block.shape[1]):
             space.shrink(count)
-        block = solve_approximately(block)  # the forces are given up: each block counts in the peak of the memory
-        outside = space.outside(block)
+        outside = space.outside(solve_approximately(block))
         del block
         if not outside.shape[1]:
             break
@@ -97,17 +98,13 @@ def davidson_modes(
         del outside
         values, mixture = space.ritz(count)
         scales = np.abs(values) + abs(values[-1]) + floor
-        block = np.empty((size, 0))
+        block = np.empty((size, 0), np.float32)
         left = residuals[: len(values)]
         while not block.shape[1] and (left > tolerance).any():
             # The largest first: those of the modes that wait for a step are the larger ones of the next.
             worst = np.argsort(-left, kind="stable")[: min(width, np.count_nonzero(left > tolerance))]
-            block, inertia = products(space.combined(mixture[:, worst]))
-            lengths = np.linalg.norm(inertia, axis=0)
-            inertia *= values[worst]
-            block -= inertia
-            del inertia
-            sizes = np.linalg.norm(block, axis=0) / (scales[worst] * lengths)
+            block, sizes = space.residuals(values[worst], mixture[:, worst])
+            sizes /= scales[worst]
             stalled = (sizes < _CLOSE) & (sizes > left[worst])
             left[worst] = np.where(stalled, 0.0, sizes)
             if (left[worst] <= tolerance).any():
@@ -152,10 +149,26 @@ class _RitzSpace:
         """V y, shape (n, columns of y)."""
         return self._algebra.combined(self._vectors[:, : self.size], mixture)
 
+    def residuals(self, values: FloatArray, mixture: FloatArray) -> tuple[npt.NDArray[np.float32], FloatArray]:
+        """Residuals r = K x - θ M x of Ritz pairs as unit vectors, shape (n, m), and |r| / |M x|, shape (m,)."""
+        units = np.empty((len(self._vectors), len(values)), np.float32)
+        sizes = np.empty(len(values))
+        for few in _parts(0, len(values)):
+            force, inertia = self._products(self.combined(mixture[:, few]))
+            lengths = _lengths(inertia)
+            inertia *= values[few]
+            force -= inertia
+            del inertia
+            norms = _lengths(force)
+            sizes[few] = norms / lengths
+            # An exact mode has no residual.
+            np.divide(force, np.where(norms > 0.0, norms, 1.0), out=units[:, few], casting="same_kind")
+        return units, sizes
+
     def outside(self, block: FloatArray) -> npt.NDArray[np.float32]:
         """Orthonormal basis of the part of a block, shape (n, width), outside the space; the block is overwritten."""
         basis, algebra = self._vectors[:, : self.size], self._algebra
-        block /= np.linalg.norm(block, axis=0)
+        block /= _lengths(block)
         for last in (False, True):
             algebra.subtract(block, basis, algebra.products(basis, block))
             values, turn = linalg.eigh(algebra.products(block, block))
@@ -168,23 +181,32 @@ class _RitzSpace:
 
     def extend(self, vectors: npt.NDArray[np.float32]) -> None:
         """Extend the space by orthonormal vectors outside it, shape (n, r)."""
-        added = slice(self.size, self.size + vectors.shape[1])
-        self._vectors[:, added] = vectors
-        self.size = added.stop
-        self._multiply(added)
+        before, self.size = self.size, self.size + vectors.shape[1]
+        self._vectors[:, before : self.size] = vectors
+        self._multiply(before)
 
-    def _multiply(self, columns: slice) -> None:
-        """Products of some vectors with those before them and with themselves."""
-        vectors = self._vectors[:, : columns.stop]
-        shares = self._algebra.products(vectors, *self._products(vectors[:, columns]))
-        for gram, share in zip(self._gram, np.hsplit(shares, 2), strict=True):
-            share[columns] = 0.5 * (share[columns] + share[columns].T)
-            gram[: columns.stop, columns], gram[columns, : columns.stop] = share, share.T
+    def _multiply(self, first: int) -> None:
+        """Products of the vectors from the first one on with those before them and with themselves."""
+        for few in _parts(first, self.size):
+            vectors = self._vectors[:, : few.stop]
+            shares = self._algebra.products(vectors, *self._products(vectors[:, few]))
+            for gram, share in zip(self._gram, np.hsplit(shares, 2), strict=True):
+                share[few] = 0.5 * (share[few] + share[few].T)
+                gram[: few.stop, few], gram[few, : few.stop] = share, share.T
 
     def shrink(self, count: int) -> None:
         """Keep the 2 ``count`` lowest Ritz vectors, and what rounding takes from the first ``count`` of them."""
         mixture = np.linalg.qr(self.ritz(2 * count)[1])[0]
         self._algebra.replace(self._vectors[:, : self.size], mixture, count)
         self.size = mixture.shape[1] + count
-        for begin in range(0, self.size, _BLOCK):
-            self._multiply(slice(begin, min(begin + _BLOCK, self.size)))
+        self._multiply(0)
+
+
+def _lengths(columns: FloatArray) -> FloatArray:
+    """Length of each column, without the squares in memory."""
+    return np.asarray(np.sqrt(np.einsum("ij,ij->j", columns, columns)))
+
+
+def _parts(first: int, last: int) -> list[slice]:
+    """Columns from the first to the one before the last, as many at a time as are multiplied at once."""
+    return [slice(begin, min(begin + _AT_ONCE, last)) for begin in range(first, last, _AT_ONCE)]

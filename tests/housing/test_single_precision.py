@@ -12,7 +12,8 @@ from gearwhine.housing.errors import FactorizationError
 from gearwhine.housing.fem import factorization, memory
 from gearwhine.housing.fem.factorization import Factorizer, RslabSolver, UnprovedInertiaError
 from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
-from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.fem.matrices import FreeSystem, Matrices
+from gearwhine.housing.modes.certificate import CertifiedSearch
 from gearwhine.housing.modes.davidson import davidson_modes
 from gearwhine.meshes import Mesh
 
@@ -69,6 +70,25 @@ def test_modes_of_a_free_cube_with_double_and_triple_ones(cube: tuple[Mesh, Matr
         assert modes.certificate.expected == modes.certificate.found == count
         np.testing.assert_array_equal(modes.frequencies[:6], 0.0)
         np.testing.assert_allclose(modes.frequencies[6:] ** 2, values[6:count], rtol=1e-10)
+
+
+def test_the_search_below_a_limit_gives_up_the_ordering_and_a_later_factor_finds_it_again(
+    cube: tuple[Mesh, Matrices], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    orderings: list[int] = []
+    order = RslabSolver.order
+    monkeypatch.setattr(RslabSolver, "order", lambda self, matrix: (orderings.append(1), order(self, matrix))[1])
+    system = FreeSystem(cube[1])
+    values = dense_values(cube[1])
+    last = 6 + int(np.argmax(np.diff(values[6:30])))
+    limit = np.sqrt(0.5 * (values[last] + values[last + 1]))
+    factorizer = Factorizer(precision="single")
+    found = CertifiedSearch(system, factorizer, system.floor(limit)).below(limit, lambda line: None)
+    assert found.certificate.found == last + 1
+    assert len(orderings) == 1
+    counts = [factorizer.factor(system.shifted(shift)).negative for shift in (limit**2, 0.5 * values[6])]
+    assert counts == [last + 1, 6]
+    assert len(orderings) == 2
 
 
 def test_modes_are_as_accurate_as_those_of_a_factor_in_double(box_matrices: Matrices) -> None:
