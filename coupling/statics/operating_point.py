@@ -35,6 +35,7 @@ from gearwhine.coupling.statics.static_model import (
     StaticShaftPart,
 )
 from gearwhine.rotors.rolling_bearings import RollingState, linearised_bearing
+from gearwhine.rotors.rolling_bearings.equilibrium import require_held
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -98,6 +99,11 @@ class BearingLoad:
     def tilt(self) -> float:
         """Angle between the shaft and the seat's axis [rad]."""
         return float(np.hypot(*self.deflection[3:]))
+
+    def require_held(self) -> None:
+        """Raise `gearwhine.rotors.EquilibriumError` where :attr:`linearised` does."""
+        if self.mounted.needs_load and self.rolling is not None:
+            require_held(self.rolling)
 
     @property
     def linearised(self) -> MountedBearing:
