@@ -36,6 +36,7 @@ from gearwhine.coupling.statics.static_model import (
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import RollingState, linearised_bearing
+from gearwhine.rotors.rolling_bearings.equilibrium import require_held
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +98,11 @@ class BearingLoad:
     def tilt(self) -> float:
         """Angle between the shaft and the seat's axis [rad]."""
         return float(np.hypot(*self.deflection[3:]))
+
+    def require_held(self) -> None:
+        """Raise `gearwhine.rotors.EquilibriumError` where :attr:`linearised` does."""
+        if self.mounted.needs_load and self.rolling is not None:
+            require_held(self.rolling)
 
     @property
     def linearised(self) -> MountedBearing:

@@ -583,13 +583,12 @@ class _StaticModel:
                 of_error = bearing.mounted.seat_displacement
                 rigid_by[of_seats] += moved.T @ metric @ (bearing.seat_motion - of_error)
                 rigid_by["seats"] += moved.T @ metric @ of_error
-            whole = np.zeros((places.size, 6))
-            for cause, side in rigid_by.items():
-                rigid = np.linalg.lstsq(matrix, side, rcond=1e-12)[0]
-                moved = np.array([_rigid_rows(at) @ rigid for at in places.tolist()])
-                parts[cause][columns] = np.pad(moved, ((0, 0), (0, 1))).ravel()
-                whole[:, :5] += moved
-            parts["shafts"][columns] = x[columns] - whole.ravel()
+            rigid = np.linalg.lstsq(matrix, np.column_stack([*rigid_by.values()]), rcond=1e-12)[0]
+            whole = np.zeros((places.size, 6, len(rigid_by)))
+            whole[:, :5] = np.array([_rigid_rows(at) for at in places.tolist()]) @ rigid
+            for number, cause in enumerate(rigid_by):
+                parts[cause][columns] = whole[:, :, number].ravel()
+            parts["shafts"][columns] = x[columns] - whole.sum(axis=2).ravel()
         return parts
 
     def _pair(

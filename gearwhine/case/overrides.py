@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
@@ -191,6 +194,11 @@ def _read_value(text: str) -> Any:
         return NOTHING
     if _QUANTITY.match(text):
         return text
+    if text.startswith("["):  # a row of numbers, as of pitch deviations, is JSON too, which is read at once
+        with suppress(ValueError, RecursionError):
+            row = json.loads(text)
+            if all(type(number) is float and math.isfinite(number) for number in row):
+                return row
     try:
         read = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

@@ -182,8 +182,11 @@ class _Gearbox:
         if {"lines", "sound", "motion"} & set(self.wanted.analyses):
             return self.loaded.pairs
         left_to_load = any(pair.misalignment is None for pair in self.machine.gear_pairs)
-        point = self.load.point if left_to_load and self.load is not None else None
-        return self.machine.linearised(point).loaded_pairs()
+        if not left_to_load or self.load is None:
+            return self.machine.linearised(None).loaded_pairs()
+        for bearing in self.load.point.bearings:
+            bearing.require_held()  # as where the stiffness of bearings is wanted, too, which no pair has a part in
+        return self.machine.with_flanks_of(self.load.point).loaded_pairs()
 
 
 def evaluate_pairs(pairs: Sequence[LoadedGearPair], wanted: Wanted) -> Evaluation:

@@ -22,7 +22,7 @@ from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.housing.fem.matrices import FreeSystem
 from gearwhine.housing.fem.slepc import SlepcRanks
 from gearwhine.housing.modes.davidson import davidson_modes
-from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, LoadResponses, Solver, nearest_modes
 from gearwhine.numerics.arrays import FloatArray
 
 RESIDUAL_BOUND = 1e-8
@@ -99,8 +99,10 @@ class CertifiedSearch:
         self._factorizer = factorizer
         self._solver = solver
 
-    def below(self, limit: float, progress: Callable[[str], None]) -> CertifiedModes:
-        """All modes below a limit, which is itself the shift."""
+    def below(
+        self, limit: float, progress: Callable[[str], None], responses: LoadResponses | None = None
+    ) -> CertifiedModes:
+        """All modes below a limit, which is itself the shift; the first attempt may find responses to loads beside."""
         progress("counting the modes below the limit")
         shift = limit**2
         factor = self._factor(shift)
@@ -122,7 +124,8 @@ class CertifiedSearch:
         certificate = Certificate(limit, count, 0, 0.0, 0.0)
         pole, place = factor, shift
         for attempt in range(_ATTEMPTS):
-            values, vectors = self._modes(pole, place, count, above=True, attempt=attempt)
+            beside = responses if attempt == 0 else None
+            values, vectors = self._modes(pole, place, count, above=True, attempt=attempt, responses=beside)
             certificate, values, vectors = self._certify(values, vectors, limit, count)
             if certificate.complete:
                 return CertifiedModes(values, vectors, certificate, factor, shift)
@@ -185,7 +188,15 @@ class CertifiedSearch:
         return factor
 
     def _modes(
-        self, factor: Factorization, shift: float, count: int, *, above: bool, attempt: int, draft: bool = False
+        self,
+        factor: Factorization,
+        shift: float,
+        count: int,
+        *,
+        above: bool,
+        attempt: int,
+        draft: bool = False,
+        responses: LoadResponses | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Uncertified modes; none where an attempt before the last does not converge."""
         start = time.perf_counter()
@@ -214,6 +225,7 @@ class CertifiedSearch:
                 seed=attempt,
                 threads=system.threads,
                 tolerance=_DRAFT if draft else None,
+                responses=responses,
             )
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:

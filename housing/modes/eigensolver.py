@@ -17,6 +17,12 @@ Every block is orthogonalised against the whole basis after the recurrence, so t
 several columns because the factor is read once for all of them (Golub and Underwood 1977; Grimes, Lewis and Simon
 1994); a multiple mode needs a block at least as wide as its multiplicity.
 
+*Responses to loads* F come with the modes where V₁ also spans the responses (K - σM)⁻¹ F = V g, in their coordinates g:
+the basis is then the Krylov space of these, in which V T g, V T² g, … are the responses' derivatives by σ, and each
+discarded Ritz vector has the static response
+
+    V s (sᵀ g) / (1 + σν).
+
 *ARPACK* is an implicitly restarted Lanczos method; the factor enters it as ``OPinv``. It may leave out a copy of a
 multiple mode without notice; the certificate (:mod:`gearwhine.housing.modes.certificate`) detects it.
 """
@@ -36,6 +42,7 @@ TOLERANCE = 1e-9
 """Tolerance of a Ritz pair's residual, as a part of ν."""
 
 _BLOCK = 8
+_LEAST_RANDOM = 4  # random columns beside loads, for modes that these do not drive
 _DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
 _NEARLY_WITHIN = 1e-4  # remainder of a column, as a part of it, below which its rounding shows
 _ORTHONORMAL = 1e-14  # largest error of the products of a new block's columns from those of orthonormal ones
@@ -52,6 +59,7 @@ def block_lanczos(
     seed: int = 0,
     threads: int = 1,
     tolerance: float = TOLERANCE,
+    responses: "LoadResponses | None" = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Solve for the modes nearest to a shift on one side of it by block Lanczos.
 
@@ -74,6 +82,8 @@ def block_lanczos(
     tolerance : float
         Tolerance of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of
         that.
+    responses : LoadResponses, optional
+        Loads whose responses are found beside the modes.
 
     Returns
     -------
@@ -96,8 +106,11 @@ def block_lanczos(
     sign = -1.0 if above else 1.0
 
     algebra = BlockAlgebra(n, threads)
-    start = np.random.default_rng(seed).standard_normal((n, width))
-    addition = orthonormal(basis[:, :0], solve(np.ascontiguousarray(mass @ start)), mass, algebra)
+    start = mass @ np.random.default_rng(seed).standard_normal((n, width))
+    if responses is not None:
+        start = np.hstack([responses.loads, start[:, : max(_LEAST_RANDOM, width - responses.loads.shape[1])]])
+    addition = orthonormal(basis[:, :0], solve(np.ascontiguousarray(start)), mass, algebra)
+    first = addition.projections
     recent = np.empty((n, 0))
     begin, size, checked = 0, 0, 0
     while addition.block.shape[1] and size + addition.block.shape[1] <= most + width:
@@ -126,6 +139,10 @@ def block_lanczos(
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 vectors = algebra.combined(addition.block, step / norms)
                 algebra.subtract(vectors, basis[:, :size], -(mixture / norms))
+                if responses is not None:
+                    others = ranked[count:]
+                    vibrating = shift, nu[others], mixtures[:, others]
+                    responses.take(basis[:, :size], small[:size, :size], first, *vibrating, algebra)
                 return shift + 1.0 / nu[chosen], vectors
         small[size : size + len(remainder), begin:size] = remainder
         small[begin:size, size : size + len(remainder)] = remainder.T
@@ -133,6 +150,47 @@ def block_lanczos(
         f"Lanczos did not converge to {count} modes with a basis of {size}; ask for fewer, move the limit a little or "
         "refine the mesh"
     )
+
+
+class LoadResponses:
+    """Responses of the discarded modes to some loads, which a search by block Lanczos finds in its Krylov space.
+
+    Parameters
+    ----------
+    loads : ndarray, shape (n, r)
+        F.
+    orders : int
+        Number of responses to each load.
+
+    Attributes
+    ----------
+    found : list of ndarray, shape (n, r)
+        The static response, to the accuracy of the space; then (K - σM)⁻¹ F and its derivatives by σ, each divided by
+        the factorial of its order, which have parts of the kept modes, too. Empty before the search.
+    """
+
+    def __init__(self, loads: FloatArray, orders: int) -> None:
+        self.loads, self._orders = loads, orders
+        self.found: list[FloatArray] = []
+
+    def take(
+        self,
+        basis: FloatArray,
+        small: FloatArray,
+        first: FloatArray,
+        shift: float,
+        nu: FloatArray,
+        mixture: FloatArray,
+        algebra: BlockAlgebra,
+    ) -> None:
+        """Combine the basis, with T and the ν and s of the discarded Ritz vectors; the first block is V g."""
+        response = np.zeros((len(small), self.loads.shape[1]))
+        response[: len(first)] = first[:, : self.loads.shape[1]]
+        parts = [mixture @ ((mixture.T @ response) / (1.0 + shift * nu)[:, None])]
+        for _ in range(self._orders - 1):
+            parts.append(response)
+            response = small @ response
+        self.found = np.split(algebra.combined(basis, np.hstack(parts)), self._orders, axis=1)
 
 
 @dataclass(frozen=True)
@@ -283,6 +341,7 @@ def nearest_modes(
     seed: int = 0,
     threads: int = 1,
     tolerance: float | None = None,
+    responses: LoadResponses | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Choose the eigensolver by its name, and find the modes nearest to a shift on one side of it.
 
@@ -296,8 +355,12 @@ def nearest_modes(
         As :func:`block_lanczos`; ``eigsh`` has one thread beside those of ``solve``.
     tolerance : float, optional
         Residual of a Ritz pair as a part of ν; by default the finest that the solver has.
+    responses : LoadResponses, optional
+        As :func:`block_lanczos`; ``eigsh`` finds none.
     """
     if solver == "eigsh":
         return arpack_modes(solve, mass, shift, count, above=above, seed=seed, tolerance=tolerance or 0.0)
     tolerance = TOLERANCE if tolerance is None else tolerance
-    return block_lanczos(solve, mass, shift, count, above=above, seed=seed, threads=threads, tolerance=tolerance)
+    return block_lanczos(
+        solve, mass, shift, count, above=above, seed=seed, threads=threads, tolerance=tolerance, responses=responses
+    )

@@ -21,7 +21,7 @@ from gearwhine.housing.fem.linear_algebra import Precision
 from gearwhine.housing.fem.matrices import FreeSystem, Matrices
 from gearwhine.housing.fem.slepc import SlepcRanks
 from gearwhine.housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
-from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, LoadResponses, Solver
 from gearwhine.housing.modes.residual_modes import (
     ResidualModes,
     extended_residual_modes,
@@ -31,6 +31,7 @@ from gearwhine.housing.modes.residual_modes import (
 )
 from gearwhine.numerics.arrays import FloatArray
 
+_MOST_LOADS = 32  # loads in a block of the search: of more, the basis takes longer than sweeps
 _LARGEST_ENTRY_TOLERANCE = 1e-6  # part of the largest entry by which another may be smaller and count as large
 
 
@@ -183,8 +184,11 @@ def solve_modes(
         factorizer = Factorizer(backend=backend, precision=precision, threads=threads, progress=progress)
         factorizer.order_ahead(system.shifted(0.0))
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
+    responses = None
+    if ports is not None and ports.shape[0] <= _MOST_LOADS:
+        responses = LoadResponses(ports[:, system.free].T.toarray(), port_orders)
     solution = (
-        search.below(frequency_limit, progress)
+        search.below(frequency_limit, progress, responses)
         if frequency_limit is not None
         else search.lowest(count or 0, progress, draft=draft)
     )
@@ -212,6 +216,7 @@ def solve_modes(
             free=system.free,
             n_nodes=system.n_nodes,
             orders=port_orders,
+            begin=responses.found if responses is not None else (),
             threads=threads,
             progress=lambda step: progress(f"{work}: {step}"),
         )

@@ -33,8 +33,9 @@ of A with σ at the limit gives the response there and its derivatives by ω²,
 
 With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
 (a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). They take no solutions of their own: since
-A⁻¹ K = I + σ A⁻¹ M, the directions of the first j sweeps span X_1 to X_j. The residual modes of the lowest frequencies
-then come close to the modes just above the limit, as far as the ports drive them.
+A⁻¹ K = I + σ A⁻¹ M, the directions of the first j sweeps span X_1 to X_j. Where the search for the modes began with the
+loads, its Krylov space has all of them (:mod:`gearwhine.housing.modes.eigensolver`), and a sweep checks X. The residual
+modes of the lowest frequencies then come close to the modes just above the limit, as far as the ports drive them.
 
 Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
 an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode beside the
@@ -81,8 +82,8 @@ Solve = Callable[[FloatArray], FloatArray]
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
 _HARMONIC_SETTLED = 1e-7  # part of a whole harmonic response by which a last sweep may still move its missing part
-# Part of a port's whole response, in the norm of strain energy, that a last sweep may still move.
-_SETTLED_RESPONSE_SHARE = 1e-9
+# Part of a port's whole response, in the norm of strain energy, that a last sweep may still move; a tenth is left.
+_SETTLED_RESPONSE_SHARE = 1e-7
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
 _ROUNDING_ENERGY_SHARE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
@@ -168,6 +169,7 @@ def residual_attachment_modes(
     free: IntArray,
     n_nodes: int,
     orders: int = 1,
+    begin: Sequence[FloatArray] = (),
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[ResidualModes, FloatArray]:
@@ -196,6 +198,8 @@ def residual_attachment_modes(
     orders : int
         Responses for each port motion: 1, the static one; 2, that at ω² = shift beside it; more, its derivatives by ω²
         there too, see Eq. (5).
+    begin : sequence of ndarray, shape (n, r)
+        X, from which the sweeps start, then X_1 and so on, where they are known; whatever they have of Φ is taken off.
     threads : int
         Threads of the products of block vectors; the numbers are the same for any.
     progress : callable
@@ -231,6 +235,10 @@ def residual_attachment_modes(
 
     beyond = loads - inertia @ motions
     static = _ConjugateGradients(beyond, 0.0, _SETTLED_RESPONSE_SHARE, modal.diagonal(), algebra, orders - 1)
+    if begin:
+        for response in begin:
+            algebra.subtract(response, vectors, algebra.products(inertia, response))
+        static.begin([(response, np.asarray(stiffness @ response)) for response in begin])
     sweeps = _sweep_until_settled(stiffness, mass, solve, [static], vectors, inertia, algebra, progress)
     residual = static.x
     algebra.subtract(residual, vectors, algebra.products(inertia, residual))
@@ -413,6 +421,11 @@ class _ConjugateGradients:
         self._loads, self._settled, self._covered = loads.copy(), settled, covered
         self._directions = self._products = np.zeros((len(loads), 0))
         self._scale: FloatArray | None = None
+
+    def begin(self, known: Sequence[tuple[FloatArray, FloatArray]]) -> None:
+        """Begin with a response in place of none, and with directions of the first sweeps, each with its product."""
+        (self.x, product), *self.first = known
+        self.left = self._loads - product
 
     def take(self, step: FloatArray, product: FloatArray) -> bool:
         """Take a sweep from the preconditioned loads left, and their product; whether it has settled."""

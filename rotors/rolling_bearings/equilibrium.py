@@ -34,7 +34,7 @@ from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors.errors import EquilibriumError, require, require_finite
 from gearwhine.rotors.model.bearing import Bearing
 from gearwhine.rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
-from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
+from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, RowEnergy, StaticBalls
 from gearwhine.rotors.rolling_bearings.four_point_balls import FourPointBalls
 from gearwhine.rotors.rolling_bearings.frequencies import pressed_azimuth
 from gearwhine.rotors.rolling_bearings.ratings import Row
@@ -175,7 +175,10 @@ class RollingElements:
             rounding of energy and forces.
         """
         q = self.seated(displacement)
-        rows = [row.energy(q) for row in self.contacts]
+        return self.together(q, [row.energy(q) for row in self.contacts])
+
+    def together(self, q: FloatArray, rows: Sequence[RowEnergy]) -> Local:
+        """Sum of the rows' energies at a seated displacement (5,), with the preload spring; see :meth:`at`."""
         value, load = sum(row.value for row in rows), sum(row.force for row in rows)
         preload = self.bearing.axial_preload
         gradient, hessian = rows[0].gradient, rows[0].hessian
@@ -344,24 +347,25 @@ def rolling_state(
 
 def state_of_elements(elements: RollingElements, displacement: FloatArray) -> RollingState:
     """Return the state of prepared elements, see `rolling_state`."""
-    load = elements.at(displacement).gradient
-    return _state(elements, displacement, load, residual=0.0, iterations=0)
+    return _state(elements, displacement, None, residual=0.0, iterations=0)
 
 
 def _state(
-    elements: RollingElements, displacement: FloatArray, load: FloatArray, residual: float, iterations: int
+    elements: RollingElements, displacement: FloatArray, applied: FloatArray | None, residual: float, iterations: int
 ) -> RollingState:
-    local, bearing, seated = elements.at(displacement), elements.bearing, elements.seated(displacement)
+    """State under a load, by default that of the elements."""
+    bearing, seated = elements.bearing, elements.seated(displacement)
+    rows = [contacts.energy(seated) for contacts in elements.contacts]
+    local = elements.together(seated, rows)
     state = RollingState(
         bearing=bearing,
         displacement=seated,
-        load=load,
+        load=local.gradient if applied is None else applied,
         reaction=local.gradient + bearing.axial_preload * np.eye(5)[2],
         stiffness=local.hessian,
         rows=elements.loads(displacement),
         row_thrusts=tuple(
-            row.direction * float(contacts.energy(seated).gradient[2])
-            for row, contacts in zip(bearing.rows, elements.contacts, strict=True)
+            row.direction * float(energy.gradient[2]) for row, energy in zip(bearing.rows, rows, strict=True)
         ),
         speed=elements.speed,
         residual=residual,
@@ -464,11 +468,16 @@ def linearised_bearing(state: RollingState, name: str, at: float, *, damping: np
     RotorError
         As `Bearing`.
     """
+    require_held(state)
+    damped = np.zeros((2, 2)) if damping is None else np.asarray(damping, dtype=np.float64)
+    return Bearing(name, at, state.stiffness, damped)
+
+
+def require_held(state: RollingState) -> None:
+    """Raise `EquilibriumError` where clearance leaves the shaft loose in x or y."""
     loose = [direction for direction in state.loose if direction in ("x", "y")]
     if loose:
         raise EquilibriumError(
             f"{state.bearing.name} leaves the shaft loose in {' and '.join(loose)} under {state.load.tolist()}; "
             "expected a load, a preload or less clearance, so that its elements hold the shaft all around"
         )
-    damped = np.zeros((2, 2)) if damping is None else np.asarray(damping, dtype=np.float64)
-    return Bearing(name, at, state.stiffness, damped)

@@ -5,11 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from gearwhine.housing import Housing, HousingError, IncompleteModesError, Material, assemble, solve_modes
+from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.modes import eigensolver
-from gearwhine.housing.modes.eigensolver import Solver, arpack_modes
+from gearwhine.housing.modes.eigensolver import LoadResponses, Solver, arpack_modes, block_lanczos
 from gearwhine.meshes import ElementBlock, Mesh
 
 IN_ONE_PROCESS: tuple[Solver, ...] = ("lanczos", "eigsh")
@@ -55,6 +57,30 @@ def test_both_solvers_give_the_same_modes(square_tube: Matrices, asked: dict[str
     first, second = (modes.shapes.reshape(len(modes.shapes), -1) for modes in (one, other))
     shared = first @ square_tube.mass @ second.T
     np.testing.assert_allclose(np.linalg.norm(shared, axis=1), 1.0, atol=1e-8)
+
+
+def test_responses_to_loads_come_with_the_modes() -> None:
+    """Masses on springs of their own: each load moves its mass alone, by a closed form at rest and at the shift."""
+    rng = np.random.default_rng(2)
+    mass = rng.uniform(0.5, 2.0, 500)
+    stiffness = mass * np.linspace(1.0, 30.0, 500) ** 2
+    shift, loads = 5.07**2, rng.standard_normal((500, 3))
+    kept, dynamic = stiffness < shift * mass, (stiffness - shift * mass)[:, None]
+    responses = LoadResponses(loads, 3)
+    values, _ = block_lanczos(
+        lambda right: right / dynamic,
+        SymmetricMatrix.of(sparse.csr_array(sparse.diags_array(mass))),
+        shift,
+        int(kept.sum()),
+        above=True,
+        responses=responses,
+    )
+    np.testing.assert_allclose(values, (stiffness / mass)[kept], rtol=1e-10)
+    static, at_shift, derivative = responses.found
+    expected = np.where(kept[:, None], 0.0, loads / stiffness[:, None])
+    assert np.linalg.norm(static - expected) < 1e-6 * np.linalg.norm(expected)
+    np.testing.assert_allclose(at_shift, loads / dynamic, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(derivative, mass[:, None] * loads / dynamic**2, rtol=1e-9, atol=1e-12)
 
 
 def test_modes_of_eigsh_repeat_to_the_last_bit(square_tube: Matrices) -> None:

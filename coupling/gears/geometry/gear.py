@@ -564,7 +564,8 @@ def _check_numbers(gear: Gear) -> None:
             f"got {len(gear.pitch_deviations)}"
         )
     for tooth, deviation in enumerate(gear.pitch_deviations):
-        require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
+        if type(deviation) is not float or not math.isfinite(deviation):
+            require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
     if not 0.0 <= gear.poisson_ratio < 0.5:
         raise GearError(f"{label}poisson_ratio must be in 0 ... 0.5, got {gear.poisson_ratio!r}")
     if not math.radians(5.0) <= gear.pressure_angle <= math.radians(45.0):

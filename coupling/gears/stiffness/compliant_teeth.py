@@ -81,6 +81,19 @@ def _of_sound_teeth(
     return of_pair
 
 
+def _at_any_load(
+    solve: Callable[[CompliantTeeth, GearPairGeometry], _Of],
+) -> Callable[[CompliantTeeth, GearPairGeometry], _Of]:
+    """Keep what pairs have in common under any load, as the contact alone depends on that."""
+    kept = _of_sound_teeth(solve)
+
+    @wraps(solve)
+    def of_pair(self: CompliantTeeth, geometry: GearPairGeometry) -> _Of:
+        return kept(self if self.force is None else replace(self, force=None), geometry)
+
+    return of_pair
+
+
 @dataclass(frozen=True, eq=False)
 class ToothCompliance:
     """Compliance of one tooth and the body under it, along the line of action [m/N].
@@ -217,7 +230,7 @@ class CompliantTeeth(ABC):
         """
         return sum(self._shared_by_gear(geometry))
 
-    @_of_sound_teeth
+    @_at_any_load
     def rim_compliances(self, geometry: GearPairGeometry) -> tuple[RimCompliance, RimCompliance]:
         """Parts of `shared_compliance` by which the rims of the driver and of the driven gear move on their hubs.
 
@@ -240,7 +253,7 @@ class CompliantTeeth(ABC):
             compliances.append(RimCompliance(twist, shift, body.state))
         return compliances[0], compliances[1]
 
-    @_of_sound_teeth
+    @_at_any_load
     def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
         """Compliance that pairs share under loads that vary over the face like Legendre's polynomials p_m [m/N].
 
@@ -268,7 +281,7 @@ class CompliantTeeth(ABC):
         total.flags.writeable = False
         return total
 
-    @_of_sound_teeth
+    @_at_any_load
     def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
         """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
         return self._shared_by_bodies(geometry, supported=True)
@@ -297,6 +310,7 @@ class CompliantTeeth(ABC):
         support = support_compliance(gear, body.state).beside
         return lambda behind, ahead: teeth(behind, ahead) + support(behind, ahead)
 
+    @_at_any_load
     def teeth_compliance(self, geometry: GearPairGeometry) -> Compliance:
         """Compliance of both teeth without their contact [m/N], as a function of the position in base pitches."""
 
