@@ -32,7 +32,7 @@ from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, amplitude
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices
 from gearwhine.coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
 from gearwhine.coupling.time.histories import histories as coupled_histories
-from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 
@@ -503,7 +503,7 @@ def _neglected_acceleration(
     damped, directions = DampedMachine(*linear_matrices(system, state)), system.contact_directions
     loaded = [number for number, contact in enumerate(system.contacts) if contact.loaded]
 
-    def receptance(w: FloatArray) -> npt.NDArray[np.complex128]:
+    def receptance(w: FloatArray) -> ComplexArray:
         found = np.zeros((directions.shape[1], directions.shape[1], w.size), dtype=np.complex128)
         for number in loaded:
             found[:, number] = damped.answers(directions.T, directions[:, number], w)
