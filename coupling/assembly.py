@@ -48,6 +48,7 @@ from gearwhine.coupling.machine.connectors import (
     NonlinearConnector,
     Sliding,
     SpeedTable,
+    turned,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, embed
@@ -676,7 +677,7 @@ def _face_states(
     """Solve the faces of all contacts under the mean load.
 
     Mean forces, the flanks' tangents under them and the mean motion depend on each other only where meshes share a
-    torque. Slopes are those of carriers at t = 0, where the operating point has the flanks' gaps.
+    torque. Slopes are the means over a turn of the carriers, as are the flanks' gaps of operating points.
     """
     every = {
         number: _face(coordinates, mesh, sense, contact.contact)
@@ -687,20 +688,33 @@ def _face_states(
     if not faces:
         return {}
     means, motions = equilibrium_over_turn(turning(system))
-    for _ in range(_ROUNDS):
+    slopes = dict.fromkeys(faces, 0.0)
+    for number_of_round in range(_ROUNDS):
         states = {}
         for number, face in faces.items():
             mean = means[number] or MeanMesh(0.0, face.contact.unloaded_mean_mesh_stiffness, 0.0, 0.0)
             tangent = face.tangent(mean.force, _standing_phase(system.contacts[number]))
-            states[number] = (face, tangent, mean, float(face.tilting[0] @ motions[0]))
-        means, motions = equilibrium_over_turn(turning(_on_faces(system, states, slope_is_found=False)))
+            states[number] = (face, tangent, mean, slopes[number])
+        if number_of_round == 0:
+            slopes |= _mean_slopes(turning(_on_faces(system, states, slope_is_found=False)), motions)
+            states = {number: (*state[:3], slopes[number]) for number, state in states.items()}
+        moving = turning(_on_faces(system, states, slope_is_found=False))
+        means, motions = equilibrium_over_turn(moving)
+        slopes |= _mean_slopes(moving, motions)
         forces = {number: mean.force for number, (_, _, mean, _) in states.items()}
         changes = [abs(mean.force - forces[n]) for n, mean in enumerate(means) if mean is not None and n in faces]
         if max(changes, default=0.0) <= _SETTLED_FORCE_CHANGE * max(forces.values()):
             break
+    return {number: (*state[:3], slopes[number]) for number, state in states.items()}
+
+
+def _mean_slopes(system: CoupledSystem, motions: FloatArray) -> dict[int, float]:
+    """Mean slope over the face of flanks that resist tilting, by motions (t, n) at `CoupledSystem.turn_times` [rad]."""
+    placed = list(zip(system.turn_times.tolist(), motions, strict=True))
     return {
-        number: (face, tangent, mean, float(face.tilting[0] @ motions[0]))
-        for number, (face, tangent, mean, _) in states.items()
+        tie.of_contact: float(np.mean([turned(tie.directions, tie.turning, time)[:, 0] @ q for time, q in placed]))
+        for tie in system.linear
+        if tie.of_contact is not None
     }
 
 

@@ -80,6 +80,7 @@ from gearwhine.coupling.machine.components import (
     component_of_housing,
     rotor_component,
 )
+from gearwhine.coupling.machine.coupled_system import times_over_turn
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
 from gearwhine.coupling.machine.face_compliance import face_compliance
 from gearwhine.coupling.machine.gear_bodies import (
@@ -106,7 +107,7 @@ from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response
-from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.operating_point import OperatingPoint, flank_gaps, linearised_about
 from gearwhine.coupling.statics.operating_point_search import solve_operating_point
 from gearwhine.coupling.statics.static_model import (
     StaticGear,
@@ -139,8 +140,7 @@ from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
-_ANGLES = 7  # number of angles of a carrier's turn over which mesh forces are averaged
-_EQUAL_SHARES = 1e-6  # part of a mesh force by which that of an operating point differs from it by rounding
+_ROUNDING = 1e-6  # part of a force by which two operating points differ by rounding
 
 _ROUNDS = 20  # largest number of rounds in which forces and stiffness of teeth settle; each leaves at most a quarter
 _SETTLED_FORCE = 1e-6  # change of a mesh force in the last round, over the largest
@@ -791,7 +791,8 @@ class Machine:
         Rolling bearings whose stiffness is not given get their tangent stiffness under load, with the force that they
         have there; those with a nonlinear law start there. Pairs whose misalignment is None get the gap over the face
         by the deflection of shafts, bearings and housing. Given stiffness and misalignment stay as they are. Pairs that
-        share a torque, as planets do, get their mean force, see :meth:`mean_mesh_forces`.
+        share a torque, as planets do, get their mean force, see :meth:`with_flanks_of`; as carriers turn, tangent,
+        force and deflection of bearings are means, too.
 
         Parameters
         ----------
@@ -803,9 +804,11 @@ class Machine:
         CouplingError, EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
-        point = self.operating_point() if point is None else point
-        about = self.with_flanks_of(point) if point.pairs else self
-        return about._linear(bearings=tuple(bearing.linearised for bearing in point.bearings))
+        points = self._over_turn(self.operating_point() if point is None else point)
+        about = self._with_flanks_of(points) if points[0].pairs else self
+        return about._linear(
+            bearings=tuple(map(linearised_about, zip(*(turned.bearings for turned in points), strict=True)))
+        )
 
     def _linear(self, **parts: Sequence[Any]) -> "Machine":
         """Return the machine with other stiffness of its bearings, or other misalignment of its pairs.
@@ -817,14 +820,18 @@ class Machine:
     def with_flanks_of(self, point: OperatingPoint | None) -> "Machine":
         """Return the machine whose pairs have the gap over the face of an operating point, where they give none.
 
-        Pairs that share a torque get their mean force there. Without a point flanks that give no misalignment are
-        aligned, and shares those of equal meshes.
+        Pairs that share a torque get their mean force there. As carriers turn, what stands still changes the loads of
+        their planets: forces and gaps are means over a common turn, from ``point`` on. Without a point flanks that give
+        no misalignment are aligned, and shares those of equal meshes.
         """
+        return self._with_flanks_of(() if point is None else self._over_turn(point))
+
+    def _with_flanks_of(self, points: Sequence[OperatingPoint]) -> "Machine":
         open_pairs = [pair.label for pair in self.gear_pairs if pair.misalignment is None]
-        gaps = {} if point is None else point.flank_gaps(open_pairs)
+        gaps = flank_gaps(points, open_pairs)
         pairs = []
         for pair, shares, force in zip(
-            self.gear_pairs, self.train.shares_torque, self.mean_mesh_forces(point), strict=True
+            self.gear_pairs, self.train.shares_torque, self._mean_mesh_forces(points), strict=True
         ):
             if pair.misalignment is None:
                 pair = replace(pair, misalignment=0.0, face_gap=gaps.get((pair.driver, pair.driven), ()))
@@ -833,25 +840,29 @@ class Machine:
             pairs.append(pair)
         return self._linear(gear_pairs=tuple(pairs))
 
-    def mean_mesh_forces(self, point: OperatingPoint | None) -> list[float]:
-        """Mean mesh force of each pair at an operating point [N]; those of the train without one.
-
-        The torques alone give it but where pairs share one. As carriers turn, what stands still changes the shares of
-        their planets: the means over a turn are those of operating points at angles from that of ``point`` on. All
-        carriers turn by the same angles there.
-        """
+    def _mean_mesh_forces(self, points: Sequence[OperatingPoint]) -> list[float]:
+        """Mean mesh force of each pair over operating points [N]; that of the torques without any or up to rounding."""
         equal = self._equal_mesh_forces
-        if point is None or not point.pairs or not any(self.train.shares_torque):
+        if not points or not points[0].pairs:
             return list(equal.tolist())
-        over_turn = [np.array([pair.force for pair in point.pairs])]
-        rounding = _EQUAL_SHARES * equal
-        if any(shaft.carrier is not None and self.speeds[shaft.carrier] != 0.0 for shaft in self.shafts):
-            for angle in 2.0 * np.pi * np.arange(1, _ANGLES) / _ANGLES:
-                over_turn.append(np.array([pair.force for pair in self.turned(float(angle)).operating_point().pairs]))
-                if np.all(np.abs(over_turn[-1] - over_turn[0]) <= rounding):
-                    break  # alike all round
-        mean = np.mean(over_turn, axis=0)
-        return list(np.where(np.abs(mean - equal) <= rounding, equal, mean).tolist())
+        mean = np.mean([[pair.force for pair in point.pairs] for point in points], axis=0)
+        return list(np.where(np.abs(mean - equal) <= _ROUNDING * equal, equal, mean).tolist())
+
+    def _over_turn(self, point: OperatingPoint) -> tuple[OperatingPoint, ...]:
+        """Operating points over a common turn of all carriers, from a given one on; that alone where all are alike.
+
+        Planets are turned back to their first places: their forces and bearings are along the axes that turn with them.
+        """
+        turning = {name: self.speeds[name] for name in {shaft.carrier for shaft in self.shafts} if name is not None}
+        points = [point]
+        for time in times_over_turn(list(turning.values()))[1:].tolist():
+            turned = self
+            for carrier, speed in turning.items():
+                turned = turned.turned(speed * time, carrier)
+            points.append(turned.operating_point().in_carriers({c: speed * time for c, speed in turning.items()}))
+            if len(points) == 2 and points[1].is_alike(point, _ROUNDING):
+                return (point,)
+        return tuple(points)
 
     @property
     def _equal_mesh_forces(self) -> FloatArray:
@@ -865,16 +876,16 @@ class Machine:
         rows = zip(self.gear_pairs, self.train.shares_torque, strict=True)
         return [shares and follows_load(pair.stiffness) for pair, shares in rows]
 
-    def turned(self, angle: float, carrier: str | None = None) -> "Machine":
-        """Return the machine with a carrier and its planets turned about its axis [rad]; by default all that turn."""
+    def turned(self, angle: float, carrier: str) -> "Machine":
+        """Return the machine with a carrier and its planets turned about its axis [rad]."""
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-        shafts = []
-        for shaft in self.shafts:
-            turns = shaft.carrier is not None and (shaft.carrier == carrier if carrier else self.speeds[shaft.carrier])
-            if turns and shaft.carrier is not None:
-                center = np.array(self.shaft(shaft.carrier).axis)
-                shaft = replace(shaft, axis=tuple((center + turn @ (np.array(shaft.axis) - center)).tolist()))
-            shafts.append(shaft)
+        center = np.array(self.shaft(carrier).axis)
+        shafts = [
+            replace(shaft, axis=tuple((center + turn @ (np.array(shaft.axis) - center)).tolist()))
+            if shaft.carrier == carrier
+            else shaft
+            for shaft in self.shafts
+        ]
         return replace(self, shafts=shafts)
 
     def linearised(self, point: OperatingPoint | None) -> "Machine":

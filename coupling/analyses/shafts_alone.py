@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.statics.operating_point import linearised_about
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.numerics.speed_ranges import campbell_speeds, response_speeds
@@ -139,5 +140,5 @@ def bearings_under_load(machine: Machine) -> dict[str, BearingsUnderLoad]:
     for shaft in machine.shafts:
         loads = [load for load in point.bearings if load.mounted.rotor == shaft.name]
         states = {load.name: load.rolling for load in loads if load.mounted.needs_load and load.rolling is not None}
-        found[shaft.name] = tuple(load.linearised.bearing for load in loads), states
+        found[shaft.name] = tuple(linearised_about([load]).bearing for load in loads), states
     return found

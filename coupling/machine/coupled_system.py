@@ -1,5 +1,6 @@
 """Coupled system: components, connectors and loads in one set of modal coordinates, with its stiffness and damping."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,9 +18,33 @@ AnyConnector = ContactConnector | LinearConnector | NonlinearConnector
 
 _RIGID_MOTION_STIFFNESS = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
 _FREE_OVER_TURN = 1e-10  # force on a motion that nothing resists at all angles, over the largest stiffness
-_ANGLES = 7  # number of angles of a turn for means over it
-_TURNS = 12  # largest number of turns of the slowest carrier until all stand as at first
+_WAVES, _WAVES_OF_TWO = 6, 4  # number of waves in a carrier's turn, and together in two's, that a mean is exact for
+_TURNS = 1000  # largest number of turns of the slowest carrier until all stand as at first
 _WHOLE = 1e-6  # distance from a whole number below which a ratio of rates is whole
+
+
+def times_over_turn(rates: Sequence[float]) -> FloatArray:
+    """Return times for means over a common turn of what turns at rates [rad/s], (t,) [s]; 0 where nothing turns.
+
+    With p_i turns of the rate i in the common turn of duration T, the times are k T / t. A mean over them is exact for
+    waves cos(a p_i + b p_j) 2πk/t unless t divides a p_i + b p_j, which is not zero: t is the least number at which
+    none of |a| ≤ `_WAVES` and |a| + |b| ≤ `_WAVES_OF_TWO` is so, a rank-1 lattice over the angles of two carriers.
+    Multiples of another rate are left out; rates without a common turn within `_TURNS` of the slowest have so many.
+    """
+    sizes = np.unique(np.abs([rate for rate in rates if rate != 0.0]))
+    if not sizes.size:
+        return np.zeros(1)
+    ratios = sizes / sizes[0]
+    common = (n for n in range(1, _TURNS) if np.all(np.abs(n * ratios - np.rint(n * ratios)) < _WHOLE * n))
+    turns = next(common, _TURNS)
+    whole = np.rint(turns * ratios).astype(np.int64)
+    own = [p for i, p in enumerate(whole.tolist()) if not any(p % other == 0 for other in whole[:i].tolist())]
+    among = range(-_WAVES_OF_TWO, _WAVES_OF_TWO + 1)
+    waves = {a * p for p in own for a in range(1, _WAVES + 1)}
+    waves |= {a * p + b * q for p in own for q in own for a in among for b in among if abs(a) + abs(b) <= _WAVES_OF_TWO}
+    waves -= {0}
+    count = next(count for count in itertools.count(_WAVES + 1) if not any(wave % count == 0 for wave in waves))
+    return np.asarray(2.0 * np.pi * turns / sizes[0] * np.arange(count) / count)
 
 
 @dataclass(frozen=True)
@@ -228,18 +253,8 @@ class CoupledSystem:
 
     @cached_property
     def turn_times(self) -> FloatArray:
-        """Nominal times over a common turn of the directions for means over it [s], shape (t,); 0 where none turn.
-
-        The mean over them is exact for what changes by up to six waves in the slowest turn. Rates without a common turn
-        of at most `_TURNS` slowest ones have the mean over so many.
-        """
-        if not self.turns:
-            return np.zeros(1)
-        rates = np.abs(self.turning_rates)
-        ratios = rates / rates.min()
-        common = (n for n in range(1, _TURNS) if np.all(np.abs(n * ratios - np.rint(n * ratios)) < _WHOLE * n))
-        turns = next(common, _TURNS)
-        return np.asarray(2.0 * np.pi * turns / rates.min() * np.arange(_ANGLES * turns) / (_ANGLES * turns))
+        """Nominal times for means over a common turn of the directions [s], (t,), see `times_over_turn`."""
+        return times_over_turn(self.turning_rates if self.turns else ())
 
     @cached_property
     def over_turn(self) -> tuple["CoupledSystem", ...]:

@@ -35,7 +35,7 @@ from gearwhine.coupling.statics.static_model import (
     StaticShaftPart,
 )
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.rotors.rolling_bearings import RollingState, linearised_bearing
+from gearwhine.rotors.rolling_bearings import RollingState
 from gearwhine.rotors.rolling_bearings.equilibrium import require_held
 
 
@@ -100,30 +100,44 @@ class BearingLoad:
         return float(np.hypot(*self.deflection[3:]))
 
     def require_held(self) -> None:
-        """Raise `gearwhine.rotors.EquilibriumError` where :attr:`linearised` does."""
+        """Raise `gearwhine.rotors.EquilibriumError` where :func:`linearised_about` does."""
         if self.mounted.needs_load and self.rolling is not None:
             require_held(self.rolling)
 
-    @property
-    def linearised(self) -> MountedBearing:
-        """The bearing linearised about its load where its stiffness follows from that; else the bearing as it is.
+    def in_axes(self, angle: float) -> "BearingLoad":
+        """Return the load along axes that are turned about z by an angle [rad]."""
+        turn = np.eye(5)
+        turn[:2, :2] = turn[3:, 3:] = [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+        of_vectors = {name: turn @ getattr(self, name) for name in ("force", "deflection", "seat_motion")}
+        return replace(self, **of_vectors, stiffness=turn @ self.stiffness @ turn.T)
 
-        Raises
-        ------
-        gearwhine.rotors.EquilibriumError
-            Where clearance leaves the shaft loose in x or y.
-        """
-        if not self.mounted.needs_load or self.rolling is None:
-            return self.mounted
-        nominal, law = self.mounted.bearing, self.mounted.law
-        stiffness = linearised_bearing(self.rolling, nominal.name, nominal.at).stiffness
-        bearing = replace(nominal, stiffness=stiffness)
-        if self.mounted.damping_time > 0.0:
-            damping = nominal.spatial_damping + self.mounted.damping_time * stiffness
-            bearing = replace(bearing, damping=damping)
-        if isinstance(law, RollingLaw):
-            return replace(self.mounted, bearing=bearing, law=replace(law, state=self.rolling))
-        return replace(self.mounted, bearing=bearing, offset=self.force - self.stiffness @ self.deflection)
+
+def linearised_about(loads: Sequence[BearingLoad]) -> MountedBearing:
+    """Linearise a bearing about its loads where its stiffness follows from these; else return the bearing as it is.
+
+    Over several loads, as over a turn of carriers, it has the mean tangent and the mean force at the mean deflection. A
+    nonlinear law starts at the first load, with the tangent there.
+
+    Raises
+    ------
+    gearwhine.rotors.EquilibriumError
+        Where clearance leaves the shaft loose in x or y under the first load.
+    """
+    mounted, rolling = loads[0].mounted, loads[0].rolling
+    if not mounted.needs_load or rolling is None:
+        return mounted
+    nominal, law = mounted.bearing, mounted.law
+    about = loads[:1] if isinstance(law, RollingLaw) else loads
+    force, deflection, stiffness = (
+        np.mean([getattr(load, name) for load in about], axis=0) for name in ("force", "deflection", "stiffness")
+    )
+    require_held(rolling)
+    bearing = replace(nominal, stiffness=stiffness)
+    if mounted.damping_time > 0.0:
+        bearing = replace(bearing, damping=nominal.spatial_damping + mounted.damping_time * stiffness)
+    if isinstance(law, RollingLaw):
+        return replace(mounted, bearing=bearing, law=replace(law, state=rolling))
+    return replace(mounted, bearing=bearing, offset=force - stiffness @ deflection)
 
 
 # Largest gap over the face of spur teeth that counts as none, of the teeth's mean deflection, and at least [m]: the
@@ -221,11 +235,8 @@ class PairLoad:
 
     @property
     def face_gap(self) -> tuple[float, ...]:
-        """Gap that mesh stiffness and motion take: `station_gap`, or none where spur teeth carry evenly with it."""
-        gap = self.station_gap
-        is_spur = self.pair.geometry.driver.helix_angle == 0.0
-        small = is_spur and np.ptp(gap) <= max(_EVEN_GAP * self.tooth_deflection, _LEAST_GAP)
-        return () if small else gap
+        """Gap that mesh stiffness and motion take, see `mean_face_gap`."""
+        return mean_face_gap([self])
 
     @property
     def line_load(self) -> FloatArray:
@@ -303,6 +314,15 @@ class PairLoad:
     def mean_stiffness(self) -> float:
         """Mean mesh stiffness under load over the mesh period [N/m]."""
         return float(self.pair.contact.stiffness_of(self.fine).mean())
+
+
+def mean_face_gap(loads: Sequence[PairLoad]) -> tuple[float, ...]:
+    """Mean of `PairLoad.station_gap` over loads of a pair, or none where spur teeth carry evenly with it [m]."""
+    gap = np.mean([load.station_gap for load in loads], axis=0)
+    is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
+    deflection = float(np.mean([load.tooth_deflection for load in loads]))
+    small = is_spur and np.ptp(gap) <= max(_EVEN_GAP * deflection, _LEAST_GAP)
+    return () if small else tuple(gap.tolist())
 
 
 @dataclass(frozen=True, eq=False)
@@ -436,24 +456,46 @@ class OperatingPoint:
         """Return the load of the bearing of this name."""
         return next(bearing for bearing in self.bearings if bearing.name == name)
 
-    def flank_gaps(self, unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
-        """Gap of the flanks over the face that motion takes [m], by the names of driver and driven gear.
+    def in_carriers(self, angles: Mapping[str, float]) -> "OperatingPoint":
+        """Return the point with the loads of bearings on carriers along axes that have turned with these [rad]."""
 
-        See :attr:`PairLoad.face_gap`.
+        def angle(load: BearingLoad) -> float:
+            carrier = self.shaft(load.mounted.rotor).part.carrier or load.mounted.seat
+            return angles.get(carrier or "", 0.0)
 
-        Parameters
-        ----------
-        unaligned : sequence of str
-            Labels of the pairs whose misalignment follows from this point.
+        return replace(self, bearings=tuple(load.in_axes(angle(load)) for load in self.bearings))
 
-        Raises
-        ------
-        CouplingError
-            Where there are such pairs and no torque loads the flanks.
-        """
-        if unaligned and not self.pairs:
-            raise CouplingError(
-                f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
-                "expected a torque, or the misalignment"
-            )
-        return {pair.names: pair.face_gap for pair in self.pairs}
+    def is_alike(self, other: "OperatingPoint", rounding: float) -> bool:
+        """Whether pairs and bearings carry the same forces as at another point, but for a part of the largest."""
+        pairs, others = ([pair.force for pair in point.pairs] for point in (self, other))
+        seats, their = (np.array([one.force[:3] for one in point.bearings]) for point in (self, other))
+        return bool(
+            np.abs(np.subtract(pairs, others)).max(initial=0.0) <= rounding * max(others, default=0.0)
+            and np.abs(seats - their).max(initial=0.0) <= rounding * np.abs(their).max(initial=0.0)
+        )
+
+
+def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
+    """Gap of the flanks over the face that motion takes at operating points [m], by the names of the gears.
+
+    See `mean_face_gap`.
+
+    Parameters
+    ----------
+    points : sequence of OperatingPoint
+        None, one, or those over a turn of carriers.
+    unaligned : sequence of str
+        Labels of the pairs whose misalignment follows from these.
+
+    Raises
+    ------
+    CouplingError
+        Where there are such pairs and no torque loads the flanks.
+    """
+    pairs = [point.pairs for point in points]
+    if unaligned and pairs and not pairs[0]:
+        raise CouplingError(
+            f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
+            "expected a torque, or the misalignment"
+        )
+    return {loads[0].names: mean_face_gap(loads) for loads in zip(*pairs, strict=True)}

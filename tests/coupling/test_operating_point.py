@@ -19,7 +19,7 @@ from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
 from gearwhine.coupling.machine.components import HousingComponent, PedestalComponent
-from gearwhine.coupling.statics.operating_point import CAUSES
+from gearwhine.coupling.statics.operating_point import CAUSES, flank_gaps
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import EquilibriumError, Pedestal, Rotor, Segment
@@ -104,7 +104,7 @@ def test_machines_without_an_operating_point_are_refused() -> None:
     (pair,) = unloaded.gear_pairs
     assert unloaded.at_operating_point().gear_pairs == (pair,)
     with pytest.raises(CouplingError, match="'pinion' -> 'wheel': no flanks carry a load without a torque, so no mis"):
-        unloaded.operating_point().flank_gaps([pair.label])
+        flank_gaps([unloaded.operating_point()], [pair.label])
     machine = spur()
     missing = replace(machine, bearings=machine.bearings[1:])
     with pytest.raises(

@@ -110,7 +110,7 @@ def test_weight_turns_through_the_planets_over_a_turn_of_the_carrier() -> None:
     for angle in (1, 2):
         # A third of a turn takes each planet to the place of the next one.
         assert shares[angle] == pytest.approx(np.roll(shares[0], -angle), abs=1e-9)
-    axis = machine.turned(np.radians(120.0)).shaft("planet 1").axis
+    axis = machine.turned(np.radians(120.0), "carrier").shaft("planet 1").axis
     assert axis == pytest.approx(machine.shaft("planet 2").axis, abs=1e-12)
 
 

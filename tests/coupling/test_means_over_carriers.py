@@ -1,0 +1,150 @@
+"""Means over turns of carriers: forces, gaps and bearings do not depend on where the carriers start."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearwhine.coupling import Machine
+from gearwhine.coupling.load_analysis.planetary_load import ANGLES, over_carrier_turn
+from gearwhine.coupling.machine.coupled_system import times_over_turn
+from gearwhine.coupling.machine.loads import ShaftForce
+from gearwhine.coupling.statics.mean_mesh import mean_meshes
+from gearwhine.coupling.statics.operating_point import BearingLoad
+from gearwhine.numerics.arrays import FloatArray
+from gearwhine.rotors import Rotor, Segment
+from tests.coupling.test_displaced_pins import machine as machine_on_rollers
+from tests.machines.plane_planetary_set import STEEL, equal_angles, plane_set
+
+ERROR = 40e-6  # m, of the first pin of each set, along the circle
+
+
+@pytest.mark.parametrize("rates", [(30.0,), (30.0, -142.5), (10.0, 10.0 * 114.0 / 23.0), (7.0, 7.0 * np.pi)])
+def test_times_over_turn_average_the_waves_of_all_carriers_away(rates: tuple[float, ...]) -> None:
+    """Six waves of each, four of two together; up to the whole turns of speeds without a common one."""
+    times = times_over_turn(rates)
+    assert times.size < 30
+    for waves in itertools.product(range(-6, 7), repeat=len(rates)):
+        single = np.count_nonzero(waves) == 1
+        if any(waves) and np.abs(waves).sum() <= (6 if single else 4):
+            assert abs(np.exp(1j * times * np.dot(waves, rates)).mean()) < 1e-2, waves
+
+
+def _named(parts: dict[str, Any], letter: str, start: float) -> dict[str, Any]:
+    """Return the parts of a set with a letter before their names, along the axis."""
+
+    def name(text: str) -> str:
+        return f"{letter} {text}"
+
+    shafts = [
+        replace(
+            shaft,
+            rotor=replace(shaft.rotor, name=name(shaft.name)),
+            start=start,
+            carrier=None if shaft.carrier is None else name(shaft.carrier),
+            pin_error=(0.0, ERROR if shaft.name == "planet 1" else 0.0),
+        )
+        for shaft in parts["shafts"]
+    ]
+    return {
+        "shafts": [replace(shaft, pin_error=(0.0, 0.0)) if shaft.carrier is None else shaft for shaft in shafts],
+        "bearings": [
+            replace(one, rotor=name(one.rotor), bearing=replace(one.bearing, name=name(one.bearing.name)))
+            for one in parts["bearings"]
+        ],
+        "gears": [
+            replace(one, shaft=name(one.shaft), gear=replace(one.gear, name=name(one.gear.name)))
+            for one in parts["gears"]
+        ],
+        "gear_pairs": [replace(one, driver=name(one.driver), driven=name(one.driven)) for one in parts["gear_pairs"]],
+        "torque_supports": [replace(one, shaft=name(one.shaft)) for one in parts["torque_supports"]],
+        "outputs": [replace(one, shaft=name(one.shaft)) for one in parts["outputs"]],
+    }
+
+
+@cache
+def two_sets() -> Machine:
+    """Two sets in a row: the carrier of the first is the sun's shaft of the second; a pin of each is off its place."""
+    of_set = {"pressure_angle": np.radians(20.0), "with_ring": True, "material": STEEL, "diameter": 0.05}
+    first, second = (
+        _named(plane_set(equal_angles(3), **of_set), letter, start) for letter, start in (("a", 0.0), ("b", 0.2))
+    )
+    shafts = {shaft.name: shaft for shaft in (*first["shafts"], *second["shafts"])}
+    del shafts["b sun"]
+    carrier = shafts["a carrier"].rotor
+    long = Rotor("a carrier", [*carrier.segments, Segment(0.2, 0.05, 0.0, STEEL)], carrier.discs)
+    shafts["a carrier"] = replace(shafts["a carrier"], rotor=long)
+    gears = [
+        replace(one, shaft="a carrier", at=0.25) if one.shaft == "b sun" else one
+        for one in (*first["gears"], *second["gears"])
+    ]
+    bearings = [one for one in (*first["bearings"], *second["bearings"]) if one.rotor != "b sun"]
+    return Machine(
+        shafts=list(shafts.values()),
+        bearings=bearings,
+        gears=gears,
+        gear_pairs=[*first["gear_pairs"], *second["gear_pairs"]],
+        torque_supports=[*first["torque_supports"], *second["torque_supports"]],
+        outputs=second["outputs"],
+        speed=300.0,
+        torque=100.0,
+    )
+
+
+@pytest.mark.slow
+def test_mean_forces_of_two_carriers_are_those_of_independent_angles() -> None:
+    """Statics at five angles of each. At equal angles the sets stand alike all round, with a pin's error in place."""
+    machine = two_sets()
+    ways = [2.0 * np.pi * number / 5 for number in range(5)]
+    forces = np.array(
+        [
+            [pair.force for pair in machine.turned(one, "a carrier").turned(two, "b carrier").operating_point().pairs]
+            for one, two in itertools.product(ways, ways)
+        ]
+    )
+    found = [pair.mean_force for pair in machine.linearised(machine.operating_point()).gear_pairs]
+    assert found == pytest.approx(forces.mean(axis=0), rel=1e-4)
+    at_equal_angles = forces.reshape(5, 5, -1)[range(5), range(5)].mean(axis=0)
+    assert np.abs(at_equal_angles / found - 1.0).max() > 0.03
+
+
+@cache
+def past_a_force(angle: float = 0.0) -> Machine:
+    """Planets on rollers and flanks that their deflection tilts, on a carrier that a force pulls down as it turns."""
+    base = machine_on_rollers("linear")
+    pairs = [replace(pair, misalignment=None) for pair in base.gear_pairs]
+    forces = [ShaftForce("carrier", 0.1, (0.0, -6000.0, 0.0))]
+    return replace(base, gear_pairs=pairs, forces=forces).turned(angle, "carrier")
+
+
+@pytest.mark.slow
+def test_flanks_and_bearings_are_the_means_of_statics_over_a_turn() -> None:
+    """Statics at 24 angles, from which the first one's gaps are 7 µm off and its rollers' stiffness by a tenth."""
+    points = over_carrier_turn(past_a_force(), "carrier").points
+    gaps = np.array([[pair.station_gap for pair in point.pairs] for point in points])
+    stiffness = np.array([_along_carrier(point.bearings, turn) for turn, point in enumerate(points)])
+    assert np.abs(gaps[0] - gaps.mean(axis=0)).max() > 5e-6
+    assert np.abs(stiffness[0] - stiffness.mean(axis=0)).max() > 0.09 * stiffness.max()
+    for angle in (0.0, 0.9):
+        about = past_a_force(angle).at_operating_point()
+        found = [pair.face_gap for pair in about.gear_pairs]
+        np.testing.assert_allclose(found, gaps.mean(axis=0), atol=1e-8)
+        tangents = _planes([one.bearing.spatial_stiffness for one in about.bearings if one.elements], angle)
+        np.testing.assert_allclose(tangents, stiffness.mean(axis=0), atol=0.03 * stiffness.max())
+    forces = np.mean([[pair.force for pair in point.pairs] for point in points], axis=0)
+    means = [mean.force for mean in mean_meshes(about.assembled.system) if mean]
+    assert means == pytest.approx(forces, rel=1e-3)
+
+
+def _along_carrier(loads: Sequence[BearingLoad], turn: int) -> FloatArray:
+    """Tangents of the planets' rollers over the carrier's first x and y after a part of its turn, (b, 2, 2)."""
+    return _planes([load.stiffness for load in loads if load.mounted.elements], turn * 2.0 * np.pi / ANGLES)
+
+
+def _planes(stiffness: Sequence[FloatArray], angle: float) -> FloatArray:
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return np.array([turn.T @ one[:2, :2] @ turn for one in stiffness])
