@@ -7,6 +7,8 @@ away from it. A fillet along the axis is no bore, for it covers a quarter of the
 The corners of a recess with cut corners lie on a circle as well. An edge over the angle θ is off the circle by its
 sagitta R (1 − cos θ/2). Below the tolerance of a circle it proves itself; above, it is a chord of a bore where the
 edges divide the circle evenly, as meshes and tessellations do, and a wall where wide ones alternate with narrow ones.
+A recess of five to eight equal walls looks the same, but for the middle nodes of its edges: where a mesh of second
+order is curved anywhere, these lie on the circle of a bore, and on the chord of a wall.
 """
 
 from collections.abc import Sequence
@@ -147,6 +149,7 @@ _HALF_BORE_ROUNDNESS = 0.55  # part of the full circle below which a wall betwee
 _FEWEST_SECTORS = 4.99  # sectors of the full circle, of one quadrangle or two triangles each, less rounding
 _LEVEL = 0.1  # largest sine between an edge that runs round a bore and the plane of its circle
 _EVEN_SPANS = 1.6  # angle of the usual coarse edge over that of the narrowest that is its like
+_CURVED = 1e-3  # middle of a curved edge off its chord, over its length
 _EVEN_SHARE = 0.85  # part of the edges round a bore that are alike, at least
 _LEAST_SMOOTH_COSINE = 0.8  # cosine between a cylinder's normal and the next facet's above which the surface runs on
 
@@ -265,6 +268,8 @@ def _is_divided_as_a_circle(mesh: Mesh, bore: CylindricalBore, axis: FloatArray)
     usual = float(spans[np.searchsorted(np.cumsum(spans), 0.5 * total)])
     if 1.0 - np.cos(0.5 * usual) <= 2.0 * CIRCLE_TOLERANCE:
         return True
+    if _is_curved(mesh):
+        return _rise_of_middles(mesh, bore, axis) > 0.5
     return float(spans[spans > usual / _EVEN_SPANS].sum()) >= _EVEN_SHARE * total
 
 
@@ -388,6 +393,39 @@ def _level_spans(mesh: Mesh, facets: Facets, center: Sequence[float] | FloatArra
     edges = np.roll(points, -1, axis=1) - points
     is_level = np.abs(edges @ axis) <= _LEVEL * np.linalg.norm(edges, axis=2)
     return np.asarray(np.where(is_level, np.abs(_short_way(np.roll(angles, -1, axis=1) - angles)), 0.0))
+
+
+def _middles(facets: Facets) -> list[tuple[IntArray, IntArray, IntArray]]:
+    """Nodes at both ends and in the middle of each edge of facets of second order, (n_edges,) each, block by block."""
+    found = []
+    for block in facets:
+        corners = block.corners
+        if block.nodes.shape[1] > corners.shape[1]:
+            middle = block.nodes[:, corners.shape[1] : 2 * corners.shape[1]]
+            found.append((corners.ravel(), np.roll(corners, -1, axis=1).ravel(), middle.ravel()))
+    return found
+
+
+def _is_curved(mesh: Mesh) -> bool:
+    """Whether the middle of any edge on the surface is off its chord."""
+    return any(
+        bool(np.any(np.linalg.norm(off, axis=1) > _CURVED * np.linalg.norm(chord, axis=1)))
+        for begin, end, middle in _middles(mesh.boundary)
+        for chord in [mesh.points[end] - mesh.points[begin]]
+        for off in [mesh.points[middle] - mesh.points[begin] - 0.5 * chord]
+    )
+
+
+def _rise_of_middles(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> float:
+    """Median rise of the middles of a bore's level edges above their chords over the sagitta; 1 on the circle."""
+    rises = [np.zeros(0)]
+    for begin, end, middle in _middles(bore.facets):
+        chord = mesh.points[end] - mesh.points[begin]
+        level = np.abs(chord @ axis) <= _LEVEL * np.linalg.norm(chord, axis=1)
+        half, at = 0.5 * (mesh.points[begin] + mesh.points[end])[level], mesh.points[middle][level]
+        on_chord, found = (np.linalg.norm(across(x - np.asarray(bore.center), axis), axis=1) for x in (half, at))
+        rises.append((found - on_chord) / np.maximum(0.5 * bore.diameter - on_chord, 1e-12))
+    return float(np.median(np.concatenate(rises)))
 
 
 def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, axis: FloatArray) -> float:

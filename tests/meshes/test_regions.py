@@ -188,6 +188,34 @@ def test_a_flat_is_no_part_of_its_bore_and_closes_a_half_one(sides: int) -> None
     assert find_bores(_recess(_arc(0.5 * math.pi, 1.5 * math.pi, sides))) == ()
 
 
+def _of_second_order(mesh: Mesh, *, round_outside: bool, round_inside: bool) -> Mesh:
+    """Bricks of 20 nodes, whose middle nodes lie on the inner or the outer circle or on their chords."""
+    kind = ElementBlock("hexahedron20", np.arange(20)[None]).of
+    points, nodes = list(mesh.points), [list(element) for element in mesh.blocks[0].nodes]
+    least = np.hypot(*mesh.points[:, :2].T).min()
+    for element in nodes:
+        for place in kind.places[8:]:
+            ends = [element[c] for c in range(8) if np.sum(np.abs(np.subtract(kind.places[c], place)) > 1e-9) == 1]
+            middle = mesh.points[ends].mean(axis=0)
+            radii = np.hypot(*mesh.points[ends, :2].T)
+            inside = bool(radii.max() < 1.1 * least)
+            if np.ptp(radii) < 1e-9 and (round_inside if inside else round_outside):
+                middle[:2] *= radii[0] / np.hypot(*middle[:2])
+            element.append(len(points))
+            points.append(middle)
+    return Mesh(np.array(points), (ElementBlock("hexahedron20", np.array(nodes)),))
+
+
+@pytest.mark.parametrize("sides", [5, 6, 8])
+def test_equal_walls_are_no_bore_where_the_mesh_is_curved(sides: int) -> None:
+    """Only the middle nodes of their edges tell them from a coarse circle."""
+    walls = _recess(_arc(0.0, math.tau, sides)[:-1])
+    (bore,) = find_bores(_of_second_order(walls, round_outside=True, round_inside=True))
+    assert bore.diameter == pytest.approx(0.06)
+    assert find_bores(_of_second_order(walls, round_outside=True, round_inside=False)) == ()
+    assert len(find_bores(_of_second_order(walls, round_outside=False, round_inside=False))) == 1
+
+
 def test_of_two_bores_on_one_axis_the_nearest_is_taken() -> None:
     near, far = _ring(9), _ring(9)
     points = np.concatenate([near.points, far.points + [0.0, 0.0, 0.2]])
