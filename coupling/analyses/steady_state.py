@@ -38,6 +38,7 @@ from gearwhine.numerics.result_warnings import warning
 
 _RPM = 60.0 / (2.0 * np.pi)
 _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of interest: little folds back below it
+_ROUNDING = 1e-10  # of the highest line of a signal
 _LEAST_SAMPLES, _LEAST_OF_A_CYCLE = 512, 64  # of a period, and of a part of it that motions share
 _HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
 _SHARED_LINE = 1e-9  # relative distance of lines of several motions that are one
@@ -110,14 +111,14 @@ class SteadyMotion:
 def highest_lines(spectrum: Spectrum, limit: float = np.inf) -> list[tuple[float, float, float]]:
     """Frequencies [Hz], amplitudes and phases [rad] of the highest lines up to a limit [Hz], as many as are reported.
 
-    The phase is that of the line's cosine at t = 0.
+    The phase is that of the line's cosine at t = 0. What is no more than rounding beside the highest is no line.
     """
     inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit * (1.0 + 1e-9)))
     highest = inside[np.argsort(-spectrum.amplitude[inside], kind="stable")][:REPORTED_LINES]
     return [
         (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]), float(spectrum.phase[i]))
         for i in highest
-        if spectrum.amplitude[i] > 0.0
+        if spectrum.amplitude[i] > _ROUNDING * spectrum.amplitude[highest[0]]
     ]
 
 

@@ -292,7 +292,7 @@ def _answer(document: Document) -> Iterator[str]:
         ]
         missed = "limits are missed" if document.get("missed") else "all limits are met"
         held = f"; {missed}" if document["limits"] else ""
-        yield f"Design {one['number']} of {document['designs']} ({one['design']}): {', '.join(gains)}{held}."
+        yield f"Design {one['number']} ({one['design']} of {document['designs']}): {', '.join(gains)}{held}."
 
 
 def _designs(labels: Sequence[str], text: Callable[[Document, Any], str]) -> Iterator[Column]:

@@ -50,7 +50,7 @@ def test_harmonics_of_a_square_wave_are_fouriers() -> None:
 
 def test_harmonics_want_one_period() -> None:
     contact = tooth_contact(PLAIN, MODEL)
-    with pytest.raises(GearError, match="one mesh period"):
+    with pytest.raises(GearError, match="return in each mesh period"):
         transmission_error_harmonics(loaded_transmission_error(contact, 1e3, np.linspace(0.0, 1.0, 9)))
 
 

@@ -429,7 +429,7 @@ def test_keys_in_step_ends_of_lists_and_numbers_of_designs_are_told_as_the_case_
     assert row.rstrip().endswith("operation.force[1].x")
     # The number in the table, in the title of the case and in the file is one; the picture counts from 0, too.
     (chosen,) = document["chosen"]
-    assert f"best: design {chosen['number']}" in shown
+    assert f"Design {chosen['number']} (best of {document['designs']})" in shown
     assert tomllib.loads((out / "best.toml").read_text())["title"].endswith(f"design {chosen['number']}")
     with xr.open_dataset(out / "optimise.nc") as found:
         aims = found["aim_value"].values[:, 0]

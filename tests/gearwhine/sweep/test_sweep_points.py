@@ -318,7 +318,7 @@ def test_frequencies_of_a_machine_that_turns_the_other_way_are_positive() -> Non
 
 def test_points_of_other_code_are_not_taken_up(monkeypatch: pytest.MonkeyPatch) -> None:
     before = points_of()[0].key
-    monkeypatch.setattr("gearwhine.sweep.points.code_digest", lambda: "another")
+    monkeypatch.setattr("gearwhine.solutions.code_digest", lambda: "another")
     assert points_of()[0].key != before
 
 

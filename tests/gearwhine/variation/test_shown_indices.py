@@ -9,7 +9,7 @@ from rich.console import Console
 from gearwhine.numerics.distributions import Uniform
 from gearwhine.numerics.sampling import index_points
 from gearwhine.output.sections import Column, Table
-from gearwhine.output.terminal import _grid
+from gearwhine.output.terminal import _fitting
 from gearwhine.results.variation import sections, varied_document
 from gearwhine.variation.inputs import Input
 from gearwhine.variation.quantities import Evaluation
@@ -54,6 +54,7 @@ def test_a_key_is_whole_on_a_narrow_terminal() -> None:
     columns = (Column("key", "key"), Column("words", "words"))
     row = {"key": "gear.pinion.errors.helix.slope", "words": "a column that wraps at its spaces"}
     written = io.StringIO()
-    Console(file=written, width=36).print(_grid(Table(columns, [row], "")))
+    console = Console(file=written, width=36)
+    console.print(*_fitting(console, Table(columns, [row], ""), 0))
     first = [line[: line.index("  ", 2)] if "  " in line[2:] else line for line in written.getvalue().splitlines()]
     assert "gear.pinion.errors.helix.slope" in "".join(one.strip() for one in first)
