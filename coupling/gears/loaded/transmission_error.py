@@ -348,7 +348,7 @@ def polygon_phasors(phases: FloatArray, values: FloatArray, orders: npt.ArrayLik
 class HuntingCurve:
     """Harmonics of a curve over H mesh periods whose n phases return in each: of a few or of all, at little cost.
 
-    The second derivative of a polygon are its changes of slope s_j, so that its amplitude at the order k/H is
+    A polygon has the changes of slope s_j for its second derivative, so that its amplitude at the order k/H is
 
         c = -(2/H) / θ² Σ_j s_j e^{-iθ x_j},      θ = 2π k / H,
 
