@@ -7,7 +7,6 @@ The train lists pairs of shafts with their tooth numbers. Attributes are named a
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -28,6 +27,7 @@ from gearwhine.case.fields import (
     Mass,
     MaterialName,
     Name,
+    ObjectTable,
     PlanetNumber,
     PositiveLength,
     PositiveStiffness,
@@ -53,7 +53,7 @@ RollAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, at_most=2.0 * m
 Waves = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=100.0)]
 
 
-class Relief(Table):
+class Relief(ObjectTable):
     """Tip or root relief: its depth where the flank ends [m], and where it begins.
 
     By the roll angle [rad] or by the length along the line of action from the flank's end [m].
@@ -68,13 +68,7 @@ class Relief(Table):
     shape: Literal["linear", "parabolic"] = "linear"
     """Course from its beginning to the flank's end."""
 
-    @model_validator(mode="after")
-    def _one_start(self) -> Relief:
-        if (self.start_roll_angle is None) == (self.length is None):
-            raise wrong("exactly one of 'start_roll_angle' and 'length'")
-        return self
-
-    def build_tip_relief(self) -> TipRelief:
+    def build(self) -> TipRelief:
         """Build the relief as a tip relief."""
         from gearwhine.coupling.gears import TipRelief
 
@@ -87,7 +81,7 @@ class Relief(Table):
         return RootRelief(**self.model_dump())
 
 
-class ProfileErrors(Table):
+class ProfileErrors(ObjectTable):
     """Deviations along the profile [m], positive where there is too much material, as an inspection reports them."""
 
     slope: Deviation = 0.0
@@ -103,13 +97,6 @@ class ProfileErrors(Table):
     table: Annotated[tuple[tuple[RollAngle, Deviation], ...], Field(max_length=2000)] = ()
     """Rows of roll angle and deviation, the roll angles ascending."""
 
-    @field_validator("table", mode="after")
-    @classmethod
-    def _ascending(cls, rows: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        if len(rows) == 1 or any(after[0] <= before[0] for before, after in itertools.pairwise(rows)):
-            raise wrong("two rows or more of a roll angle and a deviation, the roll angles increasing")
-        return rows
-
     def build(self) -> ProfileDeviation:
         """Build the profile deviation."""
         from gearwhine.coupling.gears import ProfileDeviation
@@ -117,7 +104,7 @@ class ProfileErrors(Table):
         return ProfileDeviation(**self.model_dump())
 
 
-class HelixErrors(Table):
+class HelixErrors(ObjectTable):
     """Deviations and modifications across the face [m], positive where there is too much material."""
 
     slope: Deviation = 0.0
@@ -128,12 +115,6 @@ class HelixErrors(Table):
     """Relief at both ends, over `end_relief_length`."""
     end_relief_length: LengthFromZero = 0.0
     """Length of the end relief; needed with it."""
-
-    @model_validator(mode="after")
-    def _relief_has_length(self) -> HelixErrors:
-        if self.end_relief > 0.0 and self.end_relief_length == 0.0:
-            raise wrong("the length of the end relief", "end_relief_length")
-        return self
 
     def build(self) -> HelixDeviation:
         """Build the helix deviation across the face."""
@@ -288,7 +269,7 @@ NOMINAL_WIDTH = 10.0
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
-class RingSupport(Table):
+class RingSupport(ObjectTable):
     """What holds the outside of an internal gear's rim."""
 
     kind: Literal["clamped", "housing", "springs", "bolts", "pins"] = "clamped"
@@ -306,18 +287,6 @@ class RingSupport(Table):
     """Tangential stiffness of each bolt or pin, or of all springs together. Default: rigid bolts and pins."""
     first: Angle = 0.0
     """Angle of the first bolt or pin from x."""
-
-    @model_validator(mode="after")
-    def _has_its_values(self) -> RingSupport:
-        discrete, stiffness = ("count", "seat_width"), ("radial_stiffness", "tangential_stiffness")
-        held_at_places = self.kind in ("bolts", "pins")
-        for key in (*discrete, *stiffness):
-            given = getattr(self, key) is not None
-            if not given and (held_at_places if key in discrete else self.kind == "springs"):
-                raise wrong(f"a value beside kind = {self.kind!r}", key)
-            if given and not held_at_places and (key in discrete or self.kind != "springs"):
-                raise wrong(f"none beside kind = {self.kind!r}", key)
-        return self
 
     def build(self) -> BuiltRingSupport:
         """Build the support."""
@@ -524,7 +493,7 @@ class Gear(Table):
             dedendum=self.dedendum,
             root_radius=self.root_radius,
             bore=self.bore,
-            tip_relief=None if self.tip_relief is None else self.tip_relief.build_tip_relief(),
+            tip_relief=None if self.tip_relief is None else self.tip_relief.build(),
             root_relief=None if self.root_relief is None else self.root_relief.build_root_relief(),
             eccentricity=errors.offset,
             eccentricity_phase=errors.phase,
