@@ -401,22 +401,6 @@ class Gear(Table):
             raise wrong("the face width of a helical gear, over which its teeth come into mesh", "face_width")
         if self.internal is False and self.teeth < 0:
             raise wrong("true, or left out, with a negative number of teeth", "internal")
-        if self.teeth < 0:
-            self._without_hub()
-        elif self.ring_support is not None:
-            expected = f"none of an external gear; a ring has a negative number of teeth, teeth = {-self.teeth}"
-            raise wrong(expected, "ring_support")
-        if self.bore >= 2.0 * self.base_circle_radius:
-            raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
-        if self.web is not None and self.rim is None:
-            raise wrong("no web, or a rim around it", "web")
-        if self.hub_diameter is not None and (self.web is None or not 0.0 < self.bore < self.hub_diameter):
-            raise wrong("no hub, or a web around it and a smaller bore inside", "hub_diameter")
-        if self.hub_width is not None and (self.hub_diameter is None or self.hub_width < (self.web or 0.0)):
-            raise wrong("the width of a hub with a hub_diameter, at least that of the web", "hub_width")
-        for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
-            if deviations and len(deviations) != abs(self.teeth):
-                raise wrong(f"one deviation for each of {abs(self.teeth)} teeth, or none", "errors", key)
         if self.errors.planet is not None:
             raise wrong(one_of_planets("gear"), "errors", "planet")
         for number, fault in enumerate(self.fault):
@@ -433,13 +417,6 @@ class Gear(Table):
             raise wrong("'rotor' and 'at' together, or neither in a case without rotors")
         return self
 
-    def _without_hub(self) -> None:
-        """Refuse a bore, web or hub of an internal gear, which is a ring outside its teeth."""
-        keys = ("bore", "web", "hub_diameter", "hub_width")
-        for key in keys:
-            if getattr(self, key):
-                raise wrong("none of an internal gear, a ring outside its teeth as thick as its 'rim'", key)
-
     @property
     def tooth_module(self) -> float:
         """Normal module [m], also where the gear is given by its diametral pitch or its base radius."""
@@ -451,16 +428,6 @@ class Gear(Table):
             return module_from_diametral_pitch(self.diametral_pitch)
         assert self.base_radius is not None
         return module_from_base_radius(self.base_radius, abs(self.teeth), self.pressure_angle, self.helix_angle)
-
-    @property
-    def base_circle_radius(self) -> float:
-        """Radius of the base circle [m]."""
-        if self.base_radius is not None:
-            return self.base_radius
-        from gearwhine.coupling.gears.geometry.involute import module_from_base_radius
-
-        # The module is proportional to the base radius.
-        return self.tooth_module / module_from_base_radius(1.0, abs(self.teeth), self.pressure_angle, self.helix_angle)
 
     def build(self, material: Material | None = None) -> BuiltGear:
         """Build the gear, of a material or by default of steel.
