@@ -101,6 +101,7 @@ def analysis_of(name: str) -> str | None:
     kind, last = (name.partition(".")[0] if "." in name else "*"), name.rpartition(".")[2]
     of_end = (one for one in QUANTITIES if matches(one.end, last))
     found = list(dict.fromkeys(one.analysis for one in of_end if matches(one.kind.removeprefix("rolling_"), kind)))
+    # A part alone, as in ``sensor.*``, leaves it open; an end of a name means the first analysis that has such.
     return found[0] if found and (len(found) == 1 or last.strip("*")) else None
 
 
