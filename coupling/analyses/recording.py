@@ -178,9 +178,13 @@ class TransientPlan:
 
     def _record_findings(self) -> Iterator[Finding]:
         """Yield revolutions of which nothing, or next to nothing, is recorded."""
-        if self.revolutions is not None and self.revolutions - self.discarded < SHORTEST_RECORD:
-            expected = f"at least {SHORTEST_RECORD:g} fewer revolutions than the {self.revolutions:g} of the run"
-            yield Finding(_PART, "discard", self.discard, expected)
+        if self.revolutions is None or self.revolutions - self.discarded >= SHORTEST_RECORD:
+            return
+        if self.discarded >= self.revolutions:
+            yield Finding(_PART, "discard", self.discard, f"fewer revolutions than the {self.revolutions:g} of the run")
+        else:
+            expected = f"{SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
+            yield Finding(_PART, "revolutions", self.revolutions, expected)
 
     @property
     def discarded(self) -> float:
