@@ -361,7 +361,8 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
                 write_mode_cache(place, housing)
             housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
     key = housing_key(given_housing(case, command))
-    return replace(varied, housing=reduce_housing(case, housing), housing_key=key, radiated=radiated), housing
+    reduced = reduce_housing(case, housing)
+    return replace(varied, solved=housing, housing=reduced, housing_key=key, radiated=radiated), housing
 
 
 def is_count(value: object) -> bool:

@@ -168,7 +168,7 @@ class _Gearbox:
         coupled = self.loaded.coupled
         if coupled.system.turns or any(one.bearing.speeds is not None for one in self.machine.bearings):
             return None
-        return lines_over_speed(coupled, self.speeds, self.limit)
+        return lines_over_speed(coupled, self.speeds, self.limit, of_housing=self.wanted.has_sound)
 
     @cached_property
     def at_speeds(self) -> tuple[CoupledMachine, ...]:
