@@ -24,6 +24,7 @@ from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.reduced_housing import reduced_component
 from gearwhine.housing import HousingModes
+from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.solutions import Failure, failure_of, solution_key
@@ -133,8 +134,7 @@ class VariedCase:
     def machine(self, case: Case) -> Machine:
         """Return the machine of a case of the study, in its housing."""
         housing = self.housing
-        # Places of bearings and materials belong to the housing, too.
-        if case.housing is not None and (key := housing_key(given_housing(case, "vary"))) != self.housing_key:
+        if case.housing is not None and (key := self.key_of_housing(case)) != self.housing_key:
             if key not in self.housings:
                 if len(self.housings) >= _KEPT_HOUSINGS:
                     self.housings.pop(next(iter(self.housings)))
@@ -144,6 +144,16 @@ class VariedCase:
                 self.housings[key] = reduce_housing(case, solved), radiated
             housing = self.housings[key][0]
         return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+
+    def key_of_housing(self, case: Case) -> str:
+        """Return the key of all that a machine takes of its housing, places of bearings and materials included.
+
+        Where the sound is wanted, so are the settings by which the housing radiates.
+        """
+        key = housing_key(given_housing(case, "vary"))
+        if not self.wanted.has_sound or case.acoustics is None:
+            return key
+        return content_key({"housing": key, "acoustics": case.acoustics.model_dump(mode="json")})
 
     def radiated_by(self, housing: HousingComponent | None) -> RadiatedPower | None:
         """Return the radiation of a housing of the study; None where the sound is not wanted."""

@@ -112,6 +112,16 @@ def test_a_gearbox_with_other_walls_has_a_radiation_of_its_own(tmp_path: Path) -
     assert found.solved.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
 
 
+def test_sound_of_thinner_air_is_as_much_lower(tmp_path: Path) -> None:
+    """The equivalent radiated power is the density of the air times what the walls do."""
+    air = {"variation.vary": {"acoustics.density": {"uniform": [0.6, 0.9]}}}
+    found = _coarse().changed(ESTIMATE).changed(STUDY | air).vary(1, folder=tmp_path / "out", workers=1).solved
+    lower = (
+        np.array(found.outcomes[0].curves["housing.sound_power_db"]) - found.nominal.curves["housing.sound_power_db"]
+    )
+    assert lower == pytest.approx(10.0 * np.log10(found.values[0, 0] / 1.204))
+
+
 def test_machines_of_python_sound_as_those_of_a_case(tmp_path: Path) -> None:
     study = _coarse().changed(ESTIMATE)
     found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1).solved
