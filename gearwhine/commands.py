@@ -27,6 +27,9 @@ class Command:
         ``sections`` of the one with the command's name; empty for files alone.
     method : str
         Method of `gearwhine.case_study.CaseStudy`; that of the command's name by default.
+    chapters : tuple of (str, str)
+        Chapters of the report in their order: a key of the document that has one, and the module of
+        :mod:`gearwhine.results` with the function in it that composes it.
     files : tuple of str
         Patterns of the names of the files that it writes; none where it leaves no results for a report.
     needs : tuple of str
@@ -60,6 +63,7 @@ class Command:
     name: str
     sections: str | None = None
     method: str = ""
+    chapters: tuple[tuple[str, str], ...] = ()
     files: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     reads: tuple[str, ...] = ()
@@ -90,13 +94,21 @@ _RUN = (
     *("gears-*.png", "rotor-*.png", "run-up-*.png", "spectrum.png", "contributions.png", "mesh-force.png"),
     *("orbits.png", "modal-coordinates.png"),
 )
+INCLUDED = frozenset({"housing", "compare", "load", "system", "sound"})
+"""Keys of a document under which it holds that of another analysis."""
+_LOADED = ("load", "operating_point.report")
+_CHAPTERS_OF_RUN = (
+    ("housing", "housing.report"), ("compare", "comparison.report"), ("rotors", "rotors.report"),
+    ("pairs", "gears.report"), _LOADED, ("system", "system.report"), ("steps", "run.report"), ("sound", "sound.report")
+)  # fmt: skip
 _OF_MACHINE = ("transient", "gear", "gear_pair")
 _OF_MANY: dict[str, Any] = {"always_writes": True, "without": ("folder", "fresh"), "timed": True}
 """Of a study of many solutions, which keeps them in the folder, see :class:`gearwhine.study_folder.FolderOptions`."""
 
 STUDY_COMMANDS = (
     Command(
-        "run", method="run_into", files=_RUN, reads=("acoustics", "measured", "rotor_analysis", "sweep"),
+        "run", method="run_into", chapters=_CHAPTERS_OF_RUN,
+        files=_RUN, reads=("acoustics", "measured", "rotor_analysis", "sweep"),
         always_writes=True, stores=True, without=("folder",), fresh=_FRESH_RUN, timed=True
     ),
     Command(
@@ -105,50 +117,62 @@ STUDY_COMMANDS = (
     ),
     Command("mesh", always_writes=True, names={"suffix": "format"}, draws=False),
     Command(
-        "modes", files=(*_DATA, "modes.vtu"), unread=_OF_MACHINE, longer=("detail", "modes.detailed_sections"),
+        "modes", chapters=(("certificate", "housing.report"), ("reduced_housing", "modes.report")),
+        files=(*_DATA, "modes.vtu"), unread=_OF_MACHINE, longer=("detail", "modes.detailed_sections"),
         fresh=_FRESH_MODES
     ),
     Command(
-        "rotors", files=(*_CASE, "results.nc", "rotor-*.png"), needs=("rotor",), reads=("rotor_analysis", "sweep"),
+        "rotors", chapters=(("rotors", "rotors.report"),),
+        files=(*_CASE, "results.nc", "rotor-*.png"), needs=("rotor",), reads=("rotor_analysis", "sweep"),
         unread=("transient", "gear_pair"), writes_with="write_ross"
     ),
     Command(
-        "gears", files=(*_DATA, "gears-*.png"), needs=("gear_pair",), unread=("transient",), without=("aims",)
+        "gears", chapters=(("pairs", "gears.report"),),
+        files=(*_DATA, "gears-*.png"), needs=("gear_pair",), unread=("transient",), without=("aims",)
     ),
     Command(
-        "load", "operating_point.sections", "operating_point", files=(*_DATA, _LOAD),
+        "load", "operating_point.sections", "operating_point", chapters=(("gear_pairs", "operating_point.report"),),
+        files=(*_DATA, _LOAD),
         needs=("rotor", "bearing", "operation"), reads=("acoustics", "update"), fresh=_FRESH_MODES
     ),
     Command(
-        "system", files=(*_DATA, *_SYSTEM), needs=("rotor", "operation"), reads=("sweep",), fresh=_FRESH_MODES
+        "system", chapters=(_LOADED, ("stability", "system.report")),
+        files=(*_DATA, *_SYSTEM), needs=("rotor", "operation"), reads=("sweep",), fresh=_FRESH_MODES
     ),
     Command(
-        "steady", "steady_state.sections", files=(*_DATA, "steady-*.png"), needs=("rotor", "operation"),
+        "steady", "steady_state.sections", chapters=(_LOADED, ("motions", "steady_state.report")),
+        files=(*_DATA, "steady-*.png"), needs=("rotor", "operation"),
         reads=("sweep",), fresh=_FRESH_MODES
     ),
     Command(
-        "sound", files=(*_DATA, _SOUND), needs=("housing",), reads=("acoustics",), without=("acoustics",),
+        "sound", chapters=(("total_db_a", "sound.report"),),
+        files=(*_DATA, _SOUND), needs=("housing",), reads=("acoustics",), without=("acoustics",),
         fresh=_FRESH_MODES
     ),
     Command(
-        "sweep", files=(*_DATA, "sweep-*.png", "waterfall-*.png"), reads=("acoustics", "sweep"), fresh=_FRESH_POINTS,
+        "sweep", chapters=(("points", "sweep.report"),),
+        files=(*_DATA, "sweep-*.png", "waterfall-*.png"), reads=("acoustics", "sweep"), fresh=_FRESH_POINTS,
         **_OF_MANY
     ),
     Command(
-        "vary", "variation.sections", files=(*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
+        "vary", "variation.sections", chapters=(("quantities", "variation.report"),),
+        files=(*_CASE, "vary.nc", "vary-*.png", "worst-*.toml"),
         reads=("sweep", "variation"), names={"samples": "n"}, fresh=_FRESH_SAMPLES, **_OF_MANY
     ),
     Command(
-        "detect", "detection.sections", files=(*_MODES, "detect.nc", "detection-*.png"),
+        "detect", "detection.sections", chapters=(("detectability", "detection.report"),),
+        files=(*_MODES, "detect.nc", "detection-*.png"),
         reads=("variation", "detection"), fresh=_FRESH_SAMPLES, **_OF_MANY
     ),
     Command(
         "optimise", "optimisation.sections",
+        chapters=(("designs", "optimisation.report"),),
         files=(*_CASE, "optimise.nc", "optimise-*.png", "best.toml", "nearest.toml", "front-*.toml"),
         reads=("sweep", "variation", "optimisation"), names={"evaluations": "n"}, fresh=_FRESH_DESIGNS, **_OF_MANY
     ),
     Command(
-        "compare", "comparison.sections", files=(*_MODES, *_COMPARED, "comparison.nc", "frac.csv"),
+        "compare", "comparison.sections", chapters=(("pairing", "comparison.report"),),
+        files=(*_MODES, *_COMPARED, "comparison.nc", "frac.csv"),
         reads=("measured",), unread=_OF_MACHINE, fresh=_FRESH_MODES
     ),
     Command(
@@ -156,16 +180,20 @@ STUDY_COMMANDS = (
         fresh=_FRESH_MODES
     ),
     Command(
-        "update", files=(*_CASE, "update.nc", "updated.toml"), reads=("measured", "update"), unread=_OF_MACHINE,
+        "update", chapters=(("parameters", "update.report"),),
+        files=(*_CASE, "update.nc", "updated.toml"), reads=("measured", "update"), unread=_OF_MACHINE,
         always_writes=True, draws=False
     ),
     Command(
-        "render", "", files=(*_MODES, *_SHAPES, "measured-and-model.png"), reads=("measured",), unread=_OF_MACHINE,
+        "render", "", chapters=(("command", "housing.render_report"),),
+        files=(*_MODES, *_SHAPES, "measured-and-model.png"), reads=("measured",), unread=_OF_MACHINE,
         always_writes=True, adds=True, names={"mode_format": "format"}, fresh=_FRESH_MODES, draws=False
     ),
 )  # fmt: skip
 """Commands on a case, in the order of the help."""
 
-_SIMULATE = Command("simulate", files=_RUN, needs=("rotor", "operation"), reads=("acoustics",))
+_SIMULATE = Command(
+    "simulate", chapters=_CHAPTERS_OF_RUN, files=_RUN, needs=("rotor", "operation"), reads=("acoustics",)
+)
 COMMANDS = {command.name: command for command in (*STUDY_COMMANDS, _SIMULATE) if command.files}
 """Analyses that leave results in the output folder, by name: the commands, and `simulate` of Python."""

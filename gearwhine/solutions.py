@@ -1,7 +1,8 @@
-"""Solutions of a study of many: the key of what they depend on, the failure in place of one, the time that is left."""
+"""Solutions of a study of many: the key of what they depend on, the failure in place of one, how many are done."""
 
 from __future__ import annotations
 
+import time
 import traceback
 from collections.abc import Container
 from dataclasses import dataclass, replace
@@ -11,12 +12,14 @@ import gearwhine
 from gearwhine.case import Case, CaseError, case_document
 from gearwhine.failures import explain
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.progress import Progress
 from gearwhine.numerics.source_digest import installed
 from gearwhine.output.files import with_contents
 from gearwhine.workers import OtherCodeError, code_digest
 
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "numba")
 _MINUTE, _HOUR = 60.0, 3600.0
+_REPORTED_EACH = 2.0  # least time between two reports of progress [s]
 
 
 @dataclass(frozen=True)
@@ -72,3 +75,31 @@ def duration(seconds: float) -> str:
     if seconds < 1.5 * _MINUTE:
         return f"{seconds:.0f} s"
     return f"{seconds / _MINUTE:.0f} min" if seconds < 1.5 * _HOUR else f"{seconds / _HOUR:.1f} h"
+
+
+class StudyProgress:
+    """Progress of a study of many solutions: how many are done, and how long the others will take.
+
+    Parameters
+    ----------
+    progress : callable
+    nouns : str
+        What the solutions are of: ``"gearboxes"``.
+    total : int
+    before : int
+        Number of those that an earlier run had found.
+    """
+
+    def __init__(self, progress: Progress, nouns: str, total: int, before: int = 0) -> None:
+        self._progress, self._nouns, self._total, self._before = progress, nouns, total, before
+        self._start, self._reported = time.perf_counter(), -_REPORTED_EACH
+
+    def report(self, done: int, news: str = "") -> None:
+        """Report the number of solutions that are done, with news of them, where the last report is old enough."""
+        passed = time.perf_counter() - self._start
+        if passed - self._reported < _REPORTED_EACH and done < self._total:
+            return
+        self._reported = passed
+        left = passed * (self._total - done) / max(done - self._before, 1)
+        remaining = f", about {duration(left)} left" if left >= 1.0 and done > self._before else ""
+        self._progress(f"{self._nouns}: {done} of {self._total}{news}{remaining}", done / self._total)

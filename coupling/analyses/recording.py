@@ -157,10 +157,13 @@ class TransientPlan:
 
     def __post_init__(self) -> None:
         """Require a number of revolutions or a run, a stretch to record, and numbers that can be."""
-        if (self.revolutions is None) == (self.run is None):
-            raise CouplingError(
-                f"a transient of {self.revolutions} revolutions and the run {self.run}; expected one of the two"
+        if self.revolutions is None and self.run is None:
+            refuse(
+                [Finding(_PART, "revolutions", "None", "a number above 0 of revolutions, or a 'run'")], CouplingError
             )
+        if self.revolutions is not None and self.run is not None:
+            expected = "no number of revolutions beside a 'run', which has its own time"
+            refuse([Finding(_PART, "revolutions", self.revolutions, expected)], CouplingError)
         rules: dict[str, Rule] = {
             "revolutions": Number(above=0.0, at_most=1e6, optional=True),
             "discard": Number(at_least=0.0, optional=True),

@@ -52,22 +52,21 @@ from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, desi
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
-from gearwhine.output.named_quantities import plain_pattern, statistic_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
-from gearwhine.solutions import Failure, duration
+from gearwhine.solutions import Failure, StudyProgress
 from gearwhine.solve.machine import plan_of
 from gearwhine.solve.radiated_power import Radiations
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.inputs import varied_inputs
-from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate
+from gearwhine.variation.named_quantities import analysis_of, plain_pattern, statistic_of
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
 from gearwhine.variation.samples import outcome_of
 from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_TOLD_EACH = 2.0  # least time between two lines of progress [s]
 MOST_GRID = 100_000
 """Most designs of a grid."""
 
@@ -374,12 +373,13 @@ def _searched(
     """Try designs as the method says."""
     designs, space = list[Design](), space_of(inputs)
     budget, levels = _most_designs(inputs, settings), [one.levels for one in inputs]
-    told = _Teller(budget, progress)
+    reached = StudyProgress(progress, "designs", budget)
 
     def find(points: FloatArray) -> tuple[FloatArray, FloatArray]:
         found = tried(points, budget - len(designs) - len(points))
         designs.extend(found)
-        told.took(designs)
+        within = sum(one.excess == 0.0 for one in designs)
+        reached.report(len(designs), f" at most, {within} within the limits")
         return np.array([one.minimised for one in found]), np.array([one.excesses for one in found])
 
     trials = Trials(space, find, budget)
@@ -397,24 +397,6 @@ def _most_designs(inputs: Sequence[DesignInput], settings: _Settings) -> int:
     if count > MOST_GRID:
         raise CaseError([Problem("the number of designs of the grid", count, f"at most {MOST_GRID}")])
     return count
-
-
-class _Teller:
-    """Tells how many designs are tried, and the best of them by one aim."""
-
-    def __init__(self, total: int, progress: Progress) -> None:
-        self._total, self._progress, self._start = total, progress, time.perf_counter()
-        self._last = self._start
-
-    def took(self, designs: Sequence[Design]) -> None:
-        """Count designs that are tried."""
-        now = time.perf_counter()
-        if now - self._last >= _TOLD_EACH:
-            self._last = now
-            within = sum(one.excess == 0.0 for one in designs)
-            left = (now - self._start) / len(designs) * (self._total - len(designs))
-            remaining = f", {duration(left)} left" if left >= 1.0 else ""
-            self._progress(f"design {len(designs)} of at most {self._total}, {within} within the limits{remaining}")
 
 
 def _with_scatter(point: FloatArray, scatter: FloatArray) -> FloatArray:

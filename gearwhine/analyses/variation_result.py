@@ -32,7 +32,6 @@ from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
 from gearwhine.output import file_stems, staging
 from gearwhine.output.files import MODE_CACHE_FILE
-from gearwhine.output.named_quantities import matches, statistic_of
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
 from gearwhine.solve.acoustics import acoustics_of
@@ -41,7 +40,8 @@ from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.radiated_power import Radiations, radiated_power_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
-from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, analysis_of, evaluate, possible_quantities
+from gearwhine.variation.named_quantities import analysis_of, matches, possible_quantities, statistic_of
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import VariedCase, outcome_of
 from gearwhine.variation.statistics import VariedResult, WorstGearbox, known_limits
@@ -51,16 +51,6 @@ if TYPE_CHECKING:
 
     from gearwhine.housing import HousingModes
 
-_NEEDS = {
-    "gears": ("gear_pair",),
-    "load": ("rotor", "bearing", "operation"),
-    "rotors": ("rotor",),
-    "mass": ("rotor", "operation"),
-    "lines": ("rotor", "operation", "gear_pair"),
-    "sound": ("housing", "rotor", "operation", "gear_pair"),
-    "motion": ("rotor", "operation", "transient"),
-}
-"""Tables that an analysis needs of a case."""
 MOST_GEARBOXES = 10_000_000
 """Most gearboxes of a study."""
 _MOST_CHECKED = 100  # values of a list that are checked before any gearbox is solved
@@ -392,14 +382,16 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
         asked = tuple(name for name in ANALYSES if name in needed)
     if asked is not None:
         for name in asked:
-            require(case, *_NEEDS[name], command=f"{command}, analyses = ['{name}']")
+            require(case, *ANALYSES[name].needs, command=f"{command}, analyses = ['{name}']")
         analyses = asked
     else:
         listens = case.housing is not None and bool(case.housing.sensor)
         listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
         allowed = {"gears": True, "load": case.parts.is_loaded, "lines": listens and case.parts.is_loaded}
         analyses = tuple(
-            name for name, held in allowed.items() if held and all(getattr(case, table) for table in _NEEDS[name])
+            name
+            for name, held in allowed.items()
+            if held and all(getattr(case, table) for table in ANALYSES[name].needs)
         )
         if not analyses and case.rotor:
             analyses = ("rotors",)

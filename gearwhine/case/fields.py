@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -31,6 +31,7 @@ from pydantic_core import PydanticCustomError, core_schema
 from gearwhine.case import units
 from gearwhine.case.input_files import files_of
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
+from gearwhine.numerics.findings import RefusedPartError
 from gearwhine.numerics.names import has_hidden_characters
 
 if TYPE_CHECKING:
@@ -321,6 +322,29 @@ class Table(BaseModel):
         protected_namespaces=(),
         defer_build=True,
     )
+
+
+class ObjectTable(Table):
+    """A table of one object of the library, which checks itself: an attribute that it refuses is wrong at its key."""
+
+    key_of_attribute: ClassVar[Mapping[str, str]] = {}
+    """Keys of attributes that have another name."""
+
+    def build(self) -> object:
+        """Build the object."""
+        raise NotImplementedError
+
+    @model_validator(mode="after")
+    def _can_be_built(self) -> Self:
+        try:
+            self.build()
+        except RefusedPartError as error:
+            if not error.findings:
+                raise wrong(str(error)) from None
+            first = error.findings[0]
+            steps = filter(None, self.key_of_attribute.get(first.attribute, first.attribute).split("."))
+            raise wrong(first.expected, *steps) from None
+        return self
 
 
 def meaning_of_field(field: FieldInfo) -> Iterator[Any]:

@@ -16,6 +16,7 @@ from gearwhine.case.fields import (
     Direction,
     Inertia,
     Name,
+    ObjectTable,
     Patch,
     Point,
     PositiveLength,
@@ -42,7 +43,6 @@ Six = tuple[float, float, float, float, float, float]
 Tensor = tuple[Point, Point, Point]
 
 _LEAST_SINE = 1e-6  # least sine of the angle between two axes
-_INERTIA_ROUNDING = 1e-9  # relative rounding of typed moments of inertia, which matters for a thin body
 
 
 class Springs(Table):
@@ -286,25 +286,8 @@ class InertiaTensor(Table):
         """The tensor."""
         return (self.xx, self.xy, self.xz), (self.xy, self.yy, self.yz), (self.xz, self.yz, self.zz)
 
-    @model_validator(mode="after")
-    def _of_a_body(self) -> InertiaTensor:
-        # ∫ r rᵀ dm = ½ tr(I) - I of a body has no negative principal minor.
-        # In parts of the largest entry, so that no product overflows.
-        entries = (self.xx, self.yy, self.zz, self.xy, self.xz, self.yz)
-        largest = max(abs(entry) for entry in entries) or 1.0
-        xx, yy, zz, xy, xz, yz = (entry / largest for entry in entries)
-        scale = xx + yy + zz
-        a, b, c = (0.5 * scale - moment for moment in (xx, yy, zz))
-        d, e, f = -xy, -xz, -yz
-        pairs = (a * b - d * d, a * c - e * e, b * c - f * f)
-        determinant = a * (b * c - f * f) - d * (d * c - e * f) + e * (d * f - b * e)
-        least = (min(a, b, c) / scale, min(pairs) / scale**2, determinant / scale**3) if scale else (0.0,)
-        if min(least) < -_INERTIA_ROUNDING or (not scale and (d or e or f)):
-            raise wrong("an inertia that a body can have: no principal moment above the sum of the two others")
-        return self
 
-
-class LumpedMass(Patch):
+class LumpedMass(ObjectTable, Patch):
     """`[[housing.mass]]`: a point mass at a position, or a rigid body on a patch [kg, m]."""
 
     places: ClassVar[tuple[str, ...]] = ("position", "box", "surface", "plane")
@@ -319,13 +302,6 @@ class LumpedMass(Patch):
     """Inertia tensor about the centre of gravity, of a mass on a patch."""
     offset: Point | None = None
     """Vector from the middle of the patch to the centre of gravity. Default: none."""
-
-    @model_validator(mode="after")
-    def _turns_with_a_patch(self) -> LumpedMass:
-        for key in ("inertia", "offset"):
-            if self.position is not None and getattr(self, key) is not None:
-                raise wrong("a 'surface', 'box' or 'plane' with it: a single point does not turn a body", key)
-        return self
 
     def build(self) -> BuiltMass:
         """Build the lumped mass."""

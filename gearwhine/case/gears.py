@@ -7,7 +7,6 @@ The train lists pairs of shafts with their tooth numbers. Attributes are named a
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -28,6 +27,7 @@ from gearwhine.case.fields import (
     Mass,
     MaterialName,
     Name,
+    ObjectTable,
     PlanetNumber,
     PositiveLength,
     PositiveStiffness,
@@ -53,7 +53,7 @@ RollAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, at_most=2.0 * m
 Waves = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=100.0)]
 
 
-class Relief(Table):
+class Relief(ObjectTable):
     """Tip or root relief: its depth where the flank ends [m], and where it begins.
 
     By the roll angle [rad] or by the length along the line of action from the flank's end [m].
@@ -68,13 +68,7 @@ class Relief(Table):
     shape: Literal["linear", "parabolic"] = "linear"
     """Course from its beginning to the flank's end."""
 
-    @model_validator(mode="after")
-    def _one_start(self) -> Relief:
-        if (self.start_roll_angle is None) == (self.length is None):
-            raise wrong("exactly one of 'start_roll_angle' and 'length'")
-        return self
-
-    def build_tip_relief(self) -> TipRelief:
+    def build(self) -> TipRelief:
         """Build the relief as a tip relief."""
         from gearwhine.coupling.gears import TipRelief
 
@@ -87,7 +81,7 @@ class Relief(Table):
         return RootRelief(**self.model_dump())
 
 
-class ProfileErrors(Table):
+class ProfileErrors(ObjectTable):
     """Deviations along the profile [m], positive where there is too much material, as an inspection reports them."""
 
     slope: Deviation = 0.0
@@ -103,13 +97,6 @@ class ProfileErrors(Table):
     table: Annotated[tuple[tuple[RollAngle, Deviation], ...], Field(max_length=2000)] = ()
     """Rows of roll angle and deviation, the roll angles ascending."""
 
-    @field_validator("table", mode="after")
-    @classmethod
-    def _ascending(cls, rows: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        if len(rows) == 1 or any(after[0] <= before[0] for before, after in itertools.pairwise(rows)):
-            raise wrong("two rows or more of a roll angle and a deviation, the roll angles increasing")
-        return rows
-
     def build(self) -> ProfileDeviation:
         """Build the profile deviation."""
         from gearwhine.coupling.gears import ProfileDeviation
@@ -117,7 +104,7 @@ class ProfileErrors(Table):
         return ProfileDeviation(**self.model_dump())
 
 
-class HelixErrors(Table):
+class HelixErrors(ObjectTable):
     """Deviations and modifications across the face [m], positive where there is too much material."""
 
     slope: Deviation = 0.0
@@ -128,12 +115,6 @@ class HelixErrors(Table):
     """Relief at both ends, over `end_relief_length`."""
     end_relief_length: LengthFromZero = 0.0
     """Length of the end relief; needed with it."""
-
-    @model_validator(mode="after")
-    def _relief_has_length(self) -> HelixErrors:
-        if self.end_relief > 0.0 and self.end_relief_length == 0.0:
-            raise wrong("the length of the end relief", "end_relief_length")
-        return self
 
     def build(self) -> HelixDeviation:
         """Build the helix deviation across the face."""
@@ -288,7 +269,7 @@ NOMINAL_WIDTH = 10.0
 ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 
 
-class RingSupport(Table):
+class RingSupport(ObjectTable):
     """What holds the outside of an internal gear's rim."""
 
     kind: Literal["clamped", "housing", "springs", "bolts", "pins"] = "clamped"
@@ -306,18 +287,6 @@ class RingSupport(Table):
     """Tangential stiffness of each bolt or pin, or of all springs together. Default: rigid bolts and pins."""
     first: Angle = 0.0
     """Angle of the first bolt or pin from x."""
-
-    @model_validator(mode="after")
-    def _has_its_values(self) -> RingSupport:
-        discrete, stiffness = ("count", "seat_width"), ("radial_stiffness", "tangential_stiffness")
-        held_at_places = self.kind in ("bolts", "pins")
-        for key in (*discrete, *stiffness):
-            given = getattr(self, key) is not None
-            if not given and (held_at_places if key in discrete else self.kind == "springs"):
-                raise wrong(f"a value beside kind = {self.kind!r}", key)
-            if given and not held_at_places and (key in discrete or self.kind != "springs"):
-                raise wrong(f"none beside kind = {self.kind!r}", key)
-        return self
 
     def build(self) -> BuiltRingSupport:
         """Build the support."""
@@ -432,22 +401,6 @@ class Gear(Table):
             raise wrong("the face width of a helical gear, over which its teeth come into mesh", "face_width")
         if self.internal is False and self.teeth < 0:
             raise wrong("true, or left out, with a negative number of teeth", "internal")
-        if self.teeth < 0:
-            self._without_hub()
-        elif self.ring_support is not None:
-            expected = f"none of an external gear; a ring has a negative number of teeth, teeth = {-self.teeth}"
-            raise wrong(expected, "ring_support")
-        if self.bore >= 2.0 * self.base_circle_radius:
-            raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
-        if self.web is not None and self.rim is None:
-            raise wrong("no web, or a rim around it", "web")
-        if self.hub_diameter is not None and (self.web is None or not 0.0 < self.bore < self.hub_diameter):
-            raise wrong("no hub, or a web around it and a smaller bore inside", "hub_diameter")
-        if self.hub_width is not None and (self.hub_diameter is None or self.hub_width < (self.web or 0.0)):
-            raise wrong("the width of a hub with a hub_diameter, at least that of the web", "hub_width")
-        for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
-            if deviations and len(deviations) != abs(self.teeth):
-                raise wrong(f"one deviation for each of {abs(self.teeth)} teeth, or none", "errors", key)
         if self.errors.planet is not None:
             raise wrong(one_of_planets("gear"), "errors", "planet")
         for number, fault in enumerate(self.fault):
@@ -464,13 +417,6 @@ class Gear(Table):
             raise wrong("'rotor' and 'at' together, or neither in a case without rotors")
         return self
 
-    def _without_hub(self) -> None:
-        """Refuse a bore, web or hub of an internal gear, which is a ring outside its teeth."""
-        keys = ("bore", "web", "hub_diameter", "hub_width")
-        for key in keys:
-            if getattr(self, key):
-                raise wrong("none of an internal gear, a ring outside its teeth as thick as its 'rim'", key)
-
     @property
     def tooth_module(self) -> float:
         """Normal module [m], also where the gear is given by its diametral pitch or its base radius."""
@@ -482,16 +428,6 @@ class Gear(Table):
             return module_from_diametral_pitch(self.diametral_pitch)
         assert self.base_radius is not None
         return module_from_base_radius(self.base_radius, abs(self.teeth), self.pressure_angle, self.helix_angle)
-
-    @property
-    def base_circle_radius(self) -> float:
-        """Radius of the base circle [m]."""
-        if self.base_radius is not None:
-            return self.base_radius
-        from gearwhine.coupling.gears.geometry.involute import module_from_base_radius
-
-        # The module is proportional to the base radius.
-        return self.tooth_module / module_from_base_radius(1.0, abs(self.teeth), self.pressure_angle, self.helix_angle)
 
     def build(self, material: Material | None = None) -> BuiltGear:
         """Build the gear, of a material or by default of steel.
@@ -524,7 +460,7 @@ class Gear(Table):
             dedendum=self.dedendum,
             root_radius=self.root_radius,
             bore=self.bore,
-            tip_relief=None if self.tip_relief is None else self.tip_relief.build_tip_relief(),
+            tip_relief=None if self.tip_relief is None else self.tip_relief.build(),
             root_relief=None if self.root_relief is None else self.root_relief.build_root_relief(),
             eccentricity=errors.offset,
             eccentricity_phase=errors.phase,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, StrictBool, Tag, model_validator
 
@@ -19,6 +19,7 @@ from gearwhine.case.fields import (
     Angle,
     Force,
     LengthFromZero,
+    ObjectTable,
     Point,
     PositiveFrequency,
     Quantity,
@@ -49,18 +50,15 @@ SignedTorque = Annotated[float, Quantity(units.TORQUE)]
 Order = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e4)]
 
 
-class TorqueLine(Table):
+class TorqueLine(ObjectTable):
     """A torque over the speed of the first driver's rotor [N m over rad/s]: linear between, constant beyond."""
+
+    key_of_attribute: ClassVar = {"speeds": "speed", "torques": "torque"}
 
     speed: tuple[SpeedFromZero, ...] = Field(min_length=2, max_length=MOST_ENTRIES)
     """Ascending speeds of the first driver's rotor."""
     torque: tuple[SignedTorque, ...] = Field(max_length=MOST_ENTRIES)
     """Torque at each speed, linear between, constant beyond."""
-
-    @model_validator(mode="after")
-    def _a_line(self) -> TorqueLine:
-        _check_table("speed", self.speed, "torque", self.torque)
-        return self
 
     def build(self) -> BuiltLine:
         """Build the torque over speed."""
@@ -69,18 +67,15 @@ class TorqueLine(Table):
         return BuiltLine(self.speed, self.torque)
 
 
-class TorqueHistory(Table):
+class TorqueHistory(ObjectTable):
     """Torque added over time [N m over s]: linear between the times, constant beyond."""
+
+    key_of_attribute: ClassVar = {"times": "time", "torques": "torque"}
 
     time: tuple[Time, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
     """Ascending times."""
     torque: tuple[SignedTorque, ...] = Field(max_length=MOST_ENTRIES)
     """Torque at each time, linear between, constant beyond."""
-
-    @model_validator(mode="after")
-    def _a_line(self) -> TorqueHistory:
-        _check_table("time", self.time, "torque", self.torque)
-        return self
 
     def build(self) -> TorqueOverTime:
         """Build the torque over time."""
@@ -430,7 +425,7 @@ def _half_the_run(data: dict[str, Any]) -> float:
     return float(data.get("revolutions") or 0.0) / 2.0
 
 
-class Transient(Table):
+class Transient(ObjectTable):
     """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps."""
 
     revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)] | None = None
@@ -463,23 +458,6 @@ class Transient(Table):
     frequency."""
     indicators: StrictBool = False
     """Condition indicators of gears and bearings at the sensors. Default: where a tooth or a bearing is damaged."""
-
-    @model_validator(mode="after")
-    def _something_left(self) -> Transient:
-        if self.run is not None and self.revolutions is not None:
-            raise wrong("no number of revolutions beside a 'run', which has its own time", "revolutions")
-        if self.revolutions is None:
-            if self.run is None:
-                raise wrong("a plain number above 0 of revolutions, or a 'run'", "revolutions")
-            return self
-        if self.discard >= self.revolutions:
-            raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
-        from gearwhine.coupling.analyses.recording import SHORTEST_RECORD
-
-        if self.revolutions - self.discard < SHORTEST_RECORD:
-            expected = f"{SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
-            raise wrong(expected, "revolutions")
-        return self
 
     def build(self) -> TransientPlan:
         """Build the plan of the transient."""

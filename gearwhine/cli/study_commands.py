@@ -6,7 +6,6 @@ help. The methods stand in :mod:`gearwhine.study`, those that only a case has in
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, Required, Unpack, get_args, get_origin, get_type_hints
 
 from cyclopts import Parameter, Token, validators
@@ -21,7 +20,6 @@ from gearwhine.numerics.findings import Number
 if TYPE_CHECKING:
     from gearwhine.case import LoadedCase
     from gearwhine.numerics.progress import Progress
-    from gearwhine.output.sections import Document
 
 _MOST_FAILED = 0.5
 """Part of the gearboxes of a varied case that may fail."""
@@ -149,6 +147,7 @@ def _pictures_option(entry: Command) -> Iterator[inspect.Parameter]:
 def _perform(entry: Command, case: str, common: Common, given: dict[str, Any]) -> None:
     """Make a study of the case, call its method, and show the result."""
     from gearwhine.output.terminal import shown_by
+    from gearwhine.results import composer
 
     fresh = given.pop("fresh", False)
     shows_more = given.pop(entry.longer[0], False) if entry.longer[0] in _SHOWN else given.get(entry.longer[0], False)
@@ -164,14 +163,9 @@ def _perform(entry: Command, case: str, common: Common, given: dict[str, Any]) -
         return document
 
     composed_by = entry.longer[1] if shows_more else composer_of(entry)
-    show = shown_by(_sections(composed_by) if composed_by else lambda document: (), timed=entry.timed)
+    show = shown_by(composer(composed_by) if composed_by else lambda document: (), timed=entry.timed)
     files = (f"mesh.{given['suffix']}", "mesh.h5") if "suffix" in given else ()
     _require_whole(on_case(case, common, work, show, entry.name, writes=files, always_writes=entry.always_writes))
-
-
-def _sections(place: str) -> Callable[["Document"], Any]:
-    module, function = place.split(".")
-    return getattr(import_module(f"gearwhine.results.{module}"), function)  # type: ignore[no-any-return]
 
 
 def _require_whole(document: Mapping[str, Any]) -> None:

@@ -34,7 +34,7 @@ from gearwhine.figures.style import (
     stacked,
 )
 from gearwhine.optimisation.verification import Motion, Verification
-from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit, statistic_of
+from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit, statistic_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -28,7 +28,7 @@ from gearwhine.figures.style import (
     stacked,
 )
 from gearwhine.figures.style import HEAD as STYLE_HEAD
-from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
+from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,7 +19,7 @@ from gearwhine.case.optimisation import Aim, Robust
 from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
-from gearwhine.output.named_quantities import matches, statistic_of
+from gearwhine.variation.named_quantities import matches, statistic_of
 from gearwhine.variation.statistics import known_limits
 
 NO_AIM = Problem("optimisation.aim", UNSAID, "the name of one quantity or more, each with its sense")

@@ -184,13 +184,6 @@ class Optimised:
             return []
         return [one for one in self.goals.limits if -_AT_END < one.excess(best.sides) <= 0.0]
 
-    @property
-    def best_so_far(self) -> FloatArray:
-        """What a search by one aim makes least, of the best design within the limits up to each trial, shape (n,)."""
-        found = [one.merit[1] if one.excess == 0.0 else math.inf for one in self.designs]
-        least = np.minimum.accumulate(np.array(found)) if found else np.array([])
-        return np.where(np.isfinite(least), least, math.nan)
-
     def values(self) -> FloatArray:
         """Values of the inputs of each design, shape (n, d)."""
         rows = [[one.value(float(at)) for one, at in zip(self.inputs, d.point, strict=True)] for d in self.designs]

@@ -352,9 +352,7 @@ def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str, *, phases:
     return "; ".join(remarks)
 
 
-def write_sounds(
-    folder: Path, place: Path, rate: int = AUDIO_RATE, *, seconds: float = SOUND_SECONDS
-) -> list[Document]:
+def write_sounds(folder: Path, place: Path, *, seconds: float = SOUND_SECONDS) -> list[Document]:
     """Write the histories of sensors and microphones as sound files in 32-bit floating point, to hear and to measure.
 
     A record of whole turns at steady speed is a period of the motion: it is repeated without a seam until the file is
@@ -371,8 +369,6 @@ def write_sounds(
         Results folder.
     place : path
         Folder for the files.
-    rate : int
-        Sampling rate [Hz].
     seconds : float
         Least length of the file of a record that repeats [s]; 0 for one period.
 
@@ -392,18 +388,18 @@ def write_sounds(
             for stem, name in zip(file_stems(names, f"{command}-"), names, strict=True):
                 signal = np.asarray(data[kind.variable].sel({kind.label: name}).values, dtype=np.float64)
                 interval = (times[-1] - times[0]) / (len(times) - 1)
-                count = periods(len(times) * interval, seconds, rate) if _repeats(document) else 0
+                count = periods(len(times) * interval, seconds, AUDIO_RATE) if _repeats(document) else 0
                 limit = _complete_below(data, kind)
                 signal -= signal.mean()
                 if limit is not None:
                     signal = low_passed(signal, interval, limit, repeats=count > 0)
-                sound = repeated(signal, interval, rate, count)
+                sound = repeated(signal, interval, AUDIO_RATE, count)
                 scale = full_scale(float(np.abs(sound).max()))
                 path = place / f"{stem}-full-scale-{scale:g}-{kind.suffix.replace('_', '-')}.wav"
                 comment = f"{kind.quantity} at {name}; full scale (sample 1.0) is {scale:g} {kind.unit}"
                 comment += "" if limit is None else f"; complete below {limit:.0f} Hz, cut off there"
                 comment += f"; gearwhine {command}"
-                _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
+                _write_wav(path, (sound / scale).astype("<f4"), AUDIO_RATE, comment)
                 written.append(
                     {
                         "file": path.name,
@@ -411,9 +407,9 @@ def write_sounds(
                         f"full_scale_{kind.suffix}": scale,
                         f"peak_{kind.suffix}": float(np.abs(sound).max()),
                         f"rms_{kind.suffix}": float(np.sqrt(np.mean(sound**2))),
-                        "seconds": len(sound) / rate,
+                        "seconds": len(sound) / AUDIO_RATE,
                         "periods": max(count, 1),
-                        "sampling_rate_hz": rate,
+                        "sampling_rate_hz": AUDIO_RATE,
                     }
                     | ({} if limit is None else {"complete_below_hz": limit})
                 )

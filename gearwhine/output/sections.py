@@ -266,9 +266,9 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def significant(number: float, digits: int = 3) -> str:
-    """Return a number of some significant digits without a power of ten, but for very small and very large ones."""
-    return f"{float(f'{number:.{digits}g}'):.10g}"
+def significant(number: float) -> str:
+    """Return a number of three significant digits without a power of ten, but for very small and very large ones."""
+    return f"{float(f'{number:.3g}'):.10g}"
 
 
 def rms_of_band(limits: Iterable[float | None]) -> str:

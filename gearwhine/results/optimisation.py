@@ -7,10 +7,10 @@ import numpy as np
 
 from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.named_quantities import part_of, shown_quantity, statistic_of
 from gearwhine.output.quantity import document_of, in_file, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
 from gearwhine.results.many_solutions import FAILED, failed_sentences, failed_warnings, finite, numbered
+from gearwhine.variation.named_quantities import part_of, shown_quantity, statistic_of
 
 if TYPE_CHECKING:
     from gearwhine.optimisation.goals import LimitEnd

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.named_quantities import part_of, shown_quantity, shown_unit
 from gearwhine.output.quantity import RPM, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, table_of
 from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, numbered
+from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
     from gearwhine.numerics.sobol_indices import SobolIndices

@@ -75,6 +75,7 @@ from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.solve.comparison import modal_test_of, refused_by_key
+from gearwhine.workers import await_workers, connected, default_workers
 
 _TWO_PI = 2.0 * np.pi
 
@@ -234,29 +235,6 @@ def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -
     return Procedure(designs.solve, designs.parameters, start.light(), effort, count)
 
 
-def leave_one_out_modes(
-    procedure: Procedure[HousingAtParameters], target: Target, each: Each, progress: Progress
-) -> list[LeftOutMode]:
-    """Each mode predicted by a fit to the others; see :func:`gearwhine.housing.updating.leave_one_out`."""
-    progress(f"holding back {len(target.noise)} modes, one at a time")
-    return leave_one_out(procedure, target, each, progress)
-
-
-def random_frequency_sets(
-    procedure: Procedure[HousingAtParameters], target: Target, count: int, each: Each, progress: Progress
-) -> NullTest:
-    """Random sets fitted, and the measured one; see :func:`gearwhine.housing.updating.null_fits`."""
-    progress(f"fitting the measured and {count} random sets of {len(target.noise)} frequencies")
-    return NullTest(*null_fits(procedure, target, count, each=each, progress=progress))
-
-
-def default_workers() -> int:
-    """Return the number of cores that this process may use."""
-    from gearwhine.workers import default_workers as of_the_machine
-
-    return of_the_machine()
-
-
 @contextmanager
 def in_parallel(workers: int) -> Iterator[Each]:
     """Pool of single-thread processes, which end with the block; one worker is this process.
@@ -269,8 +247,6 @@ def in_parallel(workers: int) -> Iterator[Each]:
     if workers < 2:
         yield serial_map
         return
-    from gearwhine.workers import await_workers, connected
-
     with tempfile.TemporaryDirectory(prefix="gearwhine-") as place, connected(workers, None, Path(place)) as client:
         await_workers(client, workers)
 
@@ -544,11 +520,13 @@ def update_housing(
         procedure = full_update_search(start, effort, count)
         if held_back:
             begin = time.perf_counter()
-            rows = leave_one_out_modes(procedure, target, each, progress)
+            progress(f"holding back {len(target.noise)} modes, one at a time")
+            rows = leave_one_out(procedure, target, each, progress)
             seconds["held_back"] = time.perf_counter() - begin
         if null:
             begin = time.perf_counter()
-            null_test = random_frequency_sets(procedure, target, null, each, progress)
+            progress(f"fitting the measured and {null} random sets of {len(target.noise)} frequencies")
+            null_test = NullTest(*null_fits(procedure, target, null, each=each, progress=progress))
             seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,

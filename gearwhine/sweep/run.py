@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +10,8 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.failures import WorkersError
 from gearwhine.housing import HousingModes
 from gearwhine.interruption import each_from_thread, in_thread
-from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
-from gearwhine.solutions import Failure, duration
+from gearwhine.solutions import Failure, StudyProgress
 from gearwhine.solve.acoustics import check_before_modes
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
@@ -73,17 +71,17 @@ def run_sweep(points: Sequence[Point], study: StudyFolder) -> tuple[SweptPoint[P
                 shared, uncached = _shared_housings([points[number] for number in todo], study)
                 if scheduler is None:
                     await_workers(client, workers)
-                report = _teller(len(points), len(outcomes), progress)
-                report(0)
+                reached = StudyProgress(progress, "points", len(points), len(outcomes))
+                reached.report(len(outcomes))
                 futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
                 # The cache is written now, since the points need not wait for it.
                 _cache(uncached, folder)
                 _preload_writers()
                 ended = each_from_thread(_outcomes_as_they_end(client, futures))
-                for count, (number, outcome) in enumerate(ended, start=1):
+                for number, outcome in ended:
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
-                    report(count)
+                    reached.report(len(outcomes))
     for path in outdated_points(folder, tuple(point for point in points if not point.refusal)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
@@ -156,16 +154,3 @@ def _outcomes_as_they_end(client: Client, futures: dict[Future[Any], int]) -> It
             yield number, Failure(f"unexpected {type(outcome).__name__}: {outcome}")
         else:
             yield number, outcome
-
-
-def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:
-    """Return a function that reports the number of points done, with an estimate of the time left."""
-    start = time.perf_counter()
-
-    def report(count: int) -> None:
-        done = before + count
-        left = (time.perf_counter() - start) * (total - done) / count if count else None
-        text = "" if left is None or done == total else f", about {duration(left)} left"
-        progress(f"sweep: {done} of {total} points{text}", done / total)
-
-    return report

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from gearwhine.solutions import duration
+from gearwhine.variation.named_quantities import takes_all_periods
 from gearwhine.variation.quantities import Evaluation
 
 _WORTH_TELLING = 60.0  # time of a study below which its cost is not told [s]
 _MOST = 0.4  # part of a gearbox's time from which on what takes it is named
-_OVER_ALL_PERIODS = ("_over_hunting_period_m", "_harmonic_1_m", "_harmonic_2_m", "_harmonic_3_m", "_n_per_m")
 
 
 def cost_of_study(first: Evaluation, taken: float, count: int, noun: str, table: str) -> str:
@@ -28,7 +28,7 @@ def cost_of_study(first: Evaluation, taken: float, count: int, noun: str, table:
         return ""
     text = f"{count} {noun} take some {duration(taken)} by the first of them"
     total = sum(first.seconds.values())
-    over = {name for name in first.seconds if name.startswith("gear_pair.") and name.endswith(_OVER_ALL_PERIODS)}
+    over = {name for name in first.seconds if takes_all_periods(name)}
     parts = {name: spent for name, spent in first.seconds.items() if name not in over}
     parts["over all mesh periods"] = sum(first.seconds[name] for name in over)
     name = max(parts, key=lambda one: parts[one])

@@ -27,13 +27,11 @@ from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.analyses.critical_speeds import critical_speeds
+from gearwhine.variation.named_quantities import CRITICAL_SPEEDS, HARMONICS
 
 if TYPE_CHECKING:  # with kernels of its own
     from gearwhine.coupling.sweep.line_sound import RadiatedPower
 
-HARMONICS = 3
-"""Number of harmonics of a transmission error."""
-_CRITICAL_SPEEDS = 3
 _RPM = 30.0 / np.pi
 _SILENCE = 1e-12  # acceleration that stands for none [m/s²]
 _NO_SOUND = -100.0  # sound power level that stands for none [dB]
@@ -105,7 +103,7 @@ def evaluate(machine: Machine, wanted: Wanted, radiated: RadiatedPower | None = 
         Where a machine with these values cannot be solved.
     """
     gearbox = _Gearbox(machine, wanted, radiated)
-    return _evaluation(wanted, {analysis: _ANALYSES[analysis](gearbox) for analysis in wanted.analyses})
+    return _evaluation(wanted, {analysis: ANALYSES[analysis].find(gearbox) for analysis in wanted.analyses})
 
 
 def _evaluation(wanted: Wanted, by_analysis: Mapping[str, Named]) -> Evaluation:
@@ -267,8 +265,8 @@ def _of_load(gearbox: _Gearbox) -> Named:
 def _of_rotors(gearbox: _Gearbox) -> Named:
     machine = gearbox.machine
     for name, (bearings, _) in bearings_on_rigid_seats(machine).items():
-        found = critical_speeds(machine.rotor(name), bearings, count=2 * _CRITICAL_SPEEDS).forward
-        for number, speed in enumerate(found[:_CRITICAL_SPEEDS], start=1):
+        found = critical_speeds(machine.rotor(name), bearings, count=2 * CRITICAL_SPEEDS).forward
+        for number, speed in enumerate(found[:CRITICAL_SPEEDS], start=1):
             yield f"rotor.{name}.critical_speed_{number}_rpm", _RPM * float(speed)
 
 
@@ -332,74 +330,29 @@ def _of_motion(gearbox: _Gearbox) -> Named:
         yield f"sensor.{sensor}.motion_level_db", float(level_of(np.array(solved.sensor_rms(sensor))))
 
 
-_ANALYSES: Mapping[str, Callable[[_Gearbox], Named]] = {
-    "gears": _of_gears,
-    "load": _of_load,
-    "rotors": _of_rotors,
-    "mass": _of_mass,
-    "lines": _of_lines,
-    "sound": _of_sound,
-    "motion": _of_motion,
-}
+@dataclass(frozen=True)
+class Analysis:
+    """Analysis of a varied gearbox.
 
-ANALYSES = tuple(_ANALYSES)
-"""Names of the analyses, in the order of their quantities."""
-
-_NAMES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    ("gears", "gear_pair", ("transmission_error_peak_to_peak_m", "transmission_error_over_hunting_period_m")),
-    ("gears", "gear_pair", tuple(f"transmission_error_harmonic_{one}_m" for one in range(1, HARMONICS + 1))),
-    ("gears", "gear_pair", ("mesh_stiffness_n_per_m",)),
-    ("load", "gear_pair", ("k_h_beta", "misalignment_rad", "contact_pressure_pa")),
-    ("load", "bearing", ("force_n",)),
-    ("load", "rolling_bearing", ("life_h", "reference_life_h")),
-    ("load", "planetary", ("mesh_load_factor",)),
-    ("rotors", "rotor", tuple(f"critical_speed_{one}_rpm" for one in range(1, _CRITICAL_SPEEDS + 1))),
-    ("mass", "gear", ("mass_kg",)),
-    ("mass", "rotor", ("mass_kg",)),
-    ("mass", "housing", ("mass_kg",)),
-    ("mass", "machine", ("mass_kg",)),
-    ("lines", "sensor", ("level_db", "loudest_speed_rpm")),
-    ("sound", "housing", ("sound_power_db", "sound_power_db_a", "sound_power_db_speed_rpm")),
-    ("sound", "housing", ("sound_power_db_a_speed_rpm",)),
-    ("motion", "sensor", ("motion_level_db",)),
-)
-"""Analyses with the kinds of parts that they have quantities of, and the ends of these quantities' names."""
-
-
-def possible_quantities(parts: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:
-    """Yield the name of every quantity that a gearbox may have, with the analysis that finds it.
-
-    Parameters
+    Attributes
     ----------
-    parts : mapping of str to sequence of str
-        Names of the parts by their kind; one without a name is the only one of its kind.
+    find : callable
+        Yields its quantities.
+    needs : tuple of str
+        Tables that it needs of a case.
     """
-    for analysis, kind, ends in _NAMES:
-        for part in parts.get(kind, ()):
-            begin = f"{kind.removeprefix('rolling_')}.{part}.".replace("..", ".")
-            yield from ((begin + end, analysis) for end in ends)
+
+    find: Callable[[_Gearbox], Named]
+    needs: tuple[str, ...]
 
 
-_ANALYSIS_BY_END = {
-    "motion_level_db": "motion",
-    "level_db": "lines",
-    "loudest_speed_rpm": "lines",
-    "sound_power_db": "sound",
-    "sound_power_db_a": "sound",
-    "_speed_rpm": "sound",
-    "mass_kg": "mass",
-    "_rpm": "rotors",
-    "k_h_beta": "load",
-    "misalignment_rad": "load",
-    "contact_pressure_pa": "load",
-    "force_n": "load",
-    "life_h": "load",
-    "mesh_load_factor": "load",
-    "mesh_stiffness_n_per_m": "gears",
-    "_m": "gears",
+ANALYSES: Mapping[str, Analysis] = {
+    "gears": Analysis(_of_gears, ("gear_pair",)),
+    "load": Analysis(_of_load, ("rotor", "bearing", "operation")),
+    "rotors": Analysis(_of_rotors, ("rotor",)),
+    "mass": Analysis(_of_mass, ("rotor", "operation")),
+    "lines": Analysis(_of_lines, ("rotor", "operation", "gear_pair")),
+    "sound": Analysis(_of_sound, ("housing", "rotor", "operation", "gear_pair")),
+    "motion": Analysis(_of_motion, ("rotor", "operation", "transient")),
 }
-
-
-def analysis_of(name: str) -> str | None:
-    """Return the analysis that finds a quantity, by its name; None where no analysis has such quantities."""
-    return next((analysis for end, analysis in _ANALYSIS_BY_END.items() if name.endswith(end)), None)
+"""Analyses by name, in the order of their quantities."""

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.progress import Progress
-from gearwhine.solutions import Failure, duration
+from gearwhine.solutions import Failure, StudyProgress
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.quantities import Evaluation
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
 _WORTH_WORKERS = 20.0  # time of all samples below which workers, which take seconds to start, are not called [s]
 _BATCH_TIME = 3.0  # time of the samples that a worker is given at once, which the death of a worker may cost [s]
 _LARGEST_BATCH = 200
-_TOLD_EACH = 2.0  # least time between two lines of progress [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,20 +65,24 @@ def run_samples(varied: Sampled, points: FloatArray, folder: StudyFolder, place:
     found = {number: outcome for number, outcome in record.read(points).items() if isinstance(outcome, Evaluation)}
     todo = [number for number in range(len(points)) if number not in found]
     outcomes: dict[int, Outcome] = dict(found)
-    resumed, told = len(points) - len(todo), _Teller(len(points), len(points) - len(todo), folder.progress)
+    resumed = len(points) - len(todo)
+    reached = StudyProgress(folder.progress, "gearboxes", len(points), resumed)
     if todo:
         # The first one is timed, with what is compiled and read once behind it.
         first = todo[0]
         begin = time.perf_counter()
-        outcomes[first] = varied.solve(points[first])
+        outcome = varied.solve(points[first])
         each = time.perf_counter() - begin
-        record.append([(first, outcomes[first])], points)
-        told.took([(first, outcomes[first])])
+        outcomes[first] = outcome
+        record.append([(first, outcome)], points)
         rest = todo[1:]
-        told.expects(outcomes[first], each, len(rest), folder)
+        workers = folder.workers or default_workers()
+        if isinstance(outcome, Evaluation) and folder.scheduler is None:
+            taken = each * len(rest) / workers
+            if text := cost_of_study(outcome, taken, len(points), "gearboxes", "variation"):
+                folder.progress(f"{text}\n")
         is_short = folder.workers is None and each * len(rest) < _WORTH_WORKERS
         alone = not rest or (folder.scheduler is None and (folder.workers == 1 or is_short))
-        workers = folder.workers or default_workers()
         size = max(1, min(_LARGEST_BATCH, int(_BATCH_TIME / max(each, 1e-3)), -(-len(rest) // (4 * workers))))
         batches = [rest[begin : begin + size] for begin in range(0, len(rest), size)]
         solved_batches: Iterable[list[tuple[int, Outcome]]]
@@ -88,10 +90,12 @@ def run_samples(varied: Sampled, points: FloatArray, folder: StudyFolder, place:
             solved_batches = ([(number, varied.solve(points[number])) for number in batch] for batch in batches)
         else:
             solved_batches = _solved_by_workers(varied, points, batches, folder, workers)
+        failed = int(isinstance(outcome, Failure))
         for solved in solved_batches:
             record.append(solved, points)
             outcomes |= dict(solved)
-            told.took(solved)
+            failed += sum(isinstance(outcome, Failure) for _, outcome in solved)
+            reached.report(len(outcomes), f", {failed} failed" if failed else "")
     record.remove_others()
     return Solved(tuple(outcomes[number] for number in range(len(points))), resumed)
 
@@ -130,32 +134,3 @@ def outcomes_as_they_end(
             raise outcomes
         else:
             yield outcomes
-
-
-class _Teller:
-    """Tells how many samples are done, and how long the others will take."""
-
-    def __init__(self, total: int, done: int, progress: Progress) -> None:
-        self._total, self._before, self._done, self._progress = total, done, done, progress
-        self._failed = 0
-        self._start = self._last = time.perf_counter()
-
-    def expects(self, first: Outcome, each: float, rest: int, folder: StudyFolder) -> None:
-        """Tell what all samples will take by the first, where that is long."""
-        if isinstance(first, Evaluation) and folder.scheduler is None:
-            taken = each * rest / (folder.workers or default_workers())
-            if text := cost_of_study(first, taken, self._total, "gearboxes", "variation"):
-                self._progress(f"{text}\n")
-
-    def took(self, solved: Sequence[tuple[int, Outcome]]) -> None:
-        """Count samples that are done, and those of them that failed."""
-        self._done += len(solved)
-        self._failed += sum(isinstance(outcome, Failure) for _, outcome in solved)
-        now = time.perf_counter()
-        if now - self._last < _TOLD_EACH and self._done < self._total:
-            return
-        self._last = now
-        left = (now - self._start) / (self._done - self._before) * (self._total - self._done)
-        failures = f", {self._failed} failed" if self._failed else ""
-        remaining = f", {duration(left)} left" if left >= 1.0 else ""
-        self._progress(f"gearbox {self._done} of {self._total}{failures}{remaining}")

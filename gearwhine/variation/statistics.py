@@ -14,10 +14,10 @@ from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import BoolArray, FloatArray
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
-from gearwhine.output.named_quantities import matches
 from gearwhine.output.quantity import unit_of
 from gearwhine.solutions import Failure
 from gearwhine.variation.inputs import Input
+from gearwhine.variation.named_quantities import matches
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Outcome
 

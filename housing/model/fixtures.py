@@ -6,7 +6,7 @@ r, with small matrices K₆, C₆ or M₆, are Pᵀ K₆ P, Pᵀ C₆ P and Pᵀ
 A lumped mass is a point mass on the surface, or a rigid body on a patch, such as a motor on its bracket.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -149,7 +149,7 @@ class LumpedMass:
     offset: Point = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        """Check mass, place and inertia; a tensor that no real body has is refused."""
+        """Keep own copies; check mass, place and inertia."""
         keep_tuples(self, "position", "inertia", "offset")
         rules: dict[str, Rule] = {
             "name": Text(),
@@ -160,26 +160,29 @@ class LumpedMass:
         if self.position is not None:
             rules["position"] = Numbers(3)
         refuse(attribute_findings(("mass", str(self.name)), self, **rules), HousingError)
+        refuse(self._findings(), HousingError)
+
+    def _findings(self) -> Iterator[Finding]:
+        """Yield an offset too far, a body on a point or on nothing, and a tensor that no real body has."""
+        part = ("mass", self.name)
         if not np.linalg.norm(self.offset) <= _FARTHEST_OFFSET:
-            finding = Finding(
-                ("mass", self.name), "offset", self.offset, f"an offset of at most {_FARTHEST_OFFSET:g} m"
-            )
-            refuse([finding], HousingError)
+            yield Finding(part, "offset", self.offset, f"an offset of at most {_FARTHEST_OFFSET:g} m")
         if (self.patch is None) == (self.position is None):
-            raise HousingError(f"mass {self.name!r} needs a patch or a position, one of the two")
-        if self.position is not None and (self.inertia != NO_INERTIA or any(self.offset)):
-            raise HousingError(f"mass {self.name!r}: inertia and offset need a patch; a point does not turn a body")
+            yield Finding(part, "", None, "a patch or a position, one of the two")
+        for attribute, nothing in (("inertia", NO_INERTIA), ("offset", (0.0, 0.0, 0.0))):
+            value = getattr(self, attribute)
+            if self.position is not None and value != nothing:
+                yield Finding(part, attribute, value, "a patch with it: a single point does not turn a body")
         tensor = np.array(self.inertia, dtype=np.float64)
         if tensor.shape != (3, 3) or not np.isfinite(tensor).all() or not np.array_equal(tensor, tensor.T):
-            raise HousingError(f"mass {self.name!r}: inertia {self.inertia} is no symmetric tensor")
+            yield Finding(part, "inertia", self.inertia, "a symmetric tensor, three rows of three numbers")
+            return
         # ∫ r rᵀ dm = ½ tr(I) - I of a real body has no negative eigenvalue: no principal moment exceeds the two others.
         spread = 0.5 * np.trace(tensor) * np.eye(3) - tensor
         if np.linalg.eigvalsh(spread)[0] < -_INERTIA_ROUNDING * np.trace(tensor):
             moments = ", ".join(f"{moment:g}" for moment in np.linalg.eigvalsh(tensor))
-            raise HousingError(
-                f"mass {self.name!r}: no body has principal moments of inertia of {moments} kg m²: each must be at "
-                "least 0 and at most the sum of the two others"
-            )
+            expected = "an inertia that a body can have: no principal moment above the sum of the two others"
+            yield Finding(part, "inertia", self.inertia, f"{expected}; they are {moments} kg m²")
 
     def place(self, mesh: Mesh) -> SurfacePoint:
         """Return the point of the surface that carries a mass given by its position."""

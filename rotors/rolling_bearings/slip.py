@@ -46,7 +46,7 @@ class CageSlip:
 
     mean: float = 0.0
     scatter: float = 0.0
-    seed: int = 0
+    seed: int = 1
 
     def __post_init__(self) -> None:
         """Check the numbers."""

@@ -18,6 +18,8 @@ from pydantic import ValidationError
 
 from gearwhine.case import Case
 from gearwhine.from_case import mesh
+from gearwhine.output.quantity import Fields, Quantity
+from gearwhine.results.operating_point import LOAD
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -61,6 +63,21 @@ def test_every_example_is_short_and_listed() -> None:
     for path in sorted(EXAMPLES.glob("*.py")):
         assert len(path.read_text(encoding="utf-8").splitlines()) <= 40, path.name
         assert f"(../scripts/examples/{path.name})" in page
+
+
+def test_the_page_lists_every_variable_of_an_operating_point() -> None:
+    def named(fields: Fields, along: tuple[str, ...] = ()) -> Iterator[str]:
+        for field in fields:
+            if isinstance(field, Quantity):
+                dimensions = (*along, *field.dimensions)
+                if dimensions and field.name not in ("", *dimensions):
+                    yield field.name
+            else:
+                yield from named(field.fields, (*along, *filter(None, (getattr(field, "dimension", ""),))))
+
+    section = (ROOT / "docs" / "python.md").read_text(encoding="utf-8").partition("| variable | dimensions |")[2]
+    rows = section.partition("\n\n")[0].splitlines()[2:]
+    assert {name for row in rows for name in re.findall(r"`(\w+)`", row.split("|")[1])} == set(named(LOAD))
 
 
 def test_links_of_the_pages_lead_to_files_and_headings() -> None:

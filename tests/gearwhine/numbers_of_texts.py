@@ -172,13 +172,13 @@ def _is_known(one: Shown, known: defaultdict[str, list[float]]) -> bool:
 @cache
 def _composers() -> dict[str, list[Callable[[Any], Iterable[Section]]]]:
     """Functions that compose the texts of each command."""
-    from gearwhine.cli.study_commands import _sections, composer_of
+    from gearwhine.cli.study_commands import composer_of
     from gearwhine.commands import STUDY_COMMANDS
-    from gearwhine.results import chapters_of
+    from gearwhine.results import chapters_of, composer
 
     longer = {"check": "check.sections"}  # of what every document holds
     return {
-        entry.name: [chapters_of, *(_sections(one) for one in (composer_of(entry), longer.get(entry.name)) if one)]
+        entry.name: [chapters_of, *(composer(one) for one in (composer_of(entry), longer.get(entry.name)) if one)]
         for entry in STUDY_COMMANDS
         if entry.name not in _OF_MANY
     }

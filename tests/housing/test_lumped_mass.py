@@ -116,11 +116,11 @@ def test_masses_that_make_no_sense_are_refused(box: Mesh) -> None:
         LumpedMass("m", 0.0, lid)
     with pytest.raises(HousingError, match="a patch or a position, one of the two"):
         LumpedMass("m", 1.0)
-    with pytest.raises(HousingError, match="inertia and offset need a patch"):
+    with pytest.raises(HousingError, match="a single point does not turn a body"):
         LumpedMass("m", 1.0, position=(0.0, 0.0, 0.0), offset=(0.1, 0.0, 0.0))
-    with pytest.raises(HousingError, match="no symmetric tensor"):
+    with pytest.raises(HousingError, match=r"inertia is .*; expected a symmetric tensor"):
         LumpedMass("m", 1.0, lid, inertia=((1, 0.1, 0), (0, 1, 0), (0, 0, 1)))
-    with pytest.raises(HousingError, match=r"principal moments of inertia of 1, 1, 3 kg m².*sum of the two others"):
+    with pytest.raises(HousingError, match=r"sum of the two others; they are 1, 1, 3 kg m²"):
         LumpedMass("m", 1.0, lid, inertia=((1, 0, 0), (0, 1, 0), (0, 0, 3)))
     LumpedMass("thin disc", 1.0, lid, inertia=((1, 0, 0), (0, 1, 0), (0, 0, 2)))
     with pytest.raises(HousingError, match="on a patch, not at a point"):

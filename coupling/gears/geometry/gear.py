@@ -49,7 +49,7 @@ from gearwhine.coupling.gears.geometry.ring_support import RingSupport
 from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Finding, Instance, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Finding, Instance, Text, attribute_findings, in_mm, refuse
 from gearwhine.numerics.materials import material_findings
 from gearwhine.numerics.own_copies import keep_tuples, unchecked
 
@@ -241,7 +241,7 @@ class Gear:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
         keep_tuples(self, "pitch_deviations", "faults")
         _check_numbers(self)
-        _check_body(self)
+        refuse(_body_findings(self), GearError)
         _check_rack(self)
         _check_flank(self)
         _check_modifications(self)
@@ -559,10 +559,8 @@ def _check_numbers(gear: Gear) -> None:
     pitches = Instance(tuple, "numbers, one for each tooth")
     refuse(attribute_findings(("gear", gear.name), gear, pitch_deviations=pitches), GearError)
     if gear.pitch_deviations and len(gear.pitch_deviations) != gear.tooth_count:
-        raise GearError(
-            f"{label}pitch_deviations must be one for each of {gear.tooth_count} teeth, "
-            f"got {len(gear.pitch_deviations)}"
-        )
+        expected = f"one deviation for each of {gear.tooth_count} teeth, or none"
+        refuse([Finding(("gear", gear.name), "pitch_deviations", gear.pitch_deviations, expected)], GearError)
     for tooth, deviation in enumerate(gear.pitch_deviations):
         if type(deviation) is not float or not math.isfinite(deviation):
             require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
@@ -574,51 +572,38 @@ def _check_numbers(gear: Gear) -> None:
         raise GearError(f"{label}helix_angle must be -60 to 60 degrees in rad, got {gear.helix_angle!r} rad")
 
 
-def _check_body(gear: Gear) -> None:
-    """Raise `GearError` where bore, rim and web do not fit into each other."""
-    label = f"gear {gear.name!r}: "
+def _body_findings(gear: Gear) -> Iterator[Finding]:
+    """Yield sizes of bore, rim, web and hub that do not fit into each other."""
+    part = ("gear", gear.name)
     if gear.is_internal:
-        for quantity in ("bore", "web_thickness", "hub_diameter", "hub_width"):
-            if getattr(gear, quantity):
-                raise GearError(
-                    f"{label}an internal gear is a ring outside its teeth, without {quantity}; its rim_thickness says "
-                    "how far it reaches beyond its root circle, and a disc of the shaft may carry it"
-                )
+        for attribute in ("bore", "web_thickness", "hub_diameter", "hub_width"):
+            if value := getattr(gear, attribute):
+                yield Finding(part, attribute, value, "none of an internal gear, a ring outside its teeth, with a rim")
         if gear.ring_support is not None:
             gear.ring_support.require_fit(gear.name, gear.outer_radius)
         return
     if gear.ring_support is not None:
-        raise GearError(f"{label}ring_support is of internal gears; an external one is held at its bore or rim")
-    if gear.root_circle_radius <= 0.5 * gear.bore:
-        raise GearError(
-            f"{label}the bore ({gear.bore * 1e3:.4g} mm) must be smaller than the root circle "
-            f"({2e3 * gear.root_circle_radius:.4g} mm)"
-        )
-    inside = gear.rim_inner_radius
-    if inside is not None and inside <= 0.5 * gear.bore:
-        raise GearError(
-            f"{label}rim_thickness {gear.rim_thickness!r} m leaves no room between rim and bore; at most "
-            f"{(gear.root_circle_radius - 0.5 * gear.bore) * 1e3:.4g} mm, or none for a disc without a rim"
-        )
-    if gear.web_thickness is not None and inside is None:
-        raise GearError(f"{label}web_thickness needs a rim_thickness: a disc without a rim is as wide as its face")
-    if gear.web_thickness is not None and gear.web_thickness > gear.face_width:
-        raise GearError(
-            f"{label}web_thickness {gear.web_thickness * 1e3:.4g} mm must be at most the face width, "
-            f"{gear.face_width * 1e3:.4g} mm"
-        )
+        expected = f"none of an external gear; a ring has a negative number of teeth, teeth = {-gear.teeth}"
+        yield Finding(part, "ring_support", gear.ring_support.kind, expected)
+    root, inside, web = gear.root_circle_radius, gear.rim_inner_radius, gear.web_thickness
+    if root <= 0.5 * gear.bore:
+        yield Finding(part, "bore", gear.bore, f"a bore smaller than the root circle, {in_mm(2.0 * root)}")
+    elif inside is not None and inside <= 0.5 * gear.bore:
+        expected = f"room between rim and bore: a rim below {in_mm(root - 0.5 * gear.bore)}, or none for a plain disc"
+        yield Finding(part, "rim_thickness", gear.rim_thickness, expected)
+    if web is not None and inside is None:
+        yield Finding(part, "web_thickness", web, "no web, or a rim around it: else it is a plain disc")
+    if web is not None and web > gear.face_width:
+        yield Finding(part, "web_thickness", web, f"at most the face width, {in_mm(gear.face_width)}")
     if gear.hub_diameter is not None:
-        if gear.web_thickness is None or inside is None:
-            raise GearError(f"{label}hub_diameter needs a web_thickness: without a web there is no hub")
-        if not 0.0 < gear.bore < gear.hub_diameter < 2.0 * inside:
-            raise GearError(
-                f"{label}hub_diameter {gear.hub_diameter * 1e3:.4g} mm must be between a bore, "
-                f"{gear.bore * 1e3:.4g} mm, and the inside of the rim, {2e3 * inside:.4g} mm"
-            )
-    if gear.hub_width is not None and (gear.hub_diameter is None or gear.hub_width < (gear.web_thickness or 0.0)):
-        raise GearError(
-            f"{label}hub_width {gear.hub_width * 1e3:.4g} mm needs a hub_diameter, and at least the width of the web"
-        )
+        if web is None or inside is None:
+            yield Finding(part, "hub_diameter", gear.hub_diameter, "no hub, or a web around it")
+        elif not 0.0 < gear.bore < gear.hub_diameter < 2.0 * inside:
+            expected = f"between a bore, {in_mm(gear.bore)}, and the inside of the rim, {in_mm(2.0 * inside)}"
+            yield Finding(part, "hub_diameter", gear.hub_diameter, expected)
+    if gear.hub_width is not None and (gear.hub_diameter is None or gear.hub_width < (web or 0.0)):
+        expected = "the width of a hub with a hub_diameter, at least that of the web"
+        yield Finding(part, "hub_width", gear.hub_width, expected)
 
 
 def _check_rack(gear: Gear) -> None:

@@ -13,17 +13,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
-from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.errors import GearError
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.findings import FINITE, Choice, Finding, Number, Rule, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
 
 ReliefShape = Literal["linear", "parabolic"]
 
 _POWER = {"linear": 1, "parabolic": 2}
+_FROM_ZERO = Number(at_least=0.0, unit="m")
 
 
 @dataclass(frozen=True)
@@ -102,15 +105,17 @@ def _depth(relief: TipRelief | RootRelief, part: FloatArray) -> FloatArray:
 
 
 def _check(name: str, relief: TipRelief | RootRelief) -> None:
-    require_finite(f"{name} amount", relief.amount, minimum=0.0)
+    part = (name, "")
+    rules: dict[str, Rule] = {
+        "amount": _FROM_ZERO,
+        "start_roll_angle": Number(at_least=0.0, optional=True, unit="rad"),
+        "length": Number(above=0.0, optional=True, unit="m"),
+        "shape": Choice(tuple(_POWER)),
+    }
+    findings = list(attribute_findings(part, relief, **rules))
     if (relief.start_roll_angle is None) == (relief.length is None):
-        raise GearError(f"{name}: exactly one of start_roll_angle and length is needed")
-    if relief.start_roll_angle is not None:
-        require_finite(f"{name} start_roll_angle", relief.start_roll_angle, minimum=0.0)
-    if relief.length is not None:
-        require_finite(f"{name} length", relief.length, minimum=0.0, strict=True)
-    if relief.shape not in _POWER:
-        raise GearError(f"{name} shape must be one of {', '.join(_POWER)}, got {relief.shape!r}")
+        findings.append(Finding(part, "", None, "exactly one of 'start_roll_angle' and 'length'"))
+    refuse(findings, GearError)
 
 
 @dataclass(frozen=True)
@@ -146,15 +151,14 @@ class ProfileDeviation:
     def __post_init__(self) -> None:
         """Check the deviations and the table."""
         keep_tuples(self, "table")
-        for quantity in ("slope", "phase", "crowning"):
-            require_finite(f"profile deviation {quantity}", getattr(self, quantity))
-        for quantity in ("form", "waves"):
-            require_finite(f"profile deviation {quantity}", getattr(self, quantity), minimum=0.0)
-        if self.table:
-            if len(self.table) < 2 or not np.all(np.isfinite(self.table)):
-                raise GearError("profile deviation table: at least two rows of finite numbers are needed")
-            if not np.all(np.diff([roll for roll, _ in self.table]) > 0.0):
-                raise GearError("profile deviation table: the roll angles must increase")
+        part = ("profile deviation", "")
+        finite = dict.fromkeys(("slope", "phase", "crowning"), FINITE)
+        findings = list(attribute_findings(part, self, **finite, form=_FROM_ZERO, waves=Number(at_least=0.0)))
+        ascends = all(before < after for (before, _), (after, _) in pairwise(self.table))
+        if self.table and (len(self.table) < 2 or not ascends or not np.all(np.isfinite(self.table))):
+            expected = "two rows or more of a roll angle and a deviation, the roll angles increasing"
+            findings.append(Finding(part, "table", self.table, expected))
+        refuse(findings, GearError)
 
     @property
     def corners(self) -> tuple[float, ...]:
@@ -196,12 +200,12 @@ class HelixDeviation:
 
     def __post_init__(self) -> None:
         """Check the deviations and the end relief."""
-        for quantity in ("slope", "crowning"):
-            require_finite(f"helix deviation {quantity}", getattr(self, quantity))
-        for quantity in ("end_relief", "end_relief_length"):
-            require_finite(f"helix deviation {quantity}", getattr(self, quantity), minimum=0.0)
-        if self.end_relief > 0.0 and self.end_relief_length == 0.0:
-            raise GearError("helix deviation: an end relief needs an end_relief_length above 0")
+        part = ("helix deviation", "")
+        rules = {"slope": FINITE, "crowning": FINITE, "end_relief": _FROM_ZERO, "end_relief_length": _FROM_ZERO}
+        findings = list(attribute_findings(part, self, **rules))
+        if not findings and self.end_relief > 0.0 and self.end_relief_length == 0.0:
+            findings.append(Finding(part, "end_relief_length", 0.0, "the length of the end relief, above 0"))
+        refuse(findings, GearError)
 
     @property
     def is_straight(self) -> bool:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.numerics.findings import FINITE, Choice, Finding, Number, attribute_findings, refuse
 
 RingSupportKind = Literal["clamped", "housing", "springs", "bolts", "pins"]
 
@@ -45,28 +47,25 @@ class RingSupport:
 
     def __post_init__(self) -> None:
         """Check the kind and its values."""
-        if self.kind not in get_args(RingSupportKind):
-            kinds = ", ".join(get_args(RingSupportKind))
-            raise GearError(f"ring support: kind must be one of {kinds}, got {self.kind!r}")
-        label = f"ring support by {self.kind}: "
-        taken = {
-            "springs": ("radial_stiffness", "tangential_stiffness"),
-            "bolts": ("count", "seat_width", "radial_stiffness", "tangential_stiffness"),
-        }
-        taken["pins"] = taken["bolts"]
-        needed = {"springs": taken["springs"], "bolts": ("count", "seat_width"), "pins": ("count", "seat_width")}
-        for quantity in taken["bolts"]:
-            value = getattr(self, quantity)
+        refuse(self._findings(), GearError)
+
+    def _findings(self) -> Iterator[Finding]:
+        """Yield an unknown kind, and values that the kind lacks or does not take."""
+        part = ("ring support", "")
+        yield from attribute_findings(part, self, kind=Choice(get_args(RingSupportKind)), first=FINITE)
+        sizes, stiffness = ("count", "seat_width"), ("radial_stiffness", "tangential_stiffness")
+        needed = {"springs": stiffness, "bolts": sizes, "pins": sizes}.get(self.kind, ())
+        taken = (*sizes, *stiffness) if self.discrete else needed
+        rules = dict.fromkeys((*sizes, *stiffness), Number(above=0.0)) | {"count": Number(at_least=2, whole=True)}
+        for attribute, rule in rules.items():
+            value = getattr(self, attribute)
             if value is None:
-                if quantity in needed.get(self.kind, ()):
-                    raise GearError(f"{label}{quantity} is missing")
-                continue
-            if quantity not in taken.get(self.kind, ()):
-                raise GearError(f"{label}{quantity} is not of this kind; leave it out")
-            require_finite(label + quantity, value, minimum=0.0, strict=True)
-        if self.count is not None and (type(self.count) is not int or self.count < 2):
-            raise GearError(f"{label}count must be a whole number of at least 2, got {self.count!r}")
-        require_finite(label + "first", self.first)
+                if attribute in needed:
+                    yield Finding(part, attribute, "None", f"a value beside kind = {self.kind!r}")
+            elif attribute not in taken:
+                yield Finding(part, attribute, value, f"none beside kind = {self.kind!r}")
+            elif not rule.accepts(value):
+                yield Finding(part, attribute, value, rule.expected)
 
     @property
     def discrete(self) -> bool:

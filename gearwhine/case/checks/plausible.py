@@ -146,15 +146,7 @@ def _of_measured(measured: Measured, limit_hz: float | None) -> Iterator[Finding
 
 
 def _of_housing(housing: Housing) -> Iterator[Finding]:
-    """Yield masses that cannot be fastened where they are, and damping that no housing has."""
-    from gearwhine.housing.errors import HousingError
-
-    for index, mass in enumerate(housing.mass):
-        try:
-            mass.build()
-        except HousingError as error:
-            for finding in error.findings:
-                yield placed(("housing", "mass", index), finding)
+    """Yield a limit of the modes and a damping that no housing has."""
     limit = housing.frequency_limit
     if limit is not None and limit < _LOWEST_LIMIT:
         expected = f"at least {_LOWEST_LIMIT:g} Hz, below which housings have no modes; a plain number is in Hz"

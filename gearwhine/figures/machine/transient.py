@@ -243,11 +243,11 @@ _ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and gap with axis and 
 _FIRST = 5.0  # height of the first row's titles [mm of paper]
 
 
-def _rows_of_pairs(count: int, title: str, note: str, height: float = _ROW) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+def _rows_of_pairs(count: int, title: str, note: str) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     """Return a sheet with rows of two panels, the uppermost row first."""
-    figure = sheet(HEAD + _FIRST + count * height + (count - 1) * _ROW_GAP + FOOT, title, note)
-    bottoms = [FOOT + number * (height + _ROW_GAP) for number in reversed(range(count))]
-    return figure, [panel_pair(figure, bottom, height) for bottom in bottoms]
+    figure = sheet(HEAD + _FIRST + count * _ROW + (count - 1) * _ROW_GAP + FOOT, title, note)
+    bottoms = [FOOT + number * (_ROW + _ROW_GAP) for number in reversed(range(count))]
+    return figure, [panel_pair(figure, bottom, _ROW) for bottom in bottoms]
 
 
 def between_samples(times: FloatArray, values: FloatArray, end: float, period: float) -> tuple[FloatArray, FloatArray]:

@@ -209,7 +209,7 @@ def test_both_damaged_teeth_meet_once_in_the_hunting_period() -> None:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: TipRelief(1e-5), "exactly one of start_roll_angle and length"),
+        (lambda: TipRelief(1e-5), "tip relief: expected exactly one of 'start_roll_angle' and 'length'"),
         (lambda: TipRelief(1e-5, 0.3, 1e-3), "exactly one"),
         (lambda: TipRelief(1e-5, 0.3, shape="cubic"), "linear, parabolic"),  # type: ignore[arg-type]
         (lambda: replace(PINION, tip_relief=TipRelief(1e-5, TIP + 0.01)), "below the tip's roll angle"),
@@ -219,10 +219,10 @@ def test_both_damaged_teeth_meet_once_in_the_hunting_period() -> None:
         (lambda: MissingTooth(-1), "whole number from 0"),
         (lambda: Spall(1, 0.3, 0.2, 1e-5), "end_roll_angle must be above"),
         (lambda: Wear(1e-5, shape="round"), "'sliding' or 'uniform'"),  # type: ignore[arg-type]
-        (lambda: ProfileDeviation(table=((0.2, 0.0),)), "at least two rows"),
-        (lambda: ProfileDeviation(table=((0.2, 0.0), (0.1, 0.0))), "must increase"),
-        (lambda: ProfileDeviation(form=-1e-6), "form must be at least 0"),
-        (lambda: HelixDeviation(end_relief=1e-6), "end_relief_length above 0"),
+        (lambda: ProfileDeviation(table=((0.2, 0.0),)), "two rows or more"),
+        (lambda: ProfileDeviation(table=((0.2, 0.0), (0.1, 0.0))), "roll angles increasing"),
+        (lambda: ProfileDeviation(form=-1e-6), "form is -1e-06; expected .* of at least 0 m"),
+        (lambda: HelixDeviation(end_relief=1e-6), "end_relief_length is 0; expected the length"),
         (
             lambda: tooth_contact(
                 GearPairGeometry(replace(PINION, faults=(MissingTooth(1),)), WHEEL), ConstantStiffness(1e8)

@@ -46,7 +46,6 @@ def test_three_ways_of_saying_the_size() -> None:
         assert gear.base_radius == pytest.approx(base_radius, rel=1e-13)
         # What the case knows by itself agrees with the gear that is built.
         assert given.tooth_module == pytest.approx(gear.module, rel=1e-13)
-        assert given.base_circle_radius == pytest.approx(gear.base_radius, rel=1e-13)
 
 
 def test_a_gear_without_a_material_is_of_the_case_s_only_one() -> None:

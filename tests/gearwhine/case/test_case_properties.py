@@ -201,7 +201,7 @@ def test_values_are_in_si_inside() -> None:
     assert (case.housing.box.lower, case.housing.box.upper) == ((-0.11, 0.0, -0.08), (0.11, 0.16, 0.08))
     assert case.operation is not None
     assert case.operation.speed == pytest.approx(5500 * 2 * math.pi / 60, rel=1e-15)
-    assert case.gear_named("pinion").base_circle_radius == pytest.approx(0.04445 * math.cos(math.radians(20)))
+    assert case.parts.gears["pinion"].base_radius == pytest.approx(0.04445 * math.cos(math.radians(20)))
     assert {seat.name: seat.center for seat in case.housing.seat}["input-back"] == (-0.04445, 0.08, -0.08)
     assert case.parts.material_of(case.gear[0]) is case.material["steel"]
     assert case.rotor_named("output").length == 0.2

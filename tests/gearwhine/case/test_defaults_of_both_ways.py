@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import MISSING, fields, is_dataclass, replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
+import pytest
 
 import gearwhine as gw
 from gearwhine.coupling import ShaftGear
@@ -17,6 +19,28 @@ from gearwhine.meshes import BoxGeometry, WallThickness
 from gearwhine.rotors import ShaftMaterial
 
 APART = 88.9e-3
+SAME_KEYS = {
+    "acoustics.Acoustics": "coupling.sound.acoustics.Acoustics",
+    "bearings.BearingFault": "rotors.rolling_bearings.spalls.RollingSpall",
+    "bearings.CageSlip": "rotors.rolling_bearings.CageSlip",
+    "bearings.Stop": "coupling.GapLaw",
+    "box.CoverBolts": "meshes.box.parts.CoverBolts",
+    "box.Feet": "meshes.box.parts.Feet",
+    "box.Fillets": "meshes.box.parts.Fillets",
+    "box.Flange": "meshes.box.parts.Flange",
+    "box.Rib": "meshes.box.parts.Rib",
+    "gears.HelixErrors": "coupling.gears.HelixDeviation",
+    "gears.ProfileErrors": "coupling.gears.ProfileDeviation",
+    "gears.Relief": "coupling.gears.TipRelief",
+    "gears.RingSupport": "coupling.gears.RingSupport",
+    "measured.Pairing": "housing.correlation.pairing.PairingRule",
+    "operation.OrderTracking": "coupling.analyses.run_up.OrderTracking",
+    "operation.TorqueRipple": "coupling.machine.loads.Ripple",
+    "rotors.Coupling": "rotors.Coupling",
+    "rotors.Disc": "rotors.Disc",
+    "rotors.Unbalance": "rotors.Unbalance",
+}
+"""Tables of a case, in `gearwhine.case`, and the objects with their keys."""
 _TWO_PI = 2.0 * math.pi
 
 
@@ -97,6 +121,22 @@ def test_parts_of_a_machine_have_the_defaults_of_a_case() -> None:
     expected = study.machine
     for part in ("shafts", "bearings", "gears", "gear_pairs", "outputs"):
         assert not differences(getattr(found, part), getattr(expected, part), part)
+
+
+def taken(place: str) -> Any:
+    module, _, name = place.rpartition(".")
+    return getattr(import_module(f"gearwhine.{module}"), name)
+
+
+@pytest.mark.parametrize("table", SAME_KEYS)
+def test_a_table_has_the_keys_and_the_defaults_of_its_object(table: str) -> None:
+    keys = taken(f"case.{table}").model_fields
+    found = {key: one.get_default(call_default_factory=True) for key, one in keys.items() if not one.is_required()}
+    expected = {one.name: one.default for one in fields(taken(SAME_KEYS[table])) if one.default is not MISSING}
+    common = found.keys() & expected.keys()
+    assert common
+    assert len(common) >= len(expected) - 2
+    assert {key: found[key] for key in common} == {key: expected[key] for key in common}
 
 
 def test_a_housing_has_the_damping_of_a_case() -> None:

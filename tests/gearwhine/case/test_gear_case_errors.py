@@ -15,7 +15,8 @@ ONE_WRONG = {
     "half a tooth": ("gear.0.teeth", 28.5, "gear[0].teeth", "a whole number from 5"),
     "pressure angle": ("gear.0.pressure_angle", "40 deg", "gear[0].pressure_angle", "at most 35 deg"),
     "damping ratio": ("gear_pair.0.damping_ratio", 1.5, "gear_pair[0].damping_ratio", "below 1"),
-    "bore of a gear": ("gear.0.bore", "84 mm", "gear[0].bore", "smaller than the base circle"),
+    "bore of a gear": ("gear.0.bore", "84 mm", "gear[0].bore", "smaller than the root circle"),
+    "web without a rim": ("gear.0.web", "2 mm", "gear[0].web", "no web, or a rim around it"),
     # keys, forms and choices
     "misspelt key": ("gear.0.facewidth", "6 mm", "gear[0].facewidth", "did you mean 'face_width'?"),
     "word of the field": ("gear.0.crowning", "4 um", "gear[0].crowning", "did you mean 'errors.helix.crowning'?"),

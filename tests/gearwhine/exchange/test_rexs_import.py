@@ -238,7 +238,7 @@ def test_flank_modifications_are_taken(helical: Case) -> None:
     pinion = helical.gear_named("pinion")
     assert pinion.tip_relief is not None
     assert pinion.tip_relief.amount == pytest.approx(12e-6)
-    base = pinion.base_circle_radius
+    base = helical.parts.gears["pinion"].base_radius
     assert pinion.tip_relief.start_roll_angle == pytest.approx(math.sqrt((0.027 / base) ** 2 - 1.0), rel=1e-9)
     assert pinion.errors.helix is not None
     assert pinion.errors.helix.crowning == pytest.approx(4e-6)

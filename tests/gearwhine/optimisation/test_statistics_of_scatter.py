@@ -15,8 +15,8 @@ from gearwhine.coupling import CouplingError
 from gearwhine.numerics.distributions import Discrete, Normal, Uniform
 from gearwhine.optimisation.goals import goals_of
 from gearwhine.optimisation.scatter import Scatter
-from gearwhine.output.named_quantities import part_of, shown_quantity, statistic_of
 from gearwhine.results.optimisation import sections
+from gearwhine.variation.named_quantities import part_of, shown_quantity, statistic_of
 from tests.machines.belted_shaft import BELTED_SHAFT
 
 LEFT = "bearing.left.force_n"

@@ -86,7 +86,7 @@ def test_written_cases_load_back_equal(given: dict[str, Any]) -> None:
 
 
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
-    "nothing": (spur_pair({}), "transient.revolutions: expected a plain number above 0 of revolutions, or a 'run'"),
+    "nothing": (spur_pair({}), "transient.revolutions: expected a number above 0 of revolutions, or a 'run'"),
     "both": (
         spur_pair({"revolutions": 3, "run": {"from": 1, "to": 2, "time": 1}}),
         "transient.revolutions: expected no number of revolutions beside a 'run'",

@@ -10,7 +10,7 @@ import pytest
 
 from gearwhine.case.load import bundled_case
 from gearwhine.cli import run_command
-from gearwhine.solutions import duration
+from gearwhine.solutions import StudyProgress, duration
 from gearwhine.variation import cost
 from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.quantities import Evaluation, Wanted, _evaluation
@@ -27,6 +27,21 @@ def test_times_are_told_in_the_unit_that_a_reader_takes() -> None:
         "4 min",
         "83 min",
         "2.5 h",
+    ]
+
+
+def test_progress_counts_what_an_earlier_run_had_found_and_estimates_the_rest_by_this_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock, said = [100.0], list[tuple[str, float | None]]()
+    monkeypatch.setattr(time, "perf_counter", lambda: clock[0])
+    reached = StudyProgress(lambda text, fraction=None: said.append((text, fraction)), "gearboxes", 10, before=4)
+    for clock[0], done, news in ((100.0, 4, ""), (101.0, 5, ""), (103.0, 6, ", 1 failed"), (103.5, 10, "")):
+        reached.report(done, news)
+    assert said == [
+        ("gearboxes: 4 of 10", 0.4),
+        ("gearboxes: 6 of 10, 1 failed, about 6 s left", 0.6),  # two in 3 s, and four to come
+        ("gearboxes: 10 of 10", 1.0),
     ]
 
 

@@ -15,7 +15,8 @@ from gearwhine.case.load import bundled_case, load_case
 from gearwhine.case.variation import Variation
 from gearwhine.results.check import summary
 from gearwhine.variation.inputs import Input, varied_inputs
-from gearwhine.variation.quantities import Wanted, possible_quantities
+from gearwhine.variation.named_quantities import analysis_of, possible_quantities
+from gearwhine.variation.quantities import Wanted
 from gearwhine.variation.samples import VariedCase
 
 HELIX = "errors.helix.slope"
@@ -255,6 +256,7 @@ def test_every_quantity_of_a_gearbox_may_be_named_in_a_limit() -> None:
     # All mesh periods are alike, and one shaft has two critical speeds in the range that is searched.
     lacking = {"gear_pair.pinion-wheel.transmission_error_over_hunting_period_m", "rotor.output.critical_speed_3_rpm"}
     assert set(found) == possible - lacking
+    assert all(analysis_of(name) == analysis for name, analysis in named.items())
 
 
 def test_check_refuses_studies_that_would_fail_later_and_names_their_keys() -> None:
@@ -275,3 +277,17 @@ def test_check_refuses_studies_that_would_fail_later_and_names_their_keys() -> N
     ):
         with pytest.raises(CaseError, match=said):
             gw.load("helical-pair", {"variation": {"vary": varied, "limit": limit}} | change).check()
+
+
+def test_the_analysis_of_a_name_with_stars_is_that_of_all_quantities_that_it_may_mean() -> None:
+    for name, analysis in {
+        "bearing.*": "load",
+        "bearing.*.life_h": "load",
+        "*.transmission_error_*": "gears",
+        "sensor.*.level_db": "lines",
+        "sensor.*": None,  # lines and the motion have levels
+        "rotor.input.*": None,  # mass and critical speeds
+        "deflection_m": None,  # a number of somebody's own
+        "housing.level_db": None,
+    }.items():
+        assert analysis_of(name) == analysis, name
