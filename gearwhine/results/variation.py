@@ -338,8 +338,7 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
     for row in rows:
         total, ranks = row.get("sobol_total"), row["rank_correlation"]
         values = {key: value[0] for key, value in total.items()} if total else row["explained"]
-        by_rank = [key for key in row["leading_ranks"] if key not in values]
-        first = [*sorted(values, key=lambda key: -values[key]), *by_rank][:_MOST_INPUTS]
+        first = (sorted(values, key=lambda key: -values[key]) or list(row["leading_ranks"]))[:_MOST_INPUTS]
         if not first:
             unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
         for key in first:
