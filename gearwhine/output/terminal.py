@@ -1,6 +1,7 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
 import re
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from textwrap import wrap
 from typing import Any, Literal
@@ -55,6 +56,12 @@ def show(document: Document, sections: Iterable[Section], *, timed: bool = False
 def show_files(document: Document) -> None:
     """Print the written files, for commands that show nothing else."""
     show(document, ())
+
+
+def say_warning(message: str) -> None:
+    """Write a warning on standard error, wrapped at the width of a terminal."""
+    lead = "warning: "
+    sys.stderr.write(f"{lead}{_hanging(Console(stderr=True), message, len(lead))}\n")
 
 
 def show_section(console: Console, section: Section, indent: int = 0) -> None:
