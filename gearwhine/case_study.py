@@ -387,7 +387,9 @@ class CaseStudy(Study):
         try:
             planned = plan_modal_survey(housing, sensors, modes)
         except HousingError as error:
-            raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
+            raise CaseError(
+                [Problem("--sensors", str(sensors), f"sensors that tell the modes apart, or fewer --modes; {error}")]
+            ) from error
         return survey_result(housing, planned, self.origin)
 
     def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
