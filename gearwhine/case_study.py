@@ -692,8 +692,9 @@ class CaseStudy(Study):
     def detect(self, **options: Unpack[FolderOptions]) -> "Result[DetectionResult]":
         """Which sensor sees the fault of [detection] by which indicator, and from which size on, with what probability.
 
-        Healthy gearboxes give the threshold, those with the fault the probability of detection. A study in the same
-        folder is resumed, with more sizes or another noise, too.
+        Healthy gearboxes give the threshold, those with the fault the probability of detection.
+
+        A study in the same folder is resumed, with more sizes or another noise, too.
 
         Parameters
         ----------
