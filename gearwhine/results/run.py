@@ -1035,4 +1035,4 @@ def _with_free(parts: Document) -> list[Document]:
 
 
 def _share(part: Document) -> str:
-    return f"{100.0 * part['share']:.0f} %"
+    return f"{100.0 * part['share']:z.0f} %"
