@@ -359,7 +359,7 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
                     "value": f"{values[key]:.2f}" if key in values else "",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
                     "alone": f"{row['sobol_first'][key][0]:.2f}" if total else "",
-                    "rank": f"{ranks[key]:+.2f} (p = {row['rank_chance'][key]:.0e})" if key in ranks else "",
+                    "rank": f"{ranks[key]:+.2f} (p={row['rank_chance'][key]:.0e})" if key in ranks else "",
                 }
             )
     caption = (

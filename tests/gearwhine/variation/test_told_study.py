@@ -132,7 +132,7 @@ def test_a_rank_correlation_beyond_chance_is_told_and_drawn_where_no_part_is_exp
     assert top.rank_chances["gear.pinion.errors.e1"] == pytest.approx(reference.pvalue, rel=1e-9)
     sentences, tables = shown(varied_document(study))
     (row,) = tables["What matters:"]
-    assert row["rank correlation (p: by chance)"] == f"{reference.statistic:+.2f} (p = {reference.pvalue:.0e})"
+    assert row["rank correlation (p: by chance)"] == f"{reference.statistic:+.2f} (p={reference.pvalue:.0e})"
     assert not [one for one in sentences if one.startswith("No input alone")]
     figures = dict(draw_variation("By hand", study))
     (axes,) = figures["vary-importance"].axes
