@@ -77,7 +77,8 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
             for grid in _fitting(console, item, indent):
                 console.print(Padding(grid, (0, 0, 1, indent), expand=False))
         else:
-            console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}")
+            # A command to copy may be one long word, which a line end inside would spoil.
+            console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}", soft_wrap=True)
     for inner in section.inner:
         show_section(console, inner, indent)
 

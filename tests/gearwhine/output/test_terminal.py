@@ -218,6 +218,14 @@ def test_a_figure_stands_beside_its_unit_at_every_width(width: int) -> None:
         assert sum(line.count(words) for line in lines) == 2, words
 
 
+def test_a_command_to_copy_has_no_line_end_inside_its_values() -> None:
+    values = "'operation.speed=" + ",".join(f"{speed} rpm" for speed in range(600, 2000, 100)) + "'"
+    console = Console(file=io.StringIO(), force_terminal=True, width=40, color_system=None, markup=False)
+    show_section(console, Section("", (f"Add these: gearwhine sweep CASE --over {values}",)))
+    assert isinstance(console.file, io.StringIO)
+    assert values in console.file.getvalue().splitlines()
+
+
 def test_a_warning_is_wrapped_at_the_width_of_a_terminal_between_words(monkeypatch: pytest.MonkeyPatch) -> None:
     message = "the flanks are -14 µm out of line over the face: stiffer shafts even it out"
     for is_terminal, lines in (("1", ["warning: the flanks are", "         -14 µm out of line"]), ("", None)):
