@@ -19,7 +19,7 @@ _WIDTH, _WIDEST = 120, 10_000  # of a table that is not on a terminal, and where
 _MOST_LISTED_FILES = 12  # largest number of files that are named
 _BETWEEN, _LEAST_BETWEEN = 3, 1  # columns between the cells of a table, and where it is narrow
 _NARROWEST = 20  # least number of columns of a wrapped text
-_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:[%°]|[kMGmµ]?[A-Za-zµ][A-Za-z]{0,2}(?:[·/²³][\w·/²³]*)?)(?:[\s,;.)]|$))")
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:[%°]|[kMGmµ]?[A-Za-zµ][A-Za-z]{0,2}(?:[·/²³][\w·/²³]*)?)(?:[\s,;.)']|$))")
 """Space between a figure and its unit."""
 
 
