@@ -111,9 +111,9 @@ GEAR = (
     Quantity(
         "span",
         _span,
-        heading="span",
+        heading="span (teeth)",
         shown=lambda row: (
-            "" if row["span"] is None else f"{_MM * row['span']['length_m']:.3f} over {row['span']['teeth']}"
+            "" if row["span"] is None else f"{_MM * row['span']['length_m']:.3f} ({row['span']['teeth']})"
         ),
     ),
     Quantity("over_balls", _over_balls),

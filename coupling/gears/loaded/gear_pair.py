@@ -144,7 +144,8 @@ class GearPair:
             "face_gap": Numbers(),
             "mean_force": Number(at_least=0.0, optional=True, unit="N"),
         }
-        part = ("gear pair", f"{self.driver} -> {self.driven}")
+        driver, driven = (getattr(gear, "name", gear) for gear in (self.driver, self.driven))
+        part = ("gear pair", f"{driver} -> {driven}")
         findings = list(attribute_findings(part, self, **rules))
         if not isinstance(self.stiffness, str) and not hasattr(self.stiffness, "pair_stiffness"):
             findings.append(Finding(part, "stiffness", self.stiffness, "a stiffness model, or the name of one"))

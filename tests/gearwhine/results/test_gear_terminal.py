@@ -40,7 +40,7 @@ def test_the_rig_in_one_screen(capsys: pytest.CaptureFixture[str]) -> None:
     for text in (
         "module 3.175 mm, pressure angle 20°",
         "95.250",  # tip circle
-        "34.051 over 4",  # span, as any table for 28 teeth of module 3.175 has it: 10.7246 modules
+        "34.051 (4)",  # span, as any table for 28 teeth of module 3.175 has it: 10.7246 modules
         "20.85°",  # roll angle at the pitch point, tan 20°
         "Contact ratio 1.63800",
         "Mesh frequency 2566.67 Hz, torque on the driver 71.77 N·m, mesh force 1718.2 N",

@@ -704,7 +704,10 @@ def test_modes_that_miss_their_proof_are_not_called_complete(tmp_path: Path) -> 
 
 def test_keys_that_came_or_went_are_told_too(tmp_path: Path) -> None:
     write(tmp_path, {"command": "run", "made_at": "2026-02-01T10:00:00+00:00"}, 'title = "two"\nnew = 4\n')
-    write(tmp_path / "gears", {"command": "gears", "made_at": "2026-01-01T10:00:00+00:00"}, 'title = "two"\nold = 3\n')
+    old = 'title = "two"\nold = 3\n[gone]\na = 1\nb = 2\n'
+    write(tmp_path / "gears", {"command": "gears", "made_at": "2026-01-01T10:00:00+00:00"}, old)
     (doubt,) = [line for line in read(tmp_path).text.splitlines() if "Does not fit the case any more" in line]
     assert "old was 3, is absent" in doubt
     assert "new was absent, is 4" in doubt
+    assert "[gone] is absent" in doubt
+    assert "gone.a" not in doubt
