@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import pytest
-from shown_units import SHOWN, dimension_of
+from shown_units import SHOWN, dimension_of, mislabelled
 
 from gearwhine.output.sections import Section, Table
 
@@ -109,7 +109,8 @@ def known_numbers(document: Mapping[str, Any]) -> defaultdict[str, list[float]]:
 def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
     """Numbers of texts that the document does not have."""
     known = known_numbers(document)
-    foreign = [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+    shown = [one for section in sections for one in shown_in(section)]
+    foreign = [one for one in shown if one.number == "-0" or not _is_known(one, known)]
     words = list(texts_in(document)) if foreign else []  # which are quoted
     return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
 
@@ -125,6 +126,9 @@ def texts_in(value: Any) -> Iterator[str]:
 
 def unsaid_figures(entry: Mapping[str, Any]) -> list[str]:
     """Figures of a warning that its message does not say, in their unit or bare; a part also by its rest."""
+    named = {key: value for key, value in entry.items() if isinstance(value, Mapping)}
+    entry = {key: value for key, value in entry.items() if key not in named}
+    entry |= {f"{key}.{name}": value for key, values in named.items() for name, value in values.items()}
     message = str(entry["message"])
     said = [Shown(message, number, unit) for number, unit in _WITH_UNIT.findall(message)]
     bare = [Shown(message, number, "") for number in re.findall(_NUMBER, message)]
@@ -268,7 +272,8 @@ def foreign_in_texts(name: str, figure: Any, document: Mapping[str, Any]) -> lis
 def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
     """Read the texts of every result that is made, and look at every figure that is drawn, while it is on."""
     result = import_module("gearwhine.analyses.result").Result
-    as_made, drawn = result.__post_init__, result.figures
+    arrays = import_module("gearwhine.output.dataset").LabelledArrays
+    as_made, drawn, labelled = result.__post_init__, result.figures, arrays.__init__
 
     def read_back(self: Any) -> None:
         as_made(self)
@@ -292,7 +297,13 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
                 assert not cut, f"{self.command}, {name}: cut by the axes: {cut}"
             yield name, figure
 
+    def labels_held(self: Any, variables: Any, *given: Any, **more: Any) -> None:
+        labelled(self, variables, *given, **more)
+        wrong = mislabelled(variables)
+        assert not wrong, f"labels of a file: {wrong}"
+
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(arrays, "__init__", labels_held)
         patch.setattr(result, "__post_init__", read_back)
         patch.setattr(result, "figures", looked_at)
         yield

@@ -33,6 +33,15 @@ ONE_WRONG = {
     "discard all": ("transient.discard", 10, "transient.discard", "fewer revolutions than the 10 of the run"),
     # keys, forms and choices
     "missing length": ("rotor.0.segments.0.diameter", GONE, "rotor[0].segments[0].diameter", "'6.35 mm'"),
+    **{
+        f"rib {end} beyond the wall": (
+            "housing.box.ribs",
+            [{"face": "top", "along": "x", "at": 0, "height": "10 mm", "thickness": "8 mm", end: "900 mm"}],
+            f"housing.box.ribs[0].{end}",
+            "x = -110 mm to 110 mm",
+        )
+        for end in ("from", "to")
+    },
     "wrong choice": ("rotor.0.mass", "lumpy", "rotor[0].mass", "'distributed' or 'lumped'"),
     "text for a table": ("operation", "fast", "operation", "a table"),
     "table for a list": ("rotor.0.segments", {"length": "1 m"}, "rotor[0].segments", "a list"),
