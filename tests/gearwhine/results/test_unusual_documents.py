@@ -5,9 +5,10 @@ from typing import Any
 import pytest
 from numbers_of_texts import foreign_numbers
 
-from gearwhine.output.sections import Section
+from gearwhine.output.sections import Section, Table
 from gearwhine.results.mesh_lines import line_content
 from gearwhine.results.optimisation import _change
+from gearwhine.results.system import _crossings
 
 Document = dict[str, Any]
 
@@ -42,3 +43,29 @@ def test_an_aim_changes_by_decibels_or_by_a_part_of_its_start(
 ) -> None:
     assert _change({"start": start, "designs": [design, 0.5 * design], "unit": unit}) == words
     assert _change({"start": start, "designs": [], "unit": unit}) == ""
+
+
+def test_crossings_that_the_table_has_no_room_for_are_counted() -> None:
+    crossings = [
+        {"kind": kind, "line": "1× input", "speed_rpm": -1000.0 - number, "margin": 1e-3 * number - 0.01}
+        | {
+            "frequency_hz": 900.0 + number,
+            "damping_ratio": 0.01,
+            "mode": 3,
+            "where": "input",
+            "whirl": 0.0,
+            "teeth": 0.1,
+        }
+        for number, kind in enumerate(["rotor"] * 42 + ["residual"] * 3)
+    ]
+    lines = [{"name": "1× input", "kind": "shaft"}]
+    document = {"lines": lines, "crossings": crossings, "speeds_rpm": [0.0, -4000.0], "unsettled": []}
+    content = list(_crossings(document))
+    (table,) = [one for one in content if isinstance(one, Table)]
+    shown = len(table.filled()[1])
+    assert 0 < shown < 42
+    assert str(content[-1]).startswith(f"{45 - shown} more crossings")
+    # Those nearest to the operation, by ascending speeds.
+    margins = sorted(abs(one["margin"]) for one in crossings[:42])[:shown]
+    assert sorted(abs(row["margin"]) for row in table.rows) == margins
+    assert [abs(row["speed_rpm"]) for row in table.rows] == sorted(abs(row["speed_rpm"]) for row in table.rows)
