@@ -8,7 +8,7 @@ results file in the unit of the axis, and no curve leaves its axes.
 """
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
@@ -113,6 +113,16 @@ def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) ->
     foreign = [one for one in shown if one.number == "-0" or not _is_known(one, known)]
     words = list(texts_in(document)) if foreign else []  # which are quoted
     return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
+
+
+def repeated_columns(sections: Iterable[Section]) -> list[str]:
+    """Headings of columns that show what another column of their table shows."""
+    several = list(sections)
+    repeated = [one for section in several for one in repeated_columns(section.inner)] if several else []
+    for table in (table for section in several for table in section.tables):
+        shown = Counter((column.of, column.shown) for column in table.columns)
+        repeated += [column.heading for column in table.columns if shown[column.of, column.shown] > 1]
+    return repeated
 
 
 def texts_in(value: Any) -> Iterator[str]:
@@ -283,8 +293,11 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
         unsaid = [one for entry in document["warnings"] for one in unsaid_figures(entry)]
         assert not unsaid, f"{self.command}: not in the message of the warning: {unsaid}"
         for compose in _composers().get(self.command, ()):
-            foreign = foreign_numbers(document, compose(document))
+            composed = list(compose(document))
+            foreign = foreign_numbers(document, composed)
             assert not foreign, f"{self.command}: not in the document: {foreign}"
+            repeated = repeated_columns(composed)
+            assert not repeated, f"{self.command}: two columns of one table show the same: {repeated}"
 
     def looked_at(self: Any, *given: Any) -> Iterator[tuple[str, Any]]:
         is_held = is_on() and self.solved is not None and self.command in _composers()

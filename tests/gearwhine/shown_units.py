@@ -106,13 +106,21 @@ NAMES = {
 }
 """Last word of a name in a file of results: units that it may have."""
 
+_FEWEST = 3  # values of an array that tell it from another
+
 
 def mislabelled(variables: Mapping[str, tuple[Sequence[str], Any, Mapping[str, Any]]]) -> list[str]:
     """Variables of a file whose unit is none, or none of what the name says, or whose long name is no words."""
     wrong = []
+    known: dict[tuple[str, bytes], str] = {}
     for name, (_, values, attributes) in variables.items():
-        if np.asarray(values).dtype.kind not in "fc":  # a label, a number of, a truth
+        array = np.asarray(values)
+        if array.dtype.kind not in "fc":  # a label, a number of, a truth
             continue
+        if array.size >= _FEWEST and np.unique(array).size >= _FEWEST:
+            other = known.setdefault((attributes.get("units", ""), array.tobytes()), name)
+            if other != name:
+                wrong.append(f"{name} has the values of {other}")
         unit, meaning = attributes.get("units", ""), attributes.get("long_name", "words")
         word = re.split("_over_|_by_", name)[0].rpartition("_")[2]
         if not _FILE_UNIT.fullmatch(unit):

@@ -56,6 +56,7 @@ def test_each_part_of_a_checked_case_stands_under_its_own_name() -> None:
     assert {part for part, word in words.items() if word not in first.get(part, "")} == set()
     assert first["bearings"].startswith(f"{document['bearings'][0]['name']}: ")
     assert first["thrust"].startswith(f"{document['axial_location'][0]['rotor']}: ")
+    assert [row["torques"] for row in document["rotor_analysis"]] == [0] * len(document["rotor_analysis"])
 
 
 @pytest.mark.slow
