@@ -102,7 +102,7 @@ NAMES = {
     "level": {"dB"},
     "ratio": {"1"},
     "phase": {"rad", "1"},  # of a mesh period, too
-    "spectrum": {"m/s2", "N", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
+    "spectrum": {"m/s2", "N", "N m", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
 }
 """Last word of a name in a file of results: units that it may have."""
 
@@ -117,7 +117,8 @@ def mislabelled(variables: Mapping[str, tuple[Sequence[str], Any, Mapping[str, A
         array = np.asarray(values)
         if array.dtype.kind not in "fc":  # a label, a number of, a truth
             continue
-        if array.size >= _FEWEST and np.unique(array).size >= _FEWEST:
+        # Places along a shaft are those of several quantities, and a round orbit is as wide as its probe moves.
+        if not name.endswith(("place", "position", "major_axis")) and np.unique(array).size >= _FEWEST:
             other = known.setdefault((attributes.get("units", ""), array.tobytes()), name)
             if other != name:
                 wrong.append(f"{name} has the values of {other}")
