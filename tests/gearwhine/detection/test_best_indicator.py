@@ -86,6 +86,17 @@ def test_a_bound_that_the_hits_leave_open_is_explained_and_thresholds_show_their
     assert low < value < high
 
 
+def test_healthy_values_that_the_fitted_distribution_does_not_have_are_warned_of() -> None:
+    """Evenly spaced ones may be of a log-normal distribution; half of them a hundred times as large are of none."""
+    healthy = (1.0 + 0.01 * np.arange(20.0)) * np.repeat([1.0, 100.0], 10)
+    two = detectability("roof", "rms", healthy, SAMPLES, np.full(40, 9.0), 0.01, "log-normal")
+    document = detection_document(_result(EARLY, two))
+    (told,) = [one for one in document["warnings"] if one["name"] == "distribution of healthy values"]
+    assert told["parts"] == 1
+    assert "values of rms at roof are not" in told["message"]
+    assert detection_document(_result(EARLY))["warnings"] == []
+
+
 def test_the_picture_draws_the_indicator_of_its_heading_and_tells_equal_curves_apart() -> None:
     found = _result(LATE, _part("rms", (0, 0, 0, 0, 8), 1.9e-3, None), EARLY, EQUAL)
     figure = dict(draw_detection("By hand", found))["detection-probability"]
