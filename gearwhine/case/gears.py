@@ -350,8 +350,8 @@ class Gear(Table):
     base_radius: PositiveLength | None = None
     """Base radius in the transverse plane. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     face_width: PositiveLength | None = None
-    """Face width; needed of helical gears, and unless the size is `base_radius`. Without it teeth touch in one point, and
-    nothing resists a tilt of the flanks."""
+    """Face width; needed of helical gears, and unless the size is `base_radius`. Without it teeth touch in one point,
+    and nothing resists a tilt of the flanks."""
     pressure_angle: PressureAngle = math.radians(20.0)
     """Pressure angle of the normal section."""
     helix_angle: HelixAngle = 0.0
