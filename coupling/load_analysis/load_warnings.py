@@ -252,8 +252,6 @@ def _misalignment_warnings(solved: SolvedLoad) -> Iterator[ResultWarning]:
             continue
         driver, driven = load.names
         said = f"the case gives a misalignment of {1e6 * taken:.4g} µrad, which the motion takes"
-        if pair.misalignment.origin == "default":
-            said = "the motion takes the flanks as aligned, as no face_width is given"
         yield warning(
             "misalignment",
             f"{load.pair.label}: {said}; the equilibrium finds {1e6 * at_equilibrium:.4g} µrad, {1e6 * apart:.3g} µm "

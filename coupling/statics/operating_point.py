@@ -207,6 +207,16 @@ class PairLoad:
         return self if self.force > 0.0 else None
 
     @property
+    def known_face(self) -> "PairLoad | None":
+        """The pair where its face width is known; None of teeth that touch in one point."""
+        return self if self.pair.geometry.has_face else None
+
+    @property
+    def loaded_face(self) -> "PairLoad | None":
+        """The pair where it carries load on a face of known width, by which alone line loads and pressures follow."""
+        return self.known_face and self.loaded
+
+    @property
     def misalignment_over_face(self) -> float:
         """Misalignment over the width of the face [m]."""
         return self.misalignment * self.pair.geometry.face_width

@@ -143,7 +143,7 @@ PAIR = (
     *_GEARS,
     Quantity("force_n", "force", "mesh_mean_force", heading="force\n[N]", shown=".0f"),
     Quantity("thrust_n", "thrust", "mesh_thrust"),
-    Quantity("face_width_m", "pair.geometry.face_width"),
+    Quantity("face_width_m", "known_face.pair.geometry.face_width"),
     _MISALIGNMENT,
     Quantity(
         "misalignment_by_cause_rad",
@@ -163,7 +163,7 @@ PAIR = (
     # Transverse loads along the line of action, by face width.
     Part(
         "line_load_n_per_m",
-        "loaded",
+        "loaded_face",
         (
             Quantity("mean", "mean_line_load", "mean_line_load", unit="N/m"),
             Quantity("maximum", "maximum_line_load", "maximum_line_load", unit="N/m"),
@@ -171,7 +171,7 @@ PAIR = (
             Quantity("peak_of_tooth_pair", "fine.peak_line_load", "peak_line_load_of_tooth_pair", unit="N/m"),
         ),
     ),
-    Quantity("contact_pressure_max_pa", "loaded.peak_pressure"),
+    Quantity("contact_pressure_max_pa", "loaded_face.peak_pressure"),
     Quantity("carrying_part", "loaded.carrying_part"),
     in_file("face_slice_place", _SLICE, "z", unit="m"),
     in_file("face_gap", _SLICE, "gap", unit="m"),

@@ -144,7 +144,7 @@ class Gear:
     pressure_angle : float
         Normal pressure angle, of the basic rack [rad].
     face_width : float
-        Width of the teeth along the shaft [m].
+        Width of the teeth along the shaft [m]; see ``has_face``.
     profile_shift : float
         Profile shift coefficient, in normal modules, positive outward; of an internal gear inward. A positive one makes
         the teeth thicker.
@@ -199,6 +199,8 @@ class Gear:
     allow_undercut : bool
         Whether to accept a gear whose rack cuts away the foot of the involute; its flank then begins where trochoid
         and involute cross.
+    has_face : bool
+        Whether the face width is known. Else it is nominal, and the teeth touch in one point in its middle.
 
     Raises
     ------
@@ -236,6 +238,7 @@ class Gear:
     hub_diameter: float | None = None
     hub_width: float | None = None
     ring_support: RingSupport | None = None
+    has_face: bool = True
 
     def __post_init__(self) -> None:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
