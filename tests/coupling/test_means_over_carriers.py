@@ -142,7 +142,6 @@ def test_flanks_and_bearings_are_the_means_of_statics_over_a_turn() -> None:
     assert [mean.force for mean in means] == pytest.approx(forces, rel=1e-3)
     rises = np.array([[pair.mean_stiffness for pair in point.pairs] for point in points])
     assert [mean.stiffness for mean in means] == pytest.approx(rises.mean(axis=0), rel=0.02)
-    print(rises.mean(axis=0), rises.min(axis=0), [m.stiffness for m in means])
 
 
 HALF, WHOLE, LOAD = 0.02, 4e8, 800.0
