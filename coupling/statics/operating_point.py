@@ -18,6 +18,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -36,7 +37,7 @@ from gearwhine.coupling.statics.static_model import (
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import RollingState
-from gearwhine.rotors.rolling_bearings.equilibrium import require_held
+from gearwhine.rotors.rolling_bearings.equilibrium import require_held, rolling_state
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +117,7 @@ def linearised_about(loads: Sequence[BearingLoad]) -> MountedBearing:
     """Linearise a bearing about its loads where its stiffness follows from these; else return the bearing as it is.
 
     Over several loads, as over a turn of carriers, it has the mean tangent and the mean force at the mean deflection. A
-    nonlinear law starts at the first load, with the tangent there.
+    nonlinear law starts at the mean deflection, with its own force there.
 
     Raises
     ------
@@ -127,15 +128,16 @@ def linearised_about(loads: Sequence[BearingLoad]) -> MountedBearing:
     if not mounted.needs_load or rolling is None:
         return mounted
     nominal, law = mounted.bearing, mounted.law
-    about = loads[:1] if isinstance(law, RollingLaw) else loads
     force, deflection, stiffness = (
-        np.mean([getattr(load, name) for load in about], axis=0) for name in ("force", "deflection", "stiffness")
+        np.mean([getattr(load, name) for load in loads], axis=0) for name in ("force", "deflection", "stiffness")
     )
     require_held(rolling)
     bearing = replace(nominal, stiffness=stiffness)
     if mounted.damping_time > 0.0:
         bearing = replace(bearing, damping=nominal.spatial_damping + mounted.damping_time * stiffness)
     if isinstance(law, RollingLaw):
+        if len(loads) > 1:
+            rolling = rolling_state(rolling.bearing, rolling.displacement + deflection - loads[0].deflection)
         return replace(mounted, bearing=bearing, law=replace(law, state=rolling))
     return replace(mounted, bearing=bearing, offset=force - stiffness @ deflection)
 
@@ -245,8 +247,8 @@ class PairLoad:
 
     @property
     def face_gap(self) -> tuple[float, ...]:
-        """Gap that mesh stiffness and motion take, see `mean_face_gap`."""
-        return mean_face_gap([self])
+        """Gap that mesh stiffness and motion take, see `face_gaps`."""
+        return face_gaps([self])["face_gap"]
 
     @property
     def line_load(self) -> FloatArray:
@@ -326,13 +328,23 @@ class PairLoad:
         return float(self.pair.contact.stiffness_of(self.fine).mean())
 
 
-def mean_face_gap(loads: Sequence[PairLoad]) -> tuple[float, ...]:
-    """Mean of `PairLoad.station_gap` over loads of a pair, or none where spur teeth carry evenly with it [m]."""
-    gap = np.mean([load.station_gap for load in loads], axis=0)
+def face_gaps(loads: Sequence[PairLoad]) -> dict[str, tuple[Any, ...]]:
+    """Gap of a pair that motion takes at its loads over a turn of carriers: ``face_gap`` and ``gap_changes`` [m].
+
+    The gap is the mean of `PairLoad.station_gap`; there is none where spur teeth carry evenly with all of them. Its
+    changes contain the approach at each load beside the mean one. A gap that moves as little has none.
+    """
+    gaps = np.array([load.station_gap for load in loads])
     is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
-    deflection = float(np.mean([load.tooth_deflection for load in loads]))
-    small = is_spur and np.ptp(gap) <= max(_EVEN_GAP * deflection, _LEAST_GAP)
-    return () if small else tuple(gap.tolist())
+    small = max(_EVEN_GAP * float(np.mean([load.tooth_deflection for load in loads])), _LEAST_GAP)
+    if is_spur and np.ptp(gaps, axis=1).max() <= small:
+        return {"face_gap": (), "gap_changes": ()}
+    mean = gaps.mean(axis=0)
+    if np.ptp(gaps - mean, axis=1).max() <= small:
+        return {"face_gap": tuple(mean.tolist()), "gap_changes": ()}
+    approach = np.array([float(load.pair.contact.face_mean @ load.approach) for load in loads])
+    changes = gaps - mean - (approach - approach.mean())[:, None]
+    return {"face_gap": tuple(mean.tolist()), "gap_changes": tuple(map(tuple, changes.tolist()))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -485,10 +497,12 @@ class OperatingPoint:
         )
 
 
-def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
-    """Gap of the flanks over the face that motion takes at operating points [m], by the names of the gears.
+def flank_gaps(
+    points: Sequence[OperatingPoint], unaligned: Sequence[str]
+) -> dict[tuple[str, str], dict[str, tuple[Any, ...]]]:
+    """Gap of the flanks over the face that motion takes at operating points, by the names of the gears.
 
-    See `mean_face_gap`.
+    See `face_gaps`.
 
     Parameters
     ----------
@@ -508,4 +522,4 @@ def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> di
             f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
             "expected a torque, or the misalignment"
         )
-    return {loads[0].names: mean_face_gap(loads) for loads in zip(*pairs, strict=True)}
+    return {loads[0].names: face_gaps(loads) for loads in zip(*pairs, strict=True)}

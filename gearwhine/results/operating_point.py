@@ -750,6 +750,13 @@ def _misalignments(load: Document) -> Iterator[str]:
                 "transmission error p-p over the hunting period, with the pitch deviations and faults that the "
                 "equilibrium leaves out"
             )
+    if load.get("planetary") and any(
+        pair["misalignment_taken_from"] == "operating point" for pair in load["gear_pairs"]
+    ):
+        yield (
+            "  These are of the carriers' first angle; mesh stiffness and motion take the means over a turn, and "
+            "`gears` has them with their range."
+        )
 
 
 def share_words(origin: str | None) -> str:
