@@ -273,8 +273,7 @@ def _free_motion_warnings(solved: SolvedLoad) -> Iterator[ResultWarning]:
 
 
 def sensitivity_warnings(ranked: LoadSensitivity) -> Iterator[ResultWarning]:
-    """Warnings of a ranking: what it leaves out, frozen carriers, and mesh harmonics whose sound is not proved."""
-    yield from ranked.warnings
+    """Warnings of a ranking: what it leaves out, and mesh harmonics whose sound is not proved."""
     if ranked.note is not None:
         yield warning("sensitivity", ranked.note)
     if not ranked.loudest_lines:

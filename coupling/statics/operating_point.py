@@ -142,6 +142,8 @@ def linearised_about(loads: Sequence[BearingLoad]) -> MountedBearing:
     return replace(mounted, bearing=bearing, offset=force - stiffness @ deflection)
 
 
+_FORCE_STEP = 1e-4  # step over a mesh force, in the differences of loads by the stiffness that follows it
+
 # Largest gap over the face of spur teeth that counts as none, of the teeth's mean deflection, and at least [m]: the
 # face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
 _EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
@@ -306,6 +308,30 @@ class PairLoad:
         """Axial force on the driven gear along z [N]."""
         return self.force * self.pair.axial + 0.0  # never -0
 
+    @property
+    def touched(self) -> FloatArray:
+        """Approach of the flanks between the rims beyond their clearance, by the static machine's coordinates, (m,)."""
+        return self.approach - (self.pair.clearance + self.pair.behind_rims * self.force) * self.pair.contact.uniform
+
+    @cached_property
+    def stiffening(self) -> FloatArray:
+        """Derivative of the loads (m,) by the force that the teeth are as stiff as under, at the same approach."""
+        under = self.pair.under
+        if under is None or self.force == 0.0:
+            return np.zeros(self.pair.contact.size)
+        step = _FORCE_STEP * self.force
+        more, less = (under(self.force + way).between_rims.at(self.touched).loads for way in (step, -step))
+        return (more - less) / (2.0 * step)
+
+    @cached_property
+    def force_slope(self) -> FloatArray:
+        """Derivative of the mesh force (m,) by the approach, with teeth whose stiffness follows it.
+
+        With f the loads, T their tangent and F = cᵀ f, dF = cᵀ (T dy + ∂f/∂F dF).
+        """
+        uniform, tangent = self.pair.contact.uniform, self.pair.between_rims.at(self.touched).stiffness
+        return np.asarray(uniform @ tangent / (1.0 - uniform @ self.stiffening))
+
     @cached_property
     def mesh(self) -> LoadedMesh:
         """The load of every tooth pair over its face at ``fine.phases``."""
@@ -439,6 +465,18 @@ class OperatingPoint:
     tangent: StaticTangent
     gravity: tuple[float, ...] | None = None
     supports: tuple[SupportLoad, ...] = ()
+
+    @cached_property
+    def settled_stiffness(self) -> FloatArray:
+        """Derivative of the forces by the coordinates, with teeth whose stiffness follows their mesh force, (n, n).
+
+        It is the tangent stiffness and, of each such pair, D ∂f/∂F (dF/dy)ᵀ Dᵀ, D the approach by the coordinates.
+        """
+        stiffness = self.tangent.stiffness
+        for pair, rows in zip(self.pairs, self.tangent.pairs, strict=True):
+            if np.any(pair.stiffening):
+                stiffness = stiffness + np.outer(rows @ pair.stiffening, rows @ pair.force_slope)
+        return stiffness
 
     def __repr__(self) -> str:
         """Return the loads on the bearings and the misalignment of the gear pairs; the rest is arrays."""
