@@ -387,7 +387,9 @@ class CaseStudy(Study):
         try:
             planned = plan_modal_survey(housing, sensors, modes)
         except HousingError as error:
-            raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
+            raise CaseError(
+                [Problem("--sensors", str(sensors), f"sensors that tell the modes apart, or fewer --modes; {error}")]
+            ) from error
         return survey_result(housing, planned, self.origin)
 
     def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
@@ -690,8 +692,9 @@ class CaseStudy(Study):
     def detect(self, **options: Unpack[FolderOptions]) -> "Result[DetectionResult]":
         """Which sensor sees the fault of [detection] by which indicator, and from which size on, with what probability.
 
-        Healthy gearboxes give the threshold, those with the fault the probability of detection. A study in the same
-        folder is resumed, with more sizes or another noise, too.
+        Healthy gearboxes give the threshold, those with the fault the probability of detection.
+
+        A study in the same folder is resumed, with more sizes or another noise, too.
 
         Parameters
         ----------

@@ -36,7 +36,7 @@ class HousingStudy:
 
         if not isinstance(housing, HousingModes):
             raise HousingError(
-                f"a study is of the modes of a housing, as gearwhine.Housing.modes() gives; got {housing!r}"
+                f"a study is of the modes of a housing, as gearwhine.Housing.modes() gives; got {housing!r:.60}"
             )
         self.housing, self.title, self.progress = housing, title, progress
 

@@ -10,6 +10,7 @@ from gearwhine.numerics.progress import Progress, silent
 
 _OFTEN = 30.0  # seconds between reports of long work
 _WORTH_SAYING = 5.0  # least time left that is shown [s]
+_BESIDE = 30  # terminal columns of spinner, bar and times beside the words of a live line
 
 
 @contextmanager
@@ -79,7 +80,8 @@ def _live() -> Iterator[Progress]:
                 bar.reset(task, total=None if fraction is None else 1.0)
             if message != current[0]:
                 current[0] = message
-                bar.update(task, description=message)
+                room = max(bar.console.width - _BESIDE, _BESIDE)
+                bar.update(task, description=message if len(message) <= room else f"{message[: room - 1]}…")
             if fraction is not None:
                 bar.update(task, total=1.0, completed=fraction)
 

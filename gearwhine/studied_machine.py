@@ -106,7 +106,9 @@ class StudiedMachine:
         from gearwhine.coupling import Machine as Described
 
         if not isinstance(machine, Described):
-            raise CouplingError(f"a study is of a gearwhine.Machine, got {machine!r}; gearwhine.load reads a case")
+            raise CouplingError(f"a study is of a gearwhine.Machine, got {machine!r:.60}; gearwhine.load reads a case")
+        if not isinstance(settings, Settings | None):
+            raise CouplingError(f"a study takes gearwhine.Settings, such as Settings('a title'), got {settings!r:.60}")
         self._machine = machine
         self._settings = settings or Settings()
         self._start(progress)

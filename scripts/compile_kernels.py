@@ -78,7 +78,8 @@ def multiply() -> None:
     product = BlockProduct(np.array([0, 1], dtype=np.int32), node, np.eye(3)[None], np.ones(1), np.arange(3))
     for columns in (1, 16):
         product @ np.ones((3, columns))
-    product.with_inertia(np.ones((3, 1)))
+    for precision in (np.float32, np.float64):
+        product.with_inertia(np.ones((3, 1), precision))
 
 
 def motions() -> None:

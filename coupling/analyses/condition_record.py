@@ -160,8 +160,9 @@ def condition_record(transient: SolvedTransient, tones_hz: Mapping[str, float] |
         if known.undefined or not names:
             continue
         if known.shaft not in of_shaft:
-            least = _SAMPLING * limit / (slowest * known.turn_hz)
-            # Beyond the limit the average of a slower stretch has nothing, so that more samples do no harm.
+            # So fine that FM0 finds the peaks, which lie between the samples of a coarser average. Beyond the limit the
+            # average of a slower stretch has nothing, so that more samples do no harm.
+            least = _FINER * _SAMPLING * limit / (slowest * known.turn_hz)
             count = 2 ** max(math.ceil(math.log2(max(least, 2.0 * known.teeth + 4.0))), 3)
             highest = math.floor(limit / (fastest * known.turn_hz) + 1e-9)
             of_shaft[known.shaft] = _averages(turned, fine, turns, count, highest)

@@ -69,11 +69,14 @@ class TakenMisalignment:
         Origin of that misalignment: ``operating point``, ``case`` where the case gives it, or ``default``, which is 0.
     found : float or None
         Misalignment at the operating point [rad]; None where that is not solved.
+    over_turn : tuple of float or None
+        Least and greatest over a turn of planet carriers, of which ``taken`` is the mean [rad]; None where it stays.
     """
 
     taken: float | None
     origin: str
     found: float | None
+    over_turn: tuple[float, float] | None = None
 
 
 def taken_misalignments(
@@ -324,7 +327,14 @@ def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
 def analyse_pair(
     pair: LoadedGearPair, misalignment: TakenMisalignment, widths_given: tuple[bool, bool] = (True, True)
 ) -> PairAnalysis:
-    """Analyse a solved gear pair under its mean torque and without load."""
+    """Analyse a solved gear pair under its mean torque and without load.
+
+    A misalignment of the operating point is the mean over a turn of planet carriers, where the gap changes over it.
+    """
+    slopes = pair.pair.gap_slopes(pair.geometry)
+    if slopes.size and misalignment.origin == "operating point":
+        over_turn = float(slopes.min()), float(slopes.max())
+        misalignment = replace(misalignment, taken=float(slopes.mean()), over_turn=over_turn)
     unloaded = first_touch(pair.carrying_flanks, pair.static.phases)
     if pair.static.force == 0.0 or not pair.has_single_pairs or not all(widths_given):
         return PairAnalysis(pair, misalignment, widths_given, unloaded, None, None)

@@ -703,10 +703,13 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
     A planet's bearings sit on its carrier.
     """
     seats = () if housing is None else tuple(housing.seats)
-    seat_names = ", ".join(map(repr, seats)) or "none"
+    expected = (
+        f"a seat of the housing, one of {', '.join(map(repr, seats))}, or None for the ground"
+        if seats
+        else "None for the ground, since no housing of the machine has a seat"
+    )
     for number, support in enumerate(machine.torque_supports):
         if support.seat is not None and support.seat not in seats:
-            expected = f"a seat of the housing, one of {seat_names}, or None for the ground"
             yield Finding(("machine", ""), f"torque_supports.{number}.seat", support.seat, expected)
     shafts = {shaft.name: shaft for shaft in machine.shafts}
     for mounted in machine.bearings:
@@ -726,7 +729,7 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             yield from _coaxial_findings(part, shaft, shafts[seat])
             continue
         if housing is None or seat not in seats:
-            yield Finding(part, "seat", seat, f"a seat of the housing, one of {seat_names}, or None for the ground")
+            yield Finding(part, "seat", seat, expected)
         elif seat in housing.seat_axes:
             place = SeatPlace(seat, (*housing.seat_axes[seat], housing.seat_z[seat]), housing.seat_reach.get(seat))
             yield from seat_findings(part, shaft.name, shaft.axis, shaft.start, mounted.bearing.at, place)

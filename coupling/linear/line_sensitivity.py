@@ -207,10 +207,6 @@ class LineModel(MeshHarmonicModel):
     pairs: tuple[LoadedGearPair, ...]
     found: tuple[bool, ...]
 
-    def responses(self, limit: float) -> tuple[Response, ...]:
-        """Solve the motions at the mesh harmonics with the carriers frozen, as adjoint states have them."""
-        return self.frozen_responses(limit)
-
     def lines(self, limit: float, count: int) -> tuple[Line, ...]:
         """Return the highest lines of each sensor, the highest of all first.
 

@@ -44,7 +44,7 @@ class LinesOverSpeed:
     between : ndarray, shape (o, s)
         Root mean square of all lines between these, of what differs between teeth [m/s²].
     rates : ndarray of complex, shape (s, l, h)
-        Rates of the housing's coordinates by each line; zero above the limit, and none without a housing.
+        Rates of the housing's coordinates by each line; zero above the limit, and none where they are not asked for.
     rates_between : tuple of (ndarray, ndarray of complex), shapes (k,) and (k, h)
         At each speed the frequencies of the lines between these [rad/s], and the rates by them.
     """
@@ -97,18 +97,18 @@ def housing_rates(machine: CoupledMachine, limit: float) -> tuple[FloatArray, Co
     as of `_frozen_lines`, a line for each place of the carriers. The arrays have the shapes (l,) and (l, h).
     """
     if not machine.system.turns:
-        return lines_over_speed(machine, [machine.speed], limit).housing_lines(0)
+        return lines_over_speed(machine, [machine.speed], limit, of_housing=True).housing_lines(0)
     model = MeshHarmonicModel(machine)
     lines = model.responses(limit)
     rows = _housing_rows(machine)
     rates = [1j * line.frequency * (rows @ line.motion) for line in lines]
-    still = [one.rates_between[0] for one in _frozen_lines(model, limit)]
+    still = [one.rates_between[0] for one in _frozen_lines(model, limit, of_housing=True)]
     frequencies = [np.array([line.frequency for line in lines]), *(frequency for frequency, _ in still)]
     every = [np.array(rates).reshape(-1, len(rows)), *(part / np.sqrt(len(still)) for _, part in still)]
     return np.concatenate(frequencies), np.concatenate(every)
 
 
-def _frozen_lines(model: MeshHarmonicModel, limit: float) -> list["LinesOverSpeed"]:
+def _frozen_lines(model: MeshHarmonicModel, limit: float, *, of_housing: bool = False) -> list["LinesOverSpeed"]:
     """Lines of a machine with turning carriers frozen at places all round; none where no teeth differ.
 
     Carriers turn slowly beside the lines, which are hundreds for each mesh: the power of a line and its sidebands
@@ -121,7 +121,7 @@ def _frozen_lines(model: MeshHarmonicModel, limit: float) -> list["LinesOverSpee
         return []
     period = 2.0 * np.pi / min(map(abs, machine.system.turning_rates))
     places = np.arange(_PLACES) * period / _PLACES
-    return [_solved_lines(model.frozen(float(time)), [machine.speed], limit) for time in places]
+    return [_solved_lines(model.frozen(float(time)), [machine.speed], limit, of_housing) for time in places]
 
 
 def _housing_rows(machine: CoupledMachine) -> FloatArray:
@@ -132,7 +132,9 @@ def _housing_rows(machine: CoupledMachine) -> FloatArray:
     return machine.rows(housing.name, np.eye(housing.size))
 
 
-def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: float) -> LinesOverSpeed:
+def lines_over_speed(
+    machine: CoupledMachine, speeds: Sequence[float], limit: float, *, of_housing: bool = False
+) -> LinesOverSpeed:
     """Solve the mesh harmonics at the sensors of a machine at some speeds.
 
     Parameters
@@ -143,6 +145,8 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
         Signed speeds of the first driver's shaft, in the sense of the machine's [rad/s].
     limit : float
         Highest frequency [rad/s].
+    of_housing : bool
+        Whether the rates of the housing's coordinates are wanted, too, which its sound needs.
 
     Raises
     ------
@@ -152,10 +156,10 @@ def lines_over_speed(machine: CoupledMachine, speeds: Sequence[float], limit: fl
     """
     if machine.system.turns:
         raise CouplingError("lines over speed: directions turn with a carrier; expected a machine without such")
-    return _solved_lines(MeshHarmonicModel(machine), speeds, limit)
+    return _solved_lines(MeshHarmonicModel(machine), speeds, limit, of_housing)
 
 
-def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: float) -> LinesOverSpeed:
+def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: float, of_housing: bool) -> LinesOverSpeed:
     """Solve as `lines_over_speed` does, the machine of a model whose directions stand."""
     machine = model.machine
     system, nominal = machine.system, machine.speed
@@ -170,7 +174,8 @@ def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: floa
     here = system.connector_matrices()
     rows = np.array(list(machine.sensor_rows.values())).reshape(-1, system.size)
     amplitudes = np.full((len(rows), len(ratios), len(loads)), np.nan)
-    between, moves = np.zeros(amplitudes.shape[:2]), _housing_rows(machine)
+    between = np.zeros(amplitudes.shape[:2])
+    moves = _housing_rows(machine) if of_housing else np.zeros((0, system.size))
     rates, outputs = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128), np.vstack([rows, moves])
     rates_between = []
     for place, ratio in enumerate(ratios):

@@ -36,14 +36,24 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 )
 from gearwhine.coupling.linear.carriers.carrier_sidebands import CarrierSidebands, Sideband
 from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
-from gearwhine.coupling.linear.carriers.turning_stiffness import TurningStiffnessForce, turning_stiffness_forces
+from gearwhine.coupling.linear.carriers.turning_stiffness import (
+    TurningStiffnessForce,
+    swings_at_rest,
+    turning_stiffness_forces,
+)
 from gearwhine.coupling.linear.excitation_orders import meshes_of_planets
 from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce, stiffness_forces
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
-from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.coupling.statics.mean_mesh import (
+    ContactState,
+    MeanMesh,
+    equilibrium_over_turn,
+    linear_matrices,
+    mean_contact,
+)
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 IntArray = npt.NDArray[np.int_]
@@ -247,7 +257,12 @@ class MeshHarmonicModel:
     @cached_property
     def contact(self) -> ContactState:
         """Contacts about their mean forces."""
-        return mean_contact(self.machine.system)
+        return mean_contact(self.machine.system, self._at_rest[0])
+
+    @cached_property
+    def _at_rest(self) -> tuple[list[MeanMesh | None], FloatArray]:
+        """Mean meshes and motion under the constant load, see `equilibrium_over_turn`."""
+        return equilibrium_over_turn(self.machine.system)
 
     @cached_property
     def loaded(self) -> tuple[int, ...]:
@@ -404,8 +419,9 @@ class MeshHarmonicModel:
             return sum_by_order(load for by_mechanism in mean for load in by_mechanism.values())
 
         found = dict[int, TurningStiffnessForce]()
+        swings = swings_at_rest(self.machine.system, *self._at_rest, model)
         for meshes in groups.values():
-            found |= turning_stiffness_forces(meshes, model, partial(loads, meshes))
+            found |= turning_stiffness_forces(meshes, model, partial(loads, meshes), swings)
         self._turning_forces[model] = found
         return found
 

@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwhine.coupling.linear.carriers.frozen_directions import frozen_warnings
 from gearwhine.coupling.linear.line_sensitivity import Line
 from gearwhine.coupling.load_analysis.line_model import SolvedLines
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.result_warnings import ResultWarning
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
@@ -168,15 +166,6 @@ class LoadSensitivity:
     line_density: FloatArray | None = None
     sound_line: int | None = None
     sound_density: FloatArray | None = None
-
-    @property
-    def warnings(self) -> tuple[ResultWarning, ...]:
-        """Warnings: that lines and their derivatives are those of frozen carriers."""
-        if self.lines is None:
-            return ()
-        system = self.lines.model.machine.system
-        effect = "`system` solves the lines of sensors with their sidebands, whose sound is listed beside the ranking"
-        return frozen_warnings(system, "lines of sensors and of the sound, by which parts are ranked,", effect=effect)
 
     @property
     def sensor_lines(self) -> tuple[Line, ...]:

@@ -19,7 +19,6 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
 from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.machine_description import Machine
@@ -36,7 +35,7 @@ from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
-    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound, SidebandSound
+    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.housing.acoustics.radiation import HousingRadiation
 
 LINES = 3
@@ -58,9 +57,6 @@ class SolvedLines:
         Lines of the sound, the loudest by their A-weighted power first.
     housing : HousingModes
         Housing with residual modes of the sensors, and the harmonic responses at the lines.
-    sidebands : tuple of SidebandSound
-        Sound of mesh harmonics and their sidebands, where directions turn with planet carriers; `model` and all other
-        lines freeze these.
     responses : mapping of str to ndarray
         Responses by which the housing's modes were extended, for a next solution.
     """
@@ -69,7 +65,6 @@ class SolvedLines:
     of_sensors: tuple[Line, ...]
     sound: "tuple[HarmonicSound, ...]"
     housing: HousingModes
-    sidebands: "tuple[SidebandSound, ...]" = ()
     responses: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
@@ -245,8 +240,7 @@ def solve_lines(
         modes, _housing_loads(first, loaded), lambda step: progress(f"responses of the housing at the lines: {step}")
     )
     lines = solved(exact, [sound.line.frequency for sound in first.sound])
-    lines = replace(lines, responses=extension.responses)
-    return replace(lines, sidebands=_sidebands(acoustics, lines, radiation, progress))
+    return replace(lines, responses=extension.responses)
 
 
 def _radiation(acoustics: "Acoustics | None", field: HousingField, progress: Progress) -> "HousingRadiation | None":
@@ -275,22 +269,6 @@ def _sound(
     progress("sound of the lines")
     limit = min(acoustics.limit_hz(field), field.complete_below_hz)
     return loudest_lines(model, radiation.with_shapes(field.shapes), _TWO_PI * limit, heard)
-
-
-def _sidebands(
-    acoustics: "Acoustics | None", lines: SolvedLines, radiation: "HousingRadiation | None", progress: Progress
-) -> "tuple[SidebandSound, ...]":
-    """Solve for the sound of the loudest mesh harmonics and sidebands of a machine whose directions turn."""
-    machine = lines.model.machine
-    if acoustics is None or radiation is None or not machine.system.turns:
-        return ()
-    from gearwhine.coupling.sound.mesh_harmonics import sideband_sounds
-
-    progress("sound of the sidebands")
-    field = lines.housing.displacement_field
-    limit = min(acoustics.limit_hz(field), field.complete_below_hz)
-    responses = MeshHarmonicModel(machine).parts(_TWO_PI * limit)
-    return sideband_sounds(responses, lines.model.housing, radiation.with_shapes(field.shapes))
 
 
 def _housing_loads(solved: SolvedLines, loaded: Mapping[str, sparse.csr_array]) -> list[tuple[float, FloatArray]]:

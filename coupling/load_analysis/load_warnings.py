@@ -252,8 +252,6 @@ def _misalignment_warnings(solved: SolvedLoad) -> Iterator[ResultWarning]:
             continue
         driver, driven = load.names
         said = f"the case gives a misalignment of {1e6 * taken:.4g} µrad, which the motion takes"
-        if pair.misalignment.origin == "default":
-            said = "the motion takes the flanks as aligned, as no face_width is given"
         yield warning(
             "misalignment",
             f"{load.pair.label}: {said}; the equilibrium finds {1e6 * at_equilibrium:.4g} µrad, {1e6 * apart:.3g} µm "
@@ -275,8 +273,7 @@ def _free_motion_warnings(solved: SolvedLoad) -> Iterator[ResultWarning]:
 
 
 def sensitivity_warnings(ranked: LoadSensitivity) -> Iterator[ResultWarning]:
-    """Warnings of a ranking: what it leaves out, frozen carriers, and mesh harmonics whose sound is not proved."""
-    yield from ranked.warnings
+    """Warnings of a ranking: what it leaves out, and mesh harmonics whose sound is not proved."""
     if ranked.note is not None:
         yield warning("sensitivity", ranked.note)
     if not ranked.loudest_lines:

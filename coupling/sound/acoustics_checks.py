@@ -229,7 +229,7 @@ def _wrap_findings(
 def unwrapped(acoustics: Acoustics, edge: float, error: HousingError) -> Finding:
     """Return the finding of a housing that triangles of an edge [m] do not wrap."""
     if isinstance(error, TriangleSizeError):
-        return Finding(_PART, "mesh_size", edge, f"another edge; {error}")
+        return Finding(_PART, "mesh_size", edge, f"an edge that suits the housing and its frequencies; {error}")
     return Finding(_PART, "", acoustics.method, f"a housing that can be wrapped; {error}")
 
 

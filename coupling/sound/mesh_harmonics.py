@@ -3,9 +3,6 @@
 Candidates are the mesh harmonics of the most power by an estimate; their sound is solved, and the loudest by their
 A-weighted power are taken. Of these the sound of every mode and residual mode is known, and with it the gradient of
 the power, :mod:`gearwhine.housing.acoustics.power_gradient`.
-
-Gradients take the carriers of planets as frozen. Where their directions turn, the sound of each sideband of the mesh
-harmonics is solved at its own frequency beside them, without gradients.
 """
 
 from collections.abc import Sequence
@@ -25,7 +22,6 @@ from gearwhine.numerics.arrays import ComplexArray, FloatArray
 LINES = 3
 """Number of lines of the sound, the loudest ones."""
 
-_SIDEBANDS = 12  # loudest sidebands of a machine whose directions turn
 _CANDIDATES = 6  # lines that are solved to find the loudest
 _TWO_PI = 2.0 * np.pi
 
@@ -108,60 +104,7 @@ def loudest_lines(
     return tuple(sounds[:LINES])
 
 
-@dataclass(frozen=True, eq=False)
-class SidebandSound:
-    """Sound power of a line of a machine whose directions turn, at the line's own frequency.
-
-    Attributes
-    ----------
-    response : Response
-        Motion of the line.
-    power : float
-        Sound power [W].
-    """
-
-    response: Response
-    power: float
-
-    @property
-    def weighted_power(self) -> float:
-        """Sound power by the frequency weighting A [W]."""
-        return float(10.0 ** (0.1 * a_weighting(self.response.frequency / _TWO_PI))) * self.power
-
-
-def sideband_sounds(
-    responses: Sequence[Response], housing: slice, radiation: HousingRadiation
-) -> tuple[SidebandSound, ...]:
-    """Solve for the sound of the loudest mesh harmonics and sidebands, by their A-weighted power in descending order.
-
-    Parameters
-    ----------
-    responses : sequence of Response
-        Motions at mesh harmonics and their sidebands, as of
-        :meth:`gearwhine.coupling.linear.mesh_harmonics.MeshHarmonicModel.parts`.
-    housing : slice
-        Place of the housing among the coordinates of the motions.
-    radiation : HousingRadiation
-        Radiation with the modes and residual modes of the housing.
-
-    Raises
-    ------
-    gearwhine.housing.HousingError
-        Where a line fails its proofs.
-    """
-    audible = [response for response in responses if response.frequency >= _TWO_PI * AUDIBLE]
-    sounds = []
-    for response in _candidates(housing, radiation, audible, _SIDEBANDS):
-        w = response.frequency
-        sound = radiation.solve(w / _TWO_PI, 1j * w * response.motion[housing][:, None])
-        sound.require_proofs()
-        sounds.append(SidebandSound(response, sound.power))
-    return tuple(sorted(sounds, key=lambda sound: -sound.weighted_power))
-
-
-def _candidates(
-    housing: slice, radiation: HousingRadiation, responses: Sequence[Response], count: int = _CANDIDATES
-) -> list[Response]:
+def _candidates(housing: slice, radiation: HousingRadiation, responses: Sequence[Response]) -> list[Response]:
     """Return the responses of the most A-weighted power by an estimate."""
     if not responses:
         return []
@@ -169,5 +112,5 @@ def _candidates(
     rates = np.array([1j * response.frequency * response.motion[housing] for response in responses]).T
     efficiency = pulsating_efficiency(hertz, radiation.area, radiation.medium.speed_of_sound)
     estimate = radiation.equivalent_power(rates) * efficiency * 10.0 ** (0.1 * a_weighting(hertz))
-    order = np.argsort(-estimate, kind="stable")[:count]
+    order = np.argsort(-estimate, kind="stable")[:_CANDIDATES]
     return [responses[n] for n in order]

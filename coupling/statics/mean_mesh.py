@@ -10,6 +10,7 @@ Linear analyses take the tooth contacts as mesh stiffness and damping about the 
 (`ContactState`).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -180,15 +181,16 @@ class ContactState:
     force: FloatArray | None = None
 
 
-def mean_contact(system: CoupledSystem) -> ContactState:
+def mean_contact(system: CoupledSystem, means: Sequence[MeanMesh | None] | None = None) -> ContactState:
     """Contacts linearised about the mean load: each loaded flank at its mean mesh stiffness under its mean force.
 
     The mean mesh stiffness under load is the mean over a mesh period of the tangent dF/dδ at static equilibrium under
     the contact's mean force: load sharing, reliefs, deviations, corner contact and uneven faces count. A flank
-    without a mean force has its mean stiffness without load, see :func:`unloaded_contact`.
+    without a mean force has its mean stiffness without load, see :func:`unloaded_contact`. ``means`` are those of
+    `mean_meshes`, where they are known.
     """
     state = unloaded_contact(system)
-    means = mean_meshes(system)
+    means = mean_meshes(system) if means is None else means
     stiffness = [k if mean is None else mean.stiffness for k, mean in zip(state.stiffness, means, strict=True)]
     force = [0.0 if mean is None else mean.force for mean in means]
     return replace(state, stiffness=np.array(stiffness, dtype=np.float64), force=np.array(force, dtype=np.float64))

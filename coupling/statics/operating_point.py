@@ -18,6 +18,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -36,7 +37,7 @@ from gearwhine.coupling.statics.static_model import (
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import RollingState
-from gearwhine.rotors.rolling_bearings.equilibrium import require_held
+from gearwhine.rotors.rolling_bearings.equilibrium import require_held, rolling_state
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +117,7 @@ def linearised_about(loads: Sequence[BearingLoad]) -> MountedBearing:
     """Linearise a bearing about its loads where its stiffness follows from these; else return the bearing as it is.
 
     Over several loads, as over a turn of carriers, it has the mean tangent and the mean force at the mean deflection. A
-    nonlinear law starts at the first load, with the tangent there.
+    nonlinear law starts at the mean deflection, with its own force there.
 
     Raises
     ------
@@ -127,18 +128,21 @@ def linearised_about(loads: Sequence[BearingLoad]) -> MountedBearing:
     if not mounted.needs_load or rolling is None:
         return mounted
     nominal, law = mounted.bearing, mounted.law
-    about = loads[:1] if isinstance(law, RollingLaw) else loads
     force, deflection, stiffness = (
-        np.mean([getattr(load, name) for load in about], axis=0) for name in ("force", "deflection", "stiffness")
+        np.mean([getattr(load, name) for load in loads], axis=0) for name in ("force", "deflection", "stiffness")
     )
     require_held(rolling)
     bearing = replace(nominal, stiffness=stiffness)
     if mounted.damping_time > 0.0:
         bearing = replace(bearing, damping=nominal.spatial_damping + mounted.damping_time * stiffness)
     if isinstance(law, RollingLaw):
+        if len(loads) > 1:
+            rolling = rolling_state(rolling.bearing, rolling.displacement + deflection - loads[0].deflection)
         return replace(mounted, bearing=bearing, law=replace(law, state=rolling))
     return replace(mounted, bearing=bearing, offset=force - stiffness @ deflection)
 
+
+_FORCE_STEP = 1e-4  # step over a mesh force, in the differences of loads by the stiffness that follows it
 
 # Largest gap over the face of spur teeth that counts as none, of the teeth's mean deflection, and at least [m]: the
 # face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
@@ -207,6 +211,16 @@ class PairLoad:
         return self if self.force > 0.0 else None
 
     @property
+    def known_face(self) -> "PairLoad | None":
+        """The pair where its face width is known; None of teeth that touch in one point."""
+        return self if self.pair.geometry.has_face else None
+
+    @property
+    def loaded_face(self) -> "PairLoad | None":
+        """The pair where it carries load on a face of known width, by which alone line loads and pressures follow."""
+        return self.known_face and self.loaded
+
+    @property
     def misalignment_over_face(self) -> float:
         """Misalignment over the width of the face [m]."""
         return self.misalignment * self.pair.geometry.face_width
@@ -235,8 +249,8 @@ class PairLoad:
 
     @property
     def face_gap(self) -> tuple[float, ...]:
-        """Gap that mesh stiffness and motion take, see `mean_face_gap`."""
-        return mean_face_gap([self])
+        """Gap that mesh stiffness and motion take, see `face_gaps`."""
+        return face_gaps([self])["face_gap"]
 
     @property
     def line_load(self) -> FloatArray:
@@ -294,6 +308,30 @@ class PairLoad:
         """Axial force on the driven gear along z [N]."""
         return self.force * self.pair.axial + 0.0  # never -0
 
+    @property
+    def touched(self) -> FloatArray:
+        """Approach of the flanks between the rims beyond their clearance, by the static machine's coordinates, (m,)."""
+        return self.approach - (self.pair.clearance + self.pair.behind_rims * self.force) * self.pair.contact.uniform
+
+    @cached_property
+    def stiffening(self) -> FloatArray:
+        """Derivative of the loads (m,) by the force that the teeth are as stiff as under, at the same approach."""
+        under = self.pair.under
+        if under is None or self.force == 0.0:
+            return np.zeros(self.pair.contact.size)
+        step = _FORCE_STEP * self.force
+        more, less = (under(self.force + way).between_rims.at(self.touched).loads for way in (step, -step))
+        return (more - less) / (2.0 * step)
+
+    @cached_property
+    def force_slope(self) -> FloatArray:
+        """Derivative of the mesh force (m,) by the approach, with teeth whose stiffness follows it.
+
+        With f the loads, T their tangent and F = cᵀ f, dF = cᵀ (T dy + ∂f/∂F dF).
+        """
+        uniform, tangent = self.pair.contact.uniform, self.pair.between_rims.at(self.touched).stiffness
+        return np.asarray(uniform @ tangent / (1.0 - uniform @ self.stiffening))
+
     @cached_property
     def mesh(self) -> LoadedMesh:
         """The load of every tooth pair over its face at ``fine.phases``."""
@@ -316,13 +354,23 @@ class PairLoad:
         return float(self.pair.contact.stiffness_of(self.fine).mean())
 
 
-def mean_face_gap(loads: Sequence[PairLoad]) -> tuple[float, ...]:
-    """Mean of `PairLoad.station_gap` over loads of a pair, or none where spur teeth carry evenly with it [m]."""
-    gap = np.mean([load.station_gap for load in loads], axis=0)
+def face_gaps(loads: Sequence[PairLoad]) -> dict[str, tuple[Any, ...]]:
+    """Gap of a pair that motion takes at its loads over a turn of carriers: ``face_gap`` and ``gap_changes`` [m].
+
+    The gap is the mean of `PairLoad.station_gap`; there is none where spur teeth carry evenly with all of them. Its
+    changes contain the approach at each load beside the mean one. A gap that moves as little has none.
+    """
+    gaps = np.array([load.station_gap for load in loads])
     is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
-    deflection = float(np.mean([load.tooth_deflection for load in loads]))
-    small = is_spur and np.ptp(gap) <= max(_EVEN_GAP * deflection, _LEAST_GAP)
-    return () if small else tuple(gap.tolist())
+    small = max(_EVEN_GAP * float(np.mean([load.tooth_deflection for load in loads])), _LEAST_GAP)
+    if is_spur and np.ptp(gaps, axis=1).max() <= small:
+        return {"face_gap": (), "gap_changes": ()}
+    mean = gaps.mean(axis=0)
+    if np.ptp(gaps - mean, axis=1).max() <= small:
+        return {"face_gap": tuple(mean.tolist()), "gap_changes": ()}
+    approach = np.array([float(load.pair.contact.face_mean @ load.approach) for load in loads])
+    changes = gaps - mean - (approach - approach.mean())[:, None]
+    return {"face_gap": tuple(mean.tolist()), "gap_changes": tuple(map(tuple, changes.tolist()))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -418,6 +466,18 @@ class OperatingPoint:
     gravity: tuple[float, ...] | None = None
     supports: tuple[SupportLoad, ...] = ()
 
+    @cached_property
+    def settled_stiffness(self) -> FloatArray:
+        """Derivative of the forces by the coordinates, with teeth whose stiffness follows their mesh force, (n, n).
+
+        It is the tangent stiffness and, of each such pair, D ∂f/∂F (dF/dy)ᵀ Dᵀ, D the approach by the coordinates.
+        """
+        stiffness = self.tangent.stiffness
+        for pair, rows in zip(self.pairs, self.tangent.pairs, strict=True):
+            if np.any(pair.stiffening):
+                stiffness = stiffness + np.outer(rows @ pair.stiffening, rows @ pair.force_slope)
+        return stiffness
+
     def __repr__(self) -> str:
         """Return the loads on the bearings and the misalignment of the gear pairs; the rest is arrays."""
         loads = [f"{one.name} {np.linalg.norm(one.force[:3]):.5g} N" for one in self.bearings]
@@ -475,10 +535,12 @@ class OperatingPoint:
         )
 
 
-def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
-    """Gap of the flanks over the face that motion takes at operating points [m], by the names of the gears.
+def flank_gaps(
+    points: Sequence[OperatingPoint], unaligned: Sequence[str]
+) -> dict[tuple[str, str], dict[str, tuple[Any, ...]]]:
+    """Gap of the flanks over the face that motion takes at operating points, by the names of the gears.
 
-    See `mean_face_gap`.
+    See `face_gaps`.
 
     Parameters
     ----------
@@ -498,4 +560,4 @@ def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> di
             f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
             "expected a torque, or the misalignment"
         )
-    return {loads[0].names: mean_face_gap(loads) for loads in zip(*pairs, strict=True)}
+    return {loads[0].names: face_gaps(loads) for loads in zip(*pairs, strict=True)}

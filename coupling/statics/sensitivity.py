@@ -16,6 +16,13 @@ for every parameter p (Haug, Choi and Komkov, Design Sensitivity Analysis of Str
   bearings.
 
 Outcomes of the flanks follow by the chain rule from the approach over the face, on which they depend alone.
+
+Teeth that share a torque are as stiff as under their own mesh force F. With the loads f(y, F) of a pair under the
+approach y, T = ∂f/∂y and F = cᵀ f, where c sums the forces,
+
+    dF = cᵀ T dy / (1 - cᵀ ∂f/∂F),      df = T dy + ∂f/∂F dF,
+
+so that K_T has the pair's own tangent T + ∂f/∂F (dF/dy)ᵀ, which is not symmetric, and an outcome that of F, too.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,7 +31,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
-from gearwhine.coupling.gears.loaded.face_load import face_load_factor
+from gearwhine.coupling.gears.loaded.face_load import FaceContact, FaceLoad, face_load_factor
 from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.numerics.arrays import FloatArray
@@ -33,6 +40,7 @@ OUTCOMES = ("misalignment", "k_h_beta", "transmission_error")
 """Outcomes of a gear pair: misalignment [rad], K_Hβ, and peak-to-peak transmission error under load [m]."""
 
 _STEP = 1e-6  # step over the flanks' compression under load, in the differences of K_Hβ and transmission error
+_FORCE_STEP = 1e-5  # step over the mesh force, in the same differences
 _SHAFT_STEP = 1e-6  # step over the shaft's length, in the one-sided differences of its motions
 
 
@@ -88,7 +96,7 @@ def adjoint(point: OperatingPoint, gradient: FloatArray) -> Adjoint:
     gradient : ndarray, shape (n,)
         Gradient c of the outcome by the coordinates of the static machine.
     """
-    return Adjoint(point, np.asarray(linalg.solve(point.tangent.stiffness.T, gradient)))
+    return Adjoint(point, np.asarray(linalg.solve(point.settled_stiffness.T, gradient)))
 
 
 def pair_adjoints(point: OperatingPoint) -> tuple[dict[str, Adjoint], ...]:
@@ -114,27 +122,31 @@ def deflection_slope(point: OperatingPoint, load: BearingLoad) -> FloatArray:
 
 
 def _face_gradients(pair: PairLoad) -> FloatArray:
-    """Gradients of K_Hβ and peak-to-peak transmission error by the approach, by central differences, (2, m)."""
-    contact = pair.pair.contact
-    # Coordinates of the static machine move the flanks against each other without that of shared rims on their hubs.
-    approach = pair.approach - (pair.pair.clearance + pair.pair.behind_rims * pair.force) * contact.uniform
+    """Gradients of K_Hβ and peak-to-peak transmission error by the approach, by central differences, (2, m).
 
-    def outcomes(approach: FloatArray) -> FloatArray:
-        shape = approach - contact.uniform * float(contact.face_mean @ approach)
-        fine = contact.under_force(pair.pair.between_rims.at(approach).force, shape, pair.fine.phases)
-        return np.array([face_load_factor(fine, pair.even), np.ptp(fine.deflection)])
+    Both follow from the shape of the approach over the face and the mesh force.
+    """
+    contact, under = pair.pair.contact, pair.pair.under
+
+    def outcomes(contact: FaceContact, force: float, shape: FloatArray, even: FaceLoad | None = None) -> FloatArray:
+        fine = contact.under_force(force, shape, pair.fine.phases)
+        even = contact.evenly(force, fine.phases) if even is None else even
+        return np.array([face_load_factor(fine, even), np.ptp(fine.deflection)])
 
     step = _STEP * pair.force / pair.mean_stiffness
     steps = step * np.eye(contact.size)
     # The tilt has another unit; its step moves the ends of the path of contact by as much.
     steps[-1] /= pair.pair.geometry.base_pitch
-    sizes = np.diag(steps)
-    return np.array(
-        [
-            (outcomes(approach + way) - outcomes(approach - way)) / (2.0 * size)
-            for way, size in zip(steps, sizes, strict=True)
-        ]
-    ).T
+    either = [
+        [outcomes(contact, pair.force, pair.shape + way * one, pair.even) for way in (1.0, -1.0)] for one in steps
+    ]
+    by_shape = np.array(
+        [(more - less) / (2.0 * size) for (more, less), size in zip(either, np.diag(steps), strict=True)]
+    )
+    by_shape -= np.outer(contact.face_mean, contact.uniform @ by_shape)
+    forces = [(1.0 + way) * pair.force for way in (_FORCE_STEP, -_FORCE_STEP)]
+    more, less = (outcomes(contact if under is None else under(force).contact, force, pair.shape) for force in forces)
+    return np.asarray(by_shape + np.outer(pair.force_slope, (more - less) / (forces[0] - forces[1]))).T
 
 
 def _deflection_slope(

@@ -7,6 +7,7 @@ of the tangent, from which the search for equilibrium starts (:mod:`gearwhine.co
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Protocol
@@ -258,6 +259,9 @@ class StaticPair:
         Contact without what lies behind rims that are coordinates of the static machine.
     behind_rims : float
         Compliance of these rims on their hubs along the line of action [m/N].
+    under : callable or None
+        Make the pair with teeth as stiff as under a mesh force [N]; None where their stiffness follows no share of a
+        torque.
     """
 
     label: str
@@ -270,6 +274,7 @@ class StaticPair:
     nominal: float
     between_rims: FaceContact
     behind_rims: float = 0.0
+    under: Callable[[float], StaticPair] | None = None
 
     @property
     def push(self) -> tuple[float, float]:

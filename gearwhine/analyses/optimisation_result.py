@@ -160,7 +160,7 @@ def solve_optimisation(
         """Write the best design and those of the front as cases."""
         for stem, number in _written_designs(optimised).items():
             made = proposed.case(_as_designed(optimised.designs[number], proposed))
-            title = f"{origin.title}: design {number}".strip(": ")
+            title = f"{origin.title}: design {number + 1}".strip(": ")
             # With its scatter and its aims, so that it can be varied, and searched from.
             kept = {"title": title, "variation": case.variation, "optimisation": case.optimisation}
             text = dump_case(made.model_copy(update=kept))

@@ -24,7 +24,6 @@ from gearwhine.case.variation import Limit, Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.sound.acoustics import Acoustics
-from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Distribution, correlated
 from gearwhine.numerics.names import one_of
@@ -350,8 +349,8 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
             with staging(folder.path) as place:
                 write_mode_cache(place, housing)
             housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
-    key = housing_key(given_housing(case, command))
-    return replace(varied, housing=reduce_housing(case, housing), housing_key=key, radiated=radiated), housing
+    reduced, key = reduce_housing(case, housing), varied.key_of_housing(case)
+    return replace(varied, solved=housing, housing=reduced, housing_key=key, radiated=radiated), housing
 
 
 def is_count(value: object) -> bool:

@@ -319,7 +319,8 @@ class Gear(Table):
     base_radius: PositiveLength | None = None
     """Base radius in the transverse plane. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     face_width: PositiveLength | None = None
-    """Face width; needed of helical gears, and unless the size is `base_radius`."""
+    """Face width; needed of helical gears, and unless the size is `base_radius`. Without it teeth touch in one point,
+    and nothing resists a tilt of the flanks."""
     pressure_angle: PressureAngle = math.radians(20.0)
     """Pressure angle of the normal section."""
     helix_angle: HelixAngle = 0.0
@@ -455,6 +456,7 @@ class Gear(Table):
             module=module,
             pressure_angle=self.pressure_angle,
             face_width=self.face_width if self.face_width is not None else NOMINAL_WIDTH * module,
+            has_face=self.face_width is not None,
             profile_shift=self.profile_shift,
             addendum=self.addendum,
             dedendum=self.dedendum,

@@ -22,9 +22,10 @@ LONGEST_QUANTITY = 100
 """Characters beyond which a string is not taken for a quantity."""
 
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*)", re.DOTALL)
-_FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-zµμ°%]{1,20})\s*(?:(?:\^|\*\*)\s*([+-]?[1-9]))?")
+_FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-zµμ°%]{1,20})(?:\s*(?:\^|\*\*)\s*([+-]?[1-9])|([+-]?[1-9]))?")
 _BRACKET = re.compile(r"/\s*\(([^()/]*)\)")  # "N*m/(rad*s)": the one place where brackets are customary
-_SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⋅": "·"})
+_SUPERSCRIPTS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "³": "3", "⋅": "·"})
+_A_MINUTE = ("1/min", "min^-1", "min-1")  # of a speed: revolutions, as catalogues write it
 _RESPELT = {"°": "degree", "%": "percent"}
 
 
@@ -206,7 +207,7 @@ def _parse_unit(text: str) -> _Unit | None:
         unit = _symbol(match[2])
         if unit is None:
             return None
-        exponent = int(match[3] or 1) * (-1 if match[1] == "/" else 1)
+        exponent = int(match[3] or match[4] or 1) * (-1 if match[1] == "/" else 1)
         factor *= unit.factor**exponent
         for key, power in unit.powers:
             powers[key] = powers.get(key, 0) + power * exponent
@@ -288,7 +289,8 @@ def _parse_text(text: str, dimension: Dimension, expected: str) -> float:
         return float(number)
     if not unit_text:
         raise QuantityError(f"{expected} with its unit (numbers without quotes are in {dimension.unit})")
-    unit = _parse_unit(unit_text)
+    is_turns = dimension is SPEED and unit_text.translate(_SUPERSCRIPTS).replace(" ", "") in _A_MINUTE
+    unit = _parse_unit("rpm" if is_turns else unit_text)
     if unit is None:
         raise QuantityError(f"{expected} (the unit {unit_text!r} is not known)")
     if not _matches(unit, dimension):

@@ -81,6 +81,7 @@ def on_case(
     """
     from gearwhine.case import load_case
     from gearwhine.output.quantity import add_warnings
+    from gearwhine.output.terminal import say_warning
     from gearwhine.progress import shown
 
     loaded = load_case(name, common.settings)
@@ -90,13 +91,13 @@ def on_case(
     if folder is not None:
         _check_files(command, folder, loaded, writes)
     for warning in loaded.warnings:
-        sys.stderr.write(f"warning: {warning}\n")
+        say_warning(warning)
     with shown(quiet=common.quiet) as progress:
         document = work(loaded, progress)
     add_warnings(document)
     for warning in document["warnings"]:
         if warning["message"] not in loaded.warnings:
-            sys.stderr.write(f"warning: {warning['message']}\n")
+            say_warning(warning["message"])
     hand_over(document, common, show)
     return document
 

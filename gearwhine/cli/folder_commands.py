@@ -1,6 +1,5 @@
 """Commands on bundled cases and on results folders: examples, report, export."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -102,6 +101,7 @@ def _on_results(
     from gearwhine.case import CaseError, Problem
     from gearwhine.case.load import bundled_names
     from gearwhine.numerics.names import did_you_mean
+    from gearwhine.output.terminal import say_warning
     from gearwhine.progress import shown
 
     if not Path(results).exists() and results not in (names := bundled_names()):
@@ -123,7 +123,7 @@ def _on_results(
     with shown(quiet=common.quiet) as progress:
         document = work(Path(results), None, progress)
     for warning in document["warnings"]:
-        sys.stderr.write(f"warning: {warning['message']}\n")
+        say_warning(warning["message"])
     hand_over(document, common, show)
 
 

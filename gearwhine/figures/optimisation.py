@@ -116,7 +116,7 @@ def _convergence(begins: str, optimised: Optimised) -> Figure:
     note = f"{begins}blue: within the limits, red: beyond; line: best so far, dashed: start."
     figure, panels = stacked(len(aims), _HEIGHT, _GAP, "Convergence", note, first=_TITLES)
     within, beyond = _masks(optimised)
-    numbers = np.arange(len(optimised.designs))
+    numbers = 1 + np.arange(len(optimised.designs))
     for place, axes in zip(aims, panels, strict=True):
         values, sign = _values(optimised, place), optimised.goals.aims[place].sign
         axes.plot(numbers[beyond], values[beyond], ".", color=RED, ms=3.0)
@@ -174,7 +174,7 @@ def _over_keys(optimised: Optimised) -> Figure:
     figure = sheet(
         HEAD + _TITLES + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
         "Designs by their keys",
-        f"{_label(optimised, 0)}; blue: within the limits, red: beyond, ring: design {best}.",
+        f"{_label(optimised, 0)}; blue: within the limits, red: beyond, ring: design {best + 1}.",
     )
     within, beyond = _masks(optimised)
     values, points = _values(optimised, 0), optimised.values()

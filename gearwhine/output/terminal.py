@@ -1,6 +1,7 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
 import re
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from textwrap import wrap
 from typing import Any, Literal
@@ -18,7 +19,7 @@ _WIDTH, _WIDEST = 120, 10_000  # of a table that is not on a terminal, and where
 _MOST_LISTED_FILES = 12  # largest number of files that are named
 _BETWEEN, _LEAST_BETWEEN = 3, 1  # columns between the cells of a table, and where it is narrow
 _NARROWEST = 20  # least number of columns of a wrapped text
-_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:[%°]|[kMGmµ]?[A-Za-zµ][A-Za-z]{0,2}(?:[·/²³][\w·/²³]*)?)(?:[\s,;.)]|$))")
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:[%°]|[kMGmµ]?[A-Za-zµ][A-Za-z]{0,2}(?:[·/²³][\w·/²³]*)?)(?:[\s,;.)']|$))")
 """Space between a figure and its unit."""
 
 
@@ -57,6 +58,12 @@ def show_files(document: Document) -> None:
     show(document, ())
 
 
+def say_warning(message: str) -> None:
+    """Write a warning on standard error, wrapped at the width of a terminal."""
+    lead = "warning: "
+    sys.stderr.write(f"{lead}{_hanging(Console(stderr=True), message, len(lead))}\n")
+
+
 def show_section(console: Console, section: Section, indent: int = 0) -> None:
     """Print a section; content under a title is set in by two columns."""
     if section.title:
@@ -70,7 +77,8 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
             for grid in _fitting(console, item, indent):
                 console.print(Padding(grid, (0, 0, 1, indent), expand=False))
         else:
-            console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}")
+            # A command to copy may be one long word, which a line end inside would spoil.
+            console.print(f"{' ' * indent}{_hanging(console, arrowed(str(item)), indent)}", soft_wrap=True)
     for inner in section.inner:
         show_section(console, inner, indent)
 

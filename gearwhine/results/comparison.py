@@ -412,12 +412,17 @@ def _responses(responses: Document) -> Iterator[str]:
         )
 
 
+def _millimetres(length: float) -> str:
+    """Return a length to three digits, none below a micrometre."""
+    return f"{round(1e3 * length, 3):.3g} mm"
+
+
 def _survey(survey: Document) -> Iterator[str]:
     """Yield lines on the alignment of the measured survey with the model."""
     yield (
         f"Survey: {counted(survey['points'], 'point')}, {counted(survey['degrees_of_freedom'], 'measured direction')}; "
-        f"{1e3 * survey['rms_distance_m']:.3g} mm from the surface in the mean, "
-        f"{1e3 * survey['worst_distance_m']:.3g} mm at worst (point {survey['worst_point']})."
+        f"{_millimetres(survey['rms_distance_m'])} from the surface in the mean, "
+        f"{_millimetres(survey['worst_distance_m'])} at worst (point {survey['worst_point']})."
     )
     if far := survey["far_points"]:
         names = ", ".join(far[:10]) + (", …" if len(far) > 10 else "")

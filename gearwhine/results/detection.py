@@ -10,7 +10,7 @@ from gearwhine.coupling.analyses.gear_condition import INDICATORS
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
-from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, finite
+from gearwhine.results.many_solutions import ending, failed_sentences, failed_solutions, failed_warnings, finite
 
 if TYPE_CHECKING:
     from gearwhine.detection.detectability import DetectionResult
@@ -96,7 +96,7 @@ DETECTION = (
         "best",
         lambda found: {sensor: None if one is None else one.indicator for sensor, one in found.best.items()},
     ),
-    FAILED,
+    failed_solutions(),
     Quantity("samples"),
     Quantity("resumed"),
     in_file("sensor", "sensor", "monitor.sensors", "sensor"),
@@ -183,11 +183,19 @@ def _content(document: Document) -> Iterator[str | Table]:
         matrix,
         f"Size that is found with a probability of 0.9, a90 (a90/95){unit}: {document['fault']}",
     )
-    best = "Best indicator of each sensor: the smallest a90, of equal ones the smallest a90/95"
     rows = list(_best_rows(document))
-    yield from table_of(_best_columns(document), rows, best)
+    best, found = _best_columns(document)
+    yield from table_of(
+        best, rows, "Best indicator of each sensor: the smallest a90, of equal ones the smallest a90/95"
+    )
+    yield from table_of(found, rows, "Gearboxes in which it finds the fault, by size")
+    if missing := [sensor for sensor in document["sensor_names"] if sensor not in [row["sensor"] for row in rows]]:
+        yield (
+            f"No indicator at {', '.join(missing)} finds any of these sizes with a probability of 0.9: larger sizes, "
+            "more healthy gearboxes for a lower threshold, or less scatter between records may tell."
+        )
     for row in rows:
-        if row.get("alike"):
+        if row["alike"]:
             title = INDICATORS[row["indicator"]].title
             yield f"Others that see as small a fault at {row['sensor']} as {title}: {row['alike']}."
     if unbounded := [row for row in document["detectability"] if row["a90"] is not None and row["a90_95"] is None]:
@@ -229,21 +237,18 @@ def _best_rows(document: Document) -> Iterator[Document]:
         of_sensor = [one for one in document["detectability"] if one["sensor"] == sensor]
         best = next((one for one in of_sensor if one["indicator"] == indicator), None)
         if best is None:
-            yield {"sensor": sensor, "indicator": None}
             continue
         keys = ("a90", "a90_95", "contradicted")
         alike = [one for one in of_sensor if one is not best and all(one[key] == best[key] for key in keys)]
         yield best | {"alike": ", ".join(INDICATORS[one["indicator"]].title for one in alike)}
 
 
-def _best_columns(document: Document) -> tuple[Column, ...]:
+def _best_columns(document: Document) -> tuple[tuple[Column, ...], tuple[Column, ...]]:
+    """Return the columns of the best indicators with their thresholds, and of the sizes that they find."""
     unit = f" [{document['shown_unit']}]" if document["shown_unit"] else ""
 
-    def text(of: Callable[[Document], str]) -> Callable[[Document], str]:
-        return lambda row: of(row) if row["indicator"] is not None else ""
-
     def found(place: int) -> Callable[[Document], str]:
-        return text(lambda row: f"{row['found'][place]['found']}/{row['found'][place]['total']}")
+        return lambda row: f"{row['found'][place]['found']}/{row['found'][place]['total']}"
 
     def threshold(row: Document) -> str:
         value, *ends = (row["threshold"][key] for key in ("value", "low", "high"))
@@ -253,12 +258,13 @@ def _best_columns(document: Document) -> tuple[Column, ...]:
         low, high = (f"{end:.{digits - 1}g}" if end is not None else "∞" for end in ends)
         return f"{value:.{digits}g} ({low} to {high})"
 
-    return (
-        Column("sensor", "sensor"),
-        Column("indicator", lambda row: "none" if row["indicator"] is None else INDICATORS[row["indicator"]].title),
-        Column(f"a90 (a90/95){unit}", text(lambda row: _a90(document, row))),
-        Column("healthy mean", text(lambda row: f"{row['healthy_mean']:.4g}")),
-        Column("threshold (95 %)", text(threshold)),
-        Column("curve by", text(lambda row: row["method"])),
-        *(Column(severity, found(place)) for place, severity in enumerate(document["severities"])),
+    sensor = Column("sensor", "sensor")
+    best = (
+        sensor,
+        Column("indicator", lambda row: INDICATORS[row["indicator"]].title),
+        Column(f"a90 (a90/95){unit}", lambda row: _a90(document, row)),
+        Column("healthy mean", lambda row: f"{row['healthy_mean']:.4g}"),
+        Column("threshold (95 %)", threshold),
+        Column("curve by", lambda row: row["method"]),
     )
+    return best, (sensor, *(Column(severity, found(place)) for place, severity in enumerate(document["severities"])))

@@ -111,9 +111,9 @@ GEAR = (
     Quantity(
         "span",
         _span,
-        heading="span",
+        heading="span (teeth)",
         shown=lambda row: (
-            "" if row["span"] is None else f"{_MM * row['span']['length_m']:.3f} over {row['span']['teeth']}"
+            "" if row["span"] is None else f"{_MM * row['span']['length_m']:.3f} ({row['span']['teeth']})"
         ),
     ),
     Quantity("over_balls", _over_balls),
@@ -359,6 +359,7 @@ PAIR = (
         "pair_misalignment",
         long_name="misalignment of the flanks that mesh stiffness and motion take",
     ),
+    Quantity("misalignment_over_turn_rad", "misalignment.over_turn", optional=True),
     Quantity("misalignment_from", "misalignment.origin"),
     Quantity("mean_force_n", "solved.static.force"),
     Quantity("mean_force_from", "force_origin"),
@@ -523,6 +524,9 @@ def _mesh(pair: Document) -> list[str]:
         misalignment = pair.get("misalignment_rad")
         words = misalignment_words(misalignment, origin, misalignment if origin == "operating point" else None)
         seats = _SEATS.get(pair.get("misalignment_seats", ""), "") if origin == "operating point" else ""
+        if over_turn := pair.get("misalignment_over_turn_rad"):
+            least, greatest = (f"{_MICRO * angle:z.2f}" for angle in over_turn)
+            words += f", in the mean over a turn of the carrier; from {least} to {greatest} µrad over it"
         if origin == "case":
             words += "; `gearwhine load` has the loaded teeth with the one that it finds, by the tilt of the shafts"
         lines.append(words[0].upper() + words[1:] + seats)

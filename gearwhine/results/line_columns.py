@@ -12,7 +12,7 @@ MECHANISMS = {
     "varying_stiffness": "varying mesh stiffness",
     "load_shuttling": "load shuttling",
     "friction": "tooth friction",
-    "pitch_errors": "pitch errors and runout",
+    "pitch_errors": "pitch errors, runout or damage",
     "unbalance": "unbalance",
     "shaft_bow": "shaft bow",
     "torque_ripple": "torque ripple",

@@ -9,16 +9,18 @@ from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import Quantity, Rows, in_file
 from gearwhine.output.sections import Document
 
-FAILED = Rows(
-    "failed",
-    lambda study: list(study.failures.items()),
-    (
-        Quantity("number", "0"),
-        Quantity("message", "1.message"),
-        Quantity("traceback", lambda row: row[1].traceback or None, optional=True),
-    ),
-)
-"""Solutions that failed, by their number in the study."""
+
+def failed_solutions(first: int = 0) -> Rows:
+    """Declare the solutions that failed by their number in the study, which counts from ``first``."""
+    return Rows(
+        "failed",
+        lambda study: list(study.failures.items()),
+        (
+            Quantity("number", lambda row: first + row[0]),
+            Quantity("message", "1.message"),
+            Quantity("traceback", lambda row: row[1].traceback or None, optional=True),
+        ),
+    )
 
 
 def finite(value: float) -> float | None:
@@ -26,14 +28,14 @@ def finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def numbered(dimension: str, count: Callable[[Any], int], long_name: str) -> tuple[Quantity, Quantity]:
-    """Declare the numbers of a study's solutions from 0, and why there is no result, for the file."""
+def numbered(dimension: str, count: Callable[[Any], int], long_name: str, first: int = 0) -> tuple[Quantity, Quantity]:
+    """Declare the numbers of a study's solutions from ``first``, and why there is no result, for the file."""
 
     def failures(study: Any) -> list[str]:
         return [study.failures[n].message if n in study.failures else "" for n in range(count(study))]
 
     return (
-        in_file(dimension, dimension, lambda study: np.arange(count(study)), long_name),
+        in_file(dimension, dimension, lambda study: first + np.arange(count(study)), long_name),
         in_file("failure", dimension, failures, "why there is no result"),
     )
 

@@ -29,12 +29,11 @@ from gearwhine.results.bearing_lives import life_quantities
 from gearwhine.results.planetary import MEMBER
 
 if TYPE_CHECKING:
-    from gearwhine.coupling.assembly import CoupledMachine
     from gearwhine.coupling.description.parts import SupportBolt
     from gearwhine.coupling.linear.line_sensitivity import Line
     from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
-    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound, SidebandSound
+    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
@@ -143,7 +142,7 @@ PAIR = (
     *_GEARS,
     Quantity("force_n", "force", "mesh_mean_force", heading="force\n[N]", shown=".0f"),
     Quantity("thrust_n", "thrust", "mesh_thrust"),
-    Quantity("face_width_m", "pair.geometry.face_width"),
+    Quantity("face_width_m", "known_face.pair.geometry.face_width"),
     _MISALIGNMENT,
     Quantity(
         "misalignment_by_cause_rad",
@@ -163,7 +162,7 @@ PAIR = (
     # Transverse loads along the line of action, by face width.
     Part(
         "line_load_n_per_m",
-        "loaded",
+        "loaded_face",
         (
             Quantity("mean", "mean_line_load", "mean_line_load", unit="N/m"),
             Quantity("maximum", "maximum_line_load", "maximum_line_load", unit="N/m"),
@@ -171,7 +170,7 @@ PAIR = (
             Quantity("peak_of_tooth_pair", "fine.peak_line_load", "peak_line_load_of_tooth_pair", unit="N/m"),
         ),
     ),
-    Quantity("contact_pressure_max_pa", "loaded.peak_pressure"),
+    Quantity("contact_pressure_max_pa", "loaded_face.peak_pressure"),
     Quantity("carrying_part", "loaded.carrying_part"),
     in_file("face_slice_place", _SLICE, "z", unit="m"),
     in_file("face_gap", _SLICE, "gap", unit="m"),
@@ -312,40 +311,6 @@ SOUND_LINE = (
 )
 """Quantities of a loudest line."""
 
-
-class _Sideband(NamedTuple):
-    """Sound of a line of a machine whose directions turn, and that machine."""
-
-    sound: "SidebandSound"
-    machine: "CoupledMachine"
-
-
-SIDEBAND = (
-    Quantity(
-        "excitation",
-        lambda row: row.sound.response.cause(row.machine),
-        "sound_sideband_excitation",
-        heading="excitation",
-    ),
-    Quantity("kind", "sound.response.kind", "sound_sideband_kind", heading="kind"),
-    Quantity("frequency_hz", "sound.response.frequency", "sound_sideband_frequency", heading="[Hz]", shown=".1f"),
-    Quantity("phasing", "sound.response.phasing", "sound_sideband_phasing", unit="1", heading="phasing", shown=".2f"),
-    in_file(
-        "sound_sideband_power",
-        "",
-        "sound.power",
-        "sound power of a mesh harmonic or its sideband by turning carriers",
-        "W",
-    ),
-    Quantity("sound_power_db", lambda row: float(power_level(row.sound.power)), heading="L_W [dB]", shown=".1f"),
-    Quantity(
-        "sound_power_db_a",
-        lambda row: float(power_level(row.sound.weighted_power)),
-        heading="L_WA [dB]",
-        shown=".1f",
-    ),
-)
-"""Quantities of the sound of a mesh harmonic, or of a sideband of it, where carriers turn."""
 
 _LEVELS = (
     Quantity("level_db"),
@@ -490,14 +455,6 @@ def _loudest_lines(solved: "SolvedLoad") -> Any:
         _LoudestLine(loud, sensitivity.lines.cause(loud.line), is_ranked)
         for loud, is_ranked in zip(sensitivity.loudest_lines, ranked, strict=True)
     ]
-
-
-def _sidebands(solved: "SolvedLoad") -> Any:
-    """Loudest lines with turning carriers, where there are any."""
-    sensitivity = solved.sensitivity
-    if sensitivity is None or sensitivity.lines is None or not sensitivity.lines.sidebands:
-        return ABSENT
-    return [_Sideband(one, sensitivity.lines.model.machine) for one in sensitivity.lines.sidebands]
 
 
 def _loudest_level(solved: "SolvedLoad") -> Any:
@@ -651,7 +608,6 @@ LOAD: Fields = (
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
     Rows("loudest_lines", _loudest_lines, SOUND_LINE, "loudest_line"),
     Quantity("loudest_lines_db_a", _loudest_level),
-    Rows("sound_sidebands", _sidebands, SIDEBAND, "sound_sideband"),
     Quantity("lines_without", _lines_without),
     Rows(
         "sensitivity",
@@ -708,8 +664,8 @@ LOAD_OPTIONS = (
     Option(("over_torque",), ("load_torque",), "load-over-torque.png"),
     Option(("carrier_turns",), ("carrier_angle",), "load-carrier-turn-*.png"),
     Option(
-        ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "sound_sidebands", "lines_without"),
-        ("influence", "sensor_line", "loudest_line", "sound_sideband"),
+        ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "lines_without"),
+        ("influence", "sensor_line", "loudest_line"),
         "load-sensitivity-*.png",
     ),
 )
@@ -750,6 +706,13 @@ def _misalignments(load: Document) -> Iterator[str]:
                 "transmission error p-p over the hunting period, with the pitch deviations and faults that the "
                 "equilibrium leaves out"
             )
+    if load.get("planetary") and any(
+        pair["misalignment_taken_from"] == "operating point" for pair in load["gear_pairs"]
+    ):
+        yield (
+            "  These are of the carriers' first angle; mesh stiffness and motion take the means over a turn, and "
+            "`gears` has them with their range."
+        )
 
 
 def share_words(origin: str | None) -> str:
@@ -894,9 +857,6 @@ def _lines(document: Document) -> Iterator[str | Table]:
         chosen = f"the line of {lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
         shown += _ranked(document, chosen, lambda row: row["lines"][number])
         yield from shown
-    if sidebands := document.get("sound_sidebands", ()):
-        caption = "Loudest mesh harmonics and sidebands with turning carriers: sound power level re 1 pW"
-        yield from table_of(columns_of(SIDEBAND), sidebands, caption)
     if loudest:
         caption = "Loudest mesh harmonics, A-weighted, linear about the mean load: sound power level re 1 pW"
         yield from table_of(columns_of(SOUND_LINE), loudest, caption)

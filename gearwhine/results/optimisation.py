@@ -9,7 +9,7 @@ from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import document_of, in_file, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
-from gearwhine.results.many_solutions import FAILED, failed_sentences, failed_warnings, finite, numbered
+from gearwhine.results.many_solutions import failed_sentences, failed_solutions, failed_warnings, finite, numbered
 from gearwhine.variation.named_quantities import part_of, shown_quantity, statistic_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
         "gearboxes_about_each": optimised.gearboxes,
         "ended": optimised.ended,
         "resumed": optimised.resumed,
-        "chosen": [{"number": number, "design": label} for number, label, _ in chosen],
+        "chosen": [{"number": number + 1, "design": label} for number, label, _ in chosen],
         "keys": [
             {
                 "key": one.name,
@@ -84,7 +84,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
         ],
         "front": [
             {
-                "number": number,
+                "number": number + 1,
                 "keys": [
                     optimised.shown_value(place, optimised.designs[number]) for place in range(len(optimised.inputs))
                 ],
@@ -92,7 +92,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
             }
             for number in (optimised.front if optimised.goals.count > 1 else [])
         ],
-    } | document_of((FAILED,), optimised)
+    } | document_of((failed_solutions(first=1),), optimised)
     if not optimised.front and chosen:
         document["missed"] = [_missed(limit, value) for limit, value in optimised.missed]
     if optimised.verification is not None:
@@ -199,7 +199,7 @@ def _on_front(optimised: "Optimised") -> Any:
 
 
 OPTIMISED = (
-    *numbered("design", lambda found: len(found.designs), "number of the design, in the order of trial"),
+    *numbered("design", lambda found: len(found.designs), "number of the design, in the order of trial", first=1),
     in_file("input", "input", lambda found: [one.name for one in found.inputs], "designed key of the case"),
     in_file("input_unit", "input", lambda found: [one.unit or "1" for one in found.inputs]),
     in_file("aim", "aim", lambda found: [goal.name for goal in found.goals.aims], "name of the aim"),
@@ -420,5 +420,4 @@ def _sentences(document: Document) -> Iterator[str]:
     resumed = f"; {document['resumed']} evaluations by an earlier run" if document["resumed"] else ""
     within = f", {document['within_limits']} within all limits" if document["limits"] else ""
     tried = f"{document['designs']} designs{scatter}{within}, by {document['method']}"
-    numbers = "; numbers of designs, in all tables, pictures and files, count from 0"
-    yield f"{tried}: {_ENDED[document['ended']]}{resumed}{numbers}"
+    yield f"{tried}: {_ENDED[document['ended']]}{resumed}"

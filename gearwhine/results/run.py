@@ -887,7 +887,8 @@ def _paths(document: Document) -> tuple[Section, ...]:
     columns = (
         Column("sensor", "sensor"),
         line_frequency(),
-        *(column for column in _SIGNATURE_COLUMNS if column.heading not in ("sensor", "Hz")),
+        *_LINE_COLUMNS,
+        *_PATH_COLUMNS,
         shape_column("the housing there"),
     )
     table = table_of(columns, rows, anchor=lambda row: path_place(row["sensor"], row["frequency_hz"]))
@@ -933,13 +934,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of((*columns, _MEAN_COLUMN) if means else columns, document.get("sensors", ()))
     if means and document.get("sensors"):
         yield _MEANS
-    if traced := _signature_table(document):
-        yield from traced
-        yield (
-            "Levels of rms values re 1 µm/s², with what all damping doubled and halved changes. What excites a line by "
-            "the linear model, each alone; with phase they add up to it. Shares are in phase with the line and add up "
-            "to it; of parts that cancel each other some exceed 100 %."
-        )
+    yield from _traced_lines(document)
     if document.get("run") is not None:
         yield _acceleration(document["run"])
     if run is not None:
@@ -983,13 +978,13 @@ _HIGHEST_ORDERS = 3  # of a signal on the terminal
 _MEAN_COLUMN = replace(SENSOR_COLUMNS[-1], heading="means over the run: Hz (m/s², peak)")
 _MEANS = "Spectrum of the whole run: means over its speeds, at some of which an order reaches more"
 _BAND = ("band_db.0", "band_db.1")
-_SIGNATURE_COLUMNS = (
-    Column("sensor", "sensor"),
-    Column("Hz", "frequency_hz", ".0f"),
+_LINE_COLUMNS = (
     Column("dB", "level_db", shown=lambda row: f"{row['level_db']:.0f}{_band(row)}", numbers=_BAND),
     Column("what it is", lambda row: row["name"] if row["kind"] != "mode" else f"free {row['name']}"),
     MECHANISM,
     Column("near", lambda row: _near(row["near_mode"]), numbers=("near_mode.frequency_hz",)),
+)
+_PATH_COLUMNS = (
     Column(
         "by housing modes",
         lambda row: ", ".join(
@@ -1005,15 +1000,23 @@ _SIGNATURE_COLUMNS = (
 )
 
 
-def _signature_table(document: Document) -> tuple[Table, ...]:
-    """Return the leading lines, and the housing modes and bearings that they come from."""
+def _traced_lines(document: Document) -> Iterator[Table | str]:
+    """Yield the leading lines with what excites them, and the housing modes and bearings that they come through."""
     rows = [
         peak | {"sensor": sensor["name"]}
         for sensor in document.get("sensors", ())
         for peak in sensor["peaks"][:3]
         if "contributions" in peak
     ]
-    return table_of(_SIGNATURE_COLUMNS, rows)
+    place = (Column("sensor", "sensor"), Column("Hz", "frequency_hz", ".0f"))
+    yield from table_of((*place, *_LINE_COLUMNS), rows, "Highest lines: levels, and what excites them")
+    yield from table_of((*place, *_PATH_COLUMNS), rows, "Paths of the highest lines: leading parts of each")
+    if rows:
+        yield (
+            "Levels of rms values re 1 µm/s², with what all damping doubled and halved changes. What excites a line by "
+            "the linear model, each alone; with phase they add up to it. Shares are in phase with the line and add up "
+            "to it; of parts that cancel each other some exceed 100 %."
+        )
 
 
 def _band(row: Document) -> str:
@@ -1032,4 +1035,4 @@ def _with_free(parts: Document) -> list[Document]:
 
 
 def _share(part: Document) -> str:
-    return f"{100.0 * part['share']:.0f} %"
+    return f"{100.0 * part['share']:z.0f} %"

@@ -1,6 +1,6 @@
 """Coupled system: quantities of its modes, stability, responses and Campbell diagram, and how they are shown."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -673,21 +673,25 @@ def _content(document: Document) -> Iterator[str | Table]:
     if trusted and len(within) < len(modes):
         yield f"{counted(len(modes) - len(within), 'more mode')} above {2.0 * trusted:.5g} Hz."
     responses = document.get("transmissibility", ())
-    for response in responses:
-        yield from _peaks(response, modes)
+    turning = any("turning_frequency_hz" in mode for mode in modes)
+    if turning and len(responses) > 1:
+        yield from _peaks_of_all(responses, modes)
+    else:
+        for response in responses:
+            yield from _peaks(response, modes)
     if any(_is_undamped(peak, modes) for response in responses for peak in _listed_peaks(response)):
         yield (
             f"Undamped: peaks at modes whose damping ratio is below {UNDAMPED_RATIO:g}, which come last, as damping "
             "that the model lacks decides their height. Often nothing damps the motion along an axis: give bearings "
             "damping along z."
         )
-    if document.get("transmissibility"):
+    if responses:
         yield (
             "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
             "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: "
             "`load --sensitivity` has the lines by all of these and what changes them, `steady` the motion."
         )
-    if document.get("transmissibility") and any("turning_frequency_hz" in mode for mode in modes):
+    if responses and turning:
         yield "They are the motions at the frequency of the error; the lines below have the sidebands beside it."
     yield from line_content(document)
     if campbell := document.get("campbell"):
@@ -850,6 +854,38 @@ def _listed_peaks(response: Document) -> Iterator[Document]:
     for key, _ in _RESPONSES:
         for peaks in response[key].values():
             yield from peaks
+
+
+def _peaks_of_all(responses: Sequence[Document], modes: list[Document]) -> Iterator[str | Table]:
+    """Yield the highest damped response of any mesh force and of each sensor to the error of each mesh, in one table.
+
+    The meshes of planets answer much alike: apart they are as many tables of nearly the same numbers.
+    """
+
+    def highest(peaks: Mapping[str, Sequence[Document]]) -> tuple[Document | None, str]:
+        damped = [(peak, name) for name, of in peaks.items() for peak in of if not _is_undamped(peak, modes)]
+        return max(damped, key=lambda one: one[0]["amplitude"], default=(None, ""))
+
+    def words(peaks: Mapping[str, Sequence[Document]], named: bool = False) -> str:
+        peak, name = highest(peaks)
+        if peak is None:
+            return "none damped"
+        where = f" at {name}" if named else ""
+        return f"{peak['frequency_hz']:.0f} ({significant(1e-6 * peak['amplitude'])}){where}"
+
+    (force, force_unit), (acceleration, unit) = _RESPONSES
+    columns = [
+        Column("by 1 µm of", "excitation"),
+        Column(force_unit, lambda row: words(row[force], named=True)),
+        *(
+            Column(
+                f"{sensor} {unit.split()[-1]}", lambda row, sensor=sensor: words({sensor: row[acceleration][sensor]})
+            )
+            for sensor in responses[0][acceleration]
+        ),
+    ]
+    yield "Highest response to the error of each mesh at any frequency: Hz, and in brackets by 1 µm:"
+    yield from table_of(columns, list(responses))
 
 
 def _peaks(response: Document, modes: list[Document]) -> Iterator[str | Table]:

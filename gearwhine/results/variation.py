@@ -1,5 +1,6 @@
 """Varied gearboxes: distributions of their quantities, what they follow from, and the yield, as tables."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +9,8 @@ import numpy as np
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import RPM, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, table_of
-from gearwhine.results.many_solutions import FAILED, ending, failed_sentences, failed_warnings, numbered
+from gearwhine.results.bearing_lives import LONGEST_LIFE, life_in_words
+from gearwhine.results.many_solutions import ending, failed_sentences, failed_solutions, failed_warnings, numbered
 from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
@@ -122,7 +124,7 @@ VARIED = (
             Quantity("std", lambda row: float(row[1].std())),
         ),
     ),
-    FAILED,
+    failed_solutions(),
     Rows("quantities", "quantities", QUANTITY),
     Quantity("headlines", lambda varied: [one.name for one in varied.headlines]),
     Quantity("speeds_rpm", lambda varied: (np.abs(varied.speeds) * RPM).tolist()),
@@ -216,33 +218,40 @@ def _number(of: Callable[[Document], float | None], form: str = ".4g") -> Callab
     """Return the function that shows a number of a row in the unit that is shown."""
 
     def text(row: Document) -> str:
-        value = of(row)
+        value, name = of(row), row["name"] if "name" in row else row["quantity"]
         if value is None or value != value:
             return ""
-        shown = format(shown_quantity(row["name"])[1] * value, form)
-        # Lives of millions of hours are narrower without a power of ten.
+        if name.endswith("life_h") and value > LONGEST_LIFE:
+            return life_in_words(value)
+        shown = format(shown_quantity(name)[1] * value, form)
         return f"{float(shown):.0f}" if "e+0" in shown else shown
 
     return text
 
 
-def _drawn(of: str, form: str) -> Callable[[Document], str]:
-    """Return the function that shows a number of an input in the unit that is shown; none of words and pitches."""
+def _is_drawn_number(row: Document) -> bool:
+    """Tell whether an input has a mean: words have none, and of pitches the file holds the range."""
+    return row["distribution"] != "pitches" and bool(row["unit"] or row["distribution"] != "discrete")
 
-    def text(row: Document) -> str:
-        # The numbers of words have no mean; of pitches the file holds the range, which is no tolerance of theirs.
-        is_number = row["distribution"] != "pitches" and (row["unit"] or row["distribution"] != "discrete")
-        return format(shown_unit(row["unit"])[1] * row[of], form) if is_number else ""
 
-    return text
+def _mean(row: Document) -> str:
+    """Return the mean of an input in the unit that is shown, to the digits of its standard deviation."""
+    if not _is_drawn_number(row):
+        return ""
+    mean, deviation = (shown_unit(row["unit"])[1] * row[key] for key in ("mean", "std"))
+    return f"{mean:z.{max(2 - math.floor(math.log10(deviation)), 0)}f}" if deviation > 0.0 else f"{mean:.4g}"
+
+
+def _deviation(row: Document) -> str:
+    return f"{shown_unit(row['unit'])[1] * row['std']:.3g}" if _is_drawn_number(row) else ""
 
 
 _INPUT_COLUMNS = (
     Column("key", "key"),
     Column("tolerance", lambda row: row["tolerance"] or row["distribution"]),
-    Column("unit", lambda row: shown_unit(row["unit"])[0] if _drawn("mean", "g")(row) else ""),
-    Column("mean", _drawn("mean", "z.4g")),
-    Column("std", _drawn("std", ".3g")),
+    Column("unit", lambda row: shown_unit(row["unit"])[0] if _is_drawn_number(row) else ""),
+    Column("mean", _mean),
+    Column("std", _deviation),
 )
 _LIMIT_COLUMNS = (
     Column("of", lambda row: part_of(row["name"])),
@@ -256,7 +265,7 @@ _WORST_COLUMNS = (
     Column("of", lambda row: part_of(row["quantity"])),
     Column("quantity", lambda row: shown_quantity(row["quantity"])[0]),
     Column("gearbox", "gearbox", "d"),
-    Column("value", lambda row: format(shown_quantity(row["quantity"])[1] * row["value"], ".5g")),
+    Column("value", _number(lambda row: row["value"], ".5g")),
     Column("at [rpm]", "speed_rpm", ".5g"),
 )
 _COLUMNS = (
@@ -338,8 +347,7 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
     for row in rows:
         total, ranks = row.get("sobol_total"), row["rank_correlation"]
         values = {key: value[0] for key, value in total.items()} if total else row["explained"]
-        by_rank = [key for key in row["leading_ranks"] if key not in values]
-        first = [*sorted(values, key=lambda key: -values[key]), *by_rank][:_MOST_INPUTS]
+        first = (sorted(values, key=lambda key: -values[key]) or list(row["leading_ranks"]))[:_MOST_INPUTS]
         if not first:
             unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
         for key in first:
@@ -351,7 +359,7 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
                     "value": f"{values[key]:.2f}" if key in values else "",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
                     "alone": f"{row['sobol_first'][key][0]:.2f}" if total else "",
-                    "rank": f"{ranks[key]:+.2f} (p = {row['rank_chance'][key]:.0e})" if key in ranks else "",
+                    "rank": f"{ranks[key]:+.2f} (p={row['rank_chance'][key]:.0e})" if key in ranks else "",
                 }
             )
     caption = (

@@ -174,6 +174,22 @@ def _of_record(given: GivenHousing, described: DescribedHousing, record: ModeRec
     return HousingModes(described, record, given.bearings)
 
 
+def with_modes_of(case: Case, solved: HousingModes, command: str = "modes") -> HousingModes | None:
+    """Return the housing of a case with modes that are solved, and its own damping and sensors; None if it has others.
+
+    Raises
+    ------
+    CaseError, gearwhine.housing.HousingError
+        As :func:`solve_housing`.
+    """
+    given = given_housing(case, command)
+    if content_key(given.cache_inputs(solved.mesh)) != solved.record.key:
+        return None
+    described = describe_housing(given.table, given.materials, solved.mesh, given.up)
+    with refused_by_key(given.table):
+        return _of_record(given, described, solved.record)
+
+
 def kept_housing(case: Case, folder: Path | None, progress: Progress = silent) -> HousingModes | None:
     """Return the housing of a case from the modes that a results folder keeps; None where it keeps none of it.
 

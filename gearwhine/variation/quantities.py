@@ -166,7 +166,7 @@ class _Gearbox:
         coupled = self.loaded.coupled
         if coupled.system.turns or any(one.bearing.speeds is not None for one in self.machine.bearings):
             return None
-        return lines_over_speed(coupled, self.speeds, self.limit)
+        return lines_over_speed(coupled, self.speeds, self.limit, of_housing=self.wanted.has_sound)
 
     @cached_property
     def at_speeds(self) -> tuple[CoupledMachine, ...]:
@@ -250,7 +250,8 @@ def _of_load(gearbox: _Gearbox) -> Named:
         name = f"gear_pair.{pair.names[0]}-{pair.names[1]}"
         yield f"{name}.k_h_beta", partial(getattr, pair, "k_h_beta")
         yield f"{name}.misalignment_rad", pair.misalignment
-        yield f"{name}.contact_pressure_pa", partial(getattr, pair, "peak_pressure")
+        if pair.known_face:
+            yield f"{name}.contact_pressure_pa", partial(getattr, pair, "peak_pressure")
     for bearing in load.bearings:
         name = f"bearing.{bearing.load.name}"
         yield f"{name}.force_n", float(np.linalg.norm(bearing.load.force[:3]))

@@ -23,11 +23,13 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.reduced_housing import reduced_component
+from gearwhine.housing import HousingModes
+from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.solutions import Failure, failure_of, solution_key
 from gearwhine.solve.acoustics import acoustics_of
-from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.housing_modes import solve_housing, with_modes_of
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
 from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.variation.inputs import Input, Wider, inputs_at
@@ -68,8 +70,11 @@ class VariedCase:
         Content that the case is made of, without its variation.
     inputs : tuple of Input
     wanted : Wanted
+    solved : HousingModes or None
+        Solved housing of the case without changes, whose modes serve samples of other damping and sensors; None
+        without one.
     housing : HousingComponent or None
-        Solved housing of the case without changes; None without one.
+        The same, reduced.
     housing_key : str
         Key of all that a machine takes of this housing; samples of another key have a housing of their own.
     wider : sequence of (Input or None)
@@ -83,6 +88,7 @@ class VariedCase:
     source: CaseSource
     inputs: tuple[Input, ...]
     wanted: Wanted
+    solved: HousingModes | None = field(default=None, repr=False)
     housing: HousingComponent | None = None
     housing_key: str = ""
     wider: Wider = ()
@@ -128,16 +134,26 @@ class VariedCase:
     def machine(self, case: Case) -> Machine:
         """Return the machine of a case of the study, in its housing."""
         housing = self.housing
-        # Places of bearings and materials belong to the housing, too.
-        if case.housing is not None and (key := housing_key(given_housing(case, "vary"))) != self.housing_key:
+        if case.housing is not None and (key := self.key_of_housing(case)) != self.housing_key:
             if key not in self.housings:
                 if len(self.housings) >= _KEPT_HOUSINGS:
                     self.housings.pop(next(iter(self.housings)))
-                solved = solve_housing(case, command="vary")
+                known = None if self.solved is None else with_modes_of(case, self.solved, "vary")
+                solved = known or solve_housing(case, command="vary")
                 radiated = radiated_power_of(acoustics_of(case), solved)[0] if self.wanted.has_sound else None
                 self.housings[key] = reduce_housing(case, solved), radiated
             housing = self.housings[key][0]
         return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
+
+    def key_of_housing(self, case: Case) -> str:
+        """Return the key of all that a machine takes of its housing, places of bearings and materials included.
+
+        Where the sound is wanted, so are the settings by which the housing radiates.
+        """
+        key = housing_key(given_housing(case, "vary"))
+        if not self.wanted.has_sound or case.acoustics is None:
+            return key
+        return content_key({"housing": key, "acoustics": case.acoustics.model_dump(mode="json")})
 
     def radiated_by(self, housing: HousingComponent | None) -> RadiatedPower | None:
         """Return the radiation of a housing of the study; None where the sound is not wanted."""

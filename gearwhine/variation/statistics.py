@@ -12,6 +12,7 @@ from scipy import stats
 
 from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import BoolArray, FloatArray
+from gearwhine.numerics.explained_parts import explained_parts
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
 from gearwhine.output.quantity import unit_of
@@ -242,36 +243,12 @@ class QuantityStatistics:
 
     @cached_property
     def explained(self) -> dict[str, float]:
-        """Part of the variance that goes with each input alone, where the samples prove that it is not 0.
-
-        The correlation ratio over classes of the input with equal numbers of samples, without its bias (Kelley 1935):
-        an estimate of the first-order index that also sees what rises on both sides, as the face load factor does with
-        the slope of a helix. An F-test at 0.1 % leaves out what may be chance.
-        """
+        """Part of the variance that goes with each input alone, where the samples prove that it is not 0."""
         found = np.isfinite(self.values)
-        count = int(found.sum())
-        # Few classes: pairs of coordinates of a short Sobol' sequence have patterns, which many classes would follow.
-        classes = min(max(count // 32, 4), 10)
-        if count < 8 * 4 or not self.scatters:
+        if not self.scatters:
             return {}
-        values, explained = self.values[found], {}
-        total = float(np.sum((values - values.mean()) ** 2))
-        for name, column in zip(self.input_names, self.inputs[found].T, strict=True):
-            if np.ptp(column) == 0.0:
-                continue
-            distinct = np.unique(column)
-            if distinct.size <= classes:
-                of_class = np.searchsorted(distinct, column)
-            else:
-                of_class = (stats.rankdata(column, method="ordinal") - 1) * classes // count
-            groups = [values[of_class == number] for number in np.unique(of_class)]
-            within = float(sum(np.sum((group - group.mean()) ** 2) for group in groups))
-            between, inner = len(groups) - 1, count - len(groups)
-            if inner < 1 or within == 0.0 or between == 0:
-                continue
-            if stats.f.sf((total - within) / between / (within / inner), between, inner) < CHANCE:
-                explained[name] = 1.0 - within / inner / (total / (count - 1))
-        return explained
+        parts = explained_parts(self.values[found], self.inputs[found], CHANCE)
+        return {self.input_names[number]: part for number, part in parts.items()}
 
     def importance(self) -> dict[str, float]:
         """Return how much each input matters: its total-order index, without these the part that it explains."""

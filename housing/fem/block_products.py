@@ -35,31 +35,28 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
         entries: FloatArray,
         node_mass: FloatArray,
         number: npt.NDArray[np.int32],
-        motions: FloatArray,
+        motions: npt.NDArray[Any],
         forces: FloatArray,
         inertia: FloatArray,
     ) -> None:
         """Write K u to forces and (m ⊗ I₃) u to inertia at nodes ``first`` to ``last`` - 1.
 
         Entries are those of all blocks, flat; motions, forces and inertia have a row for each free degree of freedom,
-        whose number those of all nodes have, -1 where it is fixed. The lower pattern has the places of blocks below the
-        diagonal, which are kept above it, transposed.
+        and motions a last one of zeros, which is the row of every fixed one: ``number`` has the rows of all nodes. The
+        lower pattern has the places of blocks below the diagonal, which are kept above it, transposed.
         """
-        own, part = np.empty((6, columns)), np.empty((3, columns))
-        for i in range(first, last):
+        own = np.empty((6, columns))
+        for node in range(first, last):
             own[:] = 0.0
-            for place in range(pointer[i], pointer[i + 1]):
+            for place in range(pointer[node], pointer[node + 1]):
                 other = 3 * neighbors[place]
-                for component in range(3):
-                    row = number[other + component]
-                    for k in range(columns):
-                        part[component, k] = motions[row, k] if row >= 0 else 0.0
+                first_row, second_row, third_row = number[other], number[other + 1], number[other + 2]
                 xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
                 yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
                 zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
                 m = node_mass[place]
                 for k in range(columns):
-                    x, y, z = part[0, k], part[1, k], part[2, k]
+                    x, y, z = motions[first_row, k], motions[second_row, k], motions[third_row, k]
                     own[0, k] += xx * x + xy * y + xz * z
                     own[1, k] += yx * x + yy * y + yz * z
                     own[2, k] += zx * x + zy * y + zz * z
@@ -67,18 +64,15 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
                         own[3, k] += m * x
                         own[4, k] += m * y
                         own[5, k] += m * z
-            for below in range(lower_pointer[i], lower_pointer[i + 1]):
+            for below in range(lower_pointer[node], lower_pointer[node + 1]):
                 other, place = 3 * lower_neighbors[below], lower_places[below]
-                for component in range(3):
-                    row = number[other + component]
-                    for k in range(columns):
-                        part[component, k] = motions[row, k] if row >= 0 else 0.0
+                first_row, second_row, third_row = number[other], number[other + 1], number[other + 2]
                 xx, xy, xz = entries[9 * place], entries[9 * place + 1], entries[9 * place + 2]
                 yx, yy, yz = entries[9 * place + 3], entries[9 * place + 4], entries[9 * place + 5]
                 zx, zy, zz = entries[9 * place + 6], entries[9 * place + 7], entries[9 * place + 8]
                 m = node_mass[place]
                 for k in range(columns):
-                    x, y, z = part[0, k], part[1, k], part[2, k]
+                    x, y, z = motions[first_row, k], motions[second_row, k], motions[third_row, k]
                     own[0, k] += xx * x + yx * y + zx * z
                     own[1, k] += xy * x + yy * y + zy * z
                     own[2, k] += xz * x + yz * y + zz * z
@@ -87,8 +81,8 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
                         own[4, k] += m * y
                         own[5, k] += m * z
             for component in range(3):
-                row = number[3 * i + component]
-                if row >= 0:
+                row = number[3 * node + component]
+                if row < len(forces):
                     for k in range(columns):
                         forces[row, k] = own[component, k]
                         if has_mass:
@@ -97,8 +91,10 @@ def _products_of(columns: int, *, has_mass: bool) -> Callable[..., None]:
     return write_products
 
 
-_ALONE = {4: _products_of(4, has_mass=False), 16: _products_of(16, has_mass=False)}
-_BOTH = {8: _products_of(8, has_mass=True)}
+AT_ONCE = 16
+"""Columns multiplied at once. Loops of 2 to 12 are unrolled by the compiler, and then take as long as those of 16."""
+_ALONE = {columns: _products_of(columns, has_mass=False) for columns in (1, AT_ONCE)}
+_BOTH = {AT_ONCE: _products_of(AT_ONCE, has_mass=True)}
 """Kernels of K alone, and of K and M, by the number of columns that they multiply at once."""
 
 
@@ -137,7 +133,7 @@ class BlockProduct:
         )
         lower = sparse.csc_array(upper)
         below = lower.indptr, lower.indices, lower.data
-        number = np.full(3 * n_nodes, -1, dtype=np.int32)
+        number = np.full(3 * n_nodes, len(free), dtype=np.int32)
         number[free] = np.arange(len(free), dtype=np.int32)
         self._blocks: tuple[Any, ...] = pointer, neighbors, *below, blocks.ravel(), node_mass, number
         ends = np.searchsorted(pointer, np.linspace(0, pointer[-1], threads + 1)).tolist()
@@ -155,12 +151,11 @@ class BlockProduct:
 
     def _products(self, vectors: npt.NDArray[Any], *, has_mass: bool) -> list[FloatArray]:
         columns = vectors.reshape(len(vectors), -1)
-        at_most = max(_BOTH if has_mass else _ALONE)
-        if columns.shape[1] <= at_most:
+        if columns.shape[1] <= AT_ONCE:
             return [part.reshape(vectors.shape) for part in self._few_products(columns, has_mass=has_mass)]
         found = [np.empty(columns.shape) for _ in range(1 + has_mass)]
-        for begin in range(0, columns.shape[1], at_most):
-            few = slice(begin, begin + at_most)
+        for begin in range(0, columns.shape[1], AT_ONCE):
+            few = slice(begin, begin + AT_ONCE)
             for whole, part in zip(found, self._few_products(columns[:, few], has_mass=has_mass), strict=True):
                 whole[:, few] = part
         return [product.reshape(vectors.shape) for product in found]
@@ -169,10 +164,8 @@ class BlockProduct:
         """Multiply as many columns as a kernel takes, or fewer."""
         n, width = columns.shape
         at_most, write = next(one for one in (_BOTH if has_mass else _ALONE).items() if one[0] >= width)
-        motions = np.ascontiguousarray(columns, dtype=np.float64)
-        if width < at_most:
-            motions = np.zeros((n, at_most))
-            motions[:, :width] = columns
-        forces, inertia = np.empty_like(motions), np.empty_like(motions if has_mass else motions[:0])
+        motions = np.zeros((n + 1, at_most), np.float32 if columns.dtype == np.float32 else np.float64)
+        motions[:n, :width] = columns
+        forces, inertia = np.empty((n, at_most)), np.empty((n if has_mass else 0, at_most))
         at_once([partial(write, *share, *self._blocks, motions, forces, inertia) for share in self._shares])
         return [product[:, :width] for product in ([forces, inertia] if has_mass else [forces])]

@@ -55,8 +55,8 @@ class NumericFactor(Protocol):
     def negative(self) -> int:
         """Number of negative eigenvalues of the matrix."""
 
-    def solve(self, right: npt.NDArray[Any]) -> FloatArray:
-        """Solve for contiguous right-hand sides, shape (n,) or (n, m)."""
+    def solve(self, right: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Solve for contiguous right-hand sides, shape (n,) or (n, m), in the precision of the factor."""
 
 
 def can_import(module: str) -> bool:
@@ -140,7 +140,7 @@ class _RslabFactor:
 
     def solve(self, right: npt.NDArray[Any]) -> FloatArray:
         solve = self._handle.solve if right.ndim == 1 else self._handle.solve_many
-        return np.asarray(solve(right.astype(self._kind, copy=False)), dtype=np.float64)
+        return np.asarray(solve(right.astype(self._kind, copy=False)))
 
 
 class SuperluSolver:
@@ -271,8 +271,8 @@ class Factorization:
             "move the limit a little, or give more memory, which a factor in double precision needs"
         )
 
-    def solve_approximately(self, right: npt.NDArray[Any]) -> FloatArray:
-        """Solve in the precision of the factor, F x = b, without refinement; b may be in single precision as well."""
+    def solve_approximately(self, right: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Solve F x = b in the precision of the factor, without refinement; b in single precision gives such an x."""
         right = np.ascontiguousarray(right)
         if self.precision == "double" or right.dtype == np.float32:
             return self._factor.solve(right)
@@ -280,9 +280,7 @@ class Factorization:
         scale = np.maximum(right.max(axis=0), -right.min(axis=0))
         scale = np.where(scale > 0.0, scale, 1.0)
         scaled = np.divide(right, scale, out=np.empty(right.shape, np.float32), casting="same_kind")
-        solution = self._factor.solve(scaled)
-        solution *= scale
-        return solution
+        return np.asarray(self._factor.solve(scaled) * scale)
 
 
 class Factorizer:

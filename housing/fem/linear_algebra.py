@@ -146,9 +146,9 @@ _ROWS_AT_ONCE = 2**12  # rows converted to double precision
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
-def _pieces(rows: slice, block: npt.NDArray[Any], other: npt.NDArray[Any]) -> list[slice]:
-    """Rows of a block, a few at a time where they are converted to the precision of its factor."""
-    if block.dtype == other.dtype:
+def _pieces(rows: slice, block: npt.NDArray[Any], precision: np.dtype[Any]) -> list[slice]:
+    """Rows of a block, a few at a time where they are converted to the precision of a product."""
+    if block.dtype == precision:
         return [rows]
     begins = range(rows.start, rows.stop, _ROWS_AT_ONCE)
     return [slice(begin, min(begin + _ROWS_AT_ONCE, rows.stop)) for begin in begins]
@@ -157,7 +157,7 @@ def _pieces(rows: slice, block: npt.NDArray[Any], other: npt.NDArray[Any]) -> li
 class BlockAlgebra:
     """Products of block vectors, matrices with many rows and few columns, by shares of their rows.
 
-    A basis may be in single precision; sums and products are in the precision of its factor.
+    A basis may be in single precision; sums and products are in the precision of its factor, unless another is given.
 
     The number of shares does not depend on the threads, so that sums over the rows are rounded alike.
 
@@ -174,14 +174,17 @@ class BlockAlgebra:
         self._threads = min(threads, _SHARES) if rows > _ROWS_WORTH_A_THREAD else 1
         self._shares = [slice(rows * share // _SHARES, rows * (share + 1) // _SHARES) for share in range(_SHARES)]
 
-    def products(self, left: npt.NDArray[Any], *right: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """LᵀR, shape (columns of L, columns of R); of several R side by side."""
+    def products(
+        self, left: npt.NDArray[Any], *right: npt.NDArray[Any], kind: type[np.float64] | None = None
+    ) -> npt.NDArray[Any]:
+        """LᵀR, shape (columns of L, columns of R), in the precision of R or in double; of several R side by side."""
+        precision = np.dtype(kind or right[0].dtype)
 
         def multiply(rows: slice) -> Any:
             total: Any = 0.0
-            for few in _pieces(rows, left, right[0]):
+            for few in _pieces(rows, left, precision):
                 both = right[0][few] if len(right) == 1 else np.concatenate([one[few] for one in right], axis=1)
-                total = total + np.asarray(left[few], dtype=both.dtype).T @ both
+                total = total + np.asarray(left[few], dtype=precision).T @ np.asarray(both, dtype=precision)
             return total
 
         return np.asarray(sum(self._each(multiply)))
@@ -190,7 +193,7 @@ class BlockAlgebra:
         """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
-            for few in _pieces(rows, basis, parts):
+            for few in _pieces(rows, basis, parts.dtype):
                 # One column after another: half the time of basis[few] @ parts.
                 block[few] -= (parts.T @ np.asarray(basis[few], dtype=parts.dtype).T).T
 
@@ -201,7 +204,7 @@ class BlockAlgebra:
         result = np.empty((len(block), mixture.shape[1]), dtype=mixture.dtype)
 
         def multiply(rows: slice) -> None:
-            for few in _pieces(rows, block, mixture):
+            for few in _pieces(rows, block, mixture.dtype):
                 result[few] = np.asarray(block[few], dtype=mixture.dtype) @ mixture
 
         self._each(multiply)
@@ -214,7 +217,7 @@ class BlockAlgebra:
         """
 
         def mix(rows: slice) -> None:
-            for few in _pieces(rows, block, mixture):
+            for few in _pieces(rows, block, mixture.dtype):
                 mixed = block[few].astype(np.float64) @ mixture
                 block[few, : mixed.shape[1]] = mixed
                 mixed[:, :fine] -= block[few, :fine]

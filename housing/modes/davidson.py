@@ -9,7 +9,8 @@ mode,
 
 By the first form S extended by F⁻¹ r is the Krylov space of F⁻¹ M, and the modes converge as they do in block Lanczos;
 by the second one each step also removes what E has left in x (Davidson 1975; Morgan and Scott 1986). Only the accuracy
-of r limits that of the modes.
+of r limits that of the modes. As long as the Ritz values still move, E is the smaller error: S is extended by F⁻¹ M V
+of its last vectors V, whose product with M is at hand, and no residual is computed.
 
 S has the vectors V as the factor gives them, in single precision, which halves their memory: they are no more accurate.
 The Ritz vectors are V y, with
@@ -20,8 +21,7 @@ where both matrices are products in double precision of the vectors as they are 
 their rounding, without M, which is enough for the small problem to be well conditioned. Where S is full, it keeps the
 lowest Ritz vectors; the rounding of the wanted ones to single precision is kept in vectors of its own.
 
-A block has sixteen columns, since the direct solver takes as long for eight. Its residuals are given to the solver in
-single precision, and are products of half of it at a time: at the peak of the memory every column counts.
+A block has sixteen columns, since the direct solver and the products with K and M take as long for eight.
 """
 
 from collections.abc import Callable
@@ -35,17 +35,17 @@ from gearwhine.housing.fem.linear_algebra import BlockAlgebra
 from gearwhine.numerics.arrays import FloatArray
 
 _BLOCK = 16
-_AT_ONCE = 8  # columns multiplied at once by K and M
 _STEPS = 40  # beside those of eight times the number of modes
+_MOVED = 1e-3  # part of the last Ritz value by which one moves in a step while no residual is worth its products
 _CLOSE = 1e-7  # residual below which every correction gains, unless rounding ends it
-_WITHIN = 1e-12  # squared length of a vector outside the space, below which it is the rounding of a solution
+_WITHIN = 1e-10  # squared length of a vector outside the space, below which it is rounding
 _WELL_OUTSIDE = 1e-8  # the same, above which one projection leaves it orthogonal enough
 
 
 def davidson_modes(
     size: int,
     products: Callable[[npt.NDArray[Any]], tuple[FloatArray, FloatArray]],
-    solve_approximately: Callable[[npt.NDArray[np.float32]], FloatArray],
+    solve_approximately: Callable[[npt.NDArray[np.float32]], npt.NDArray[np.float32]],
     count: int,
     *,
     floor: float,
@@ -62,8 +62,8 @@ def davidson_modes(
     products : callable
         K X [N/m] and M X [kg] in double precision, of X of shape (n, m) in either.
     solve_approximately : callable
-        X from (K - σM) X = Y, shape (n, m) both, Y in single precision, with a relative error well below 1; σ next to
-        the modes wanted or among them.
+        X from (K - σM) X = Y, shape (n, m) both, in single precision, with a relative error well below 1; σ next to the
+        modes wanted or among them.
     count : int
         Number of modes.
     floor : float
@@ -87,16 +87,22 @@ def davidson_modes(
     space = _RitzSpace(products, 4 * count + 9 * width, BlockAlgebra(size, threads))
     residuals = np.full(count, np.inf)
     block = np.random.default_rng(seed).standard_normal((size, width), dtype=np.float32)
+    values, moving = np.empty(0), True
     for _ in range(_STEPS + 8 * count // width):
         if space.is_full(block.shape[1]):
             space.shrink(count)
+            moving = False
         outside = space.outside(solve_approximately(block))
         del block
-        if not outside.shape[1]:
+        if not (outside.shape[1] or moving):
             break
-        space.extend(outside)
+        before, block = values, space.extend(outside)
         del outside
         values, mixture = space.ritz(count)
+        moving = moving and block.shape[1] > 0
+        if moving and (len(before) < len(values) or (before - values > _MOVED * (abs(values[-1]) + floor)).any()):
+            continue
+        moving = False
         scales = np.abs(values) + abs(values[-1]) + floor
         block = np.empty((size, 0), np.float32)
         left = residuals[: len(values)]
@@ -151,62 +157,55 @@ class _RitzSpace:
 
     def residuals(self, values: FloatArray, mixture: FloatArray) -> tuple[npt.NDArray[np.float32], FloatArray]:
         """Residuals r = K x - θ M x of Ritz pairs as unit vectors, shape (n, m), and |r| / |M x|, shape (m,)."""
-        units = np.empty((len(self._vectors), len(values)), np.float32)
-        sizes = np.empty(len(values))
-        for few in _parts(0, len(values)):
-            force, inertia = self._products(self.combined(mixture[:, few]))
-            lengths = _lengths(inertia)
-            inertia *= values[few]
-            force -= inertia
-            del inertia
-            norms = _lengths(force)
-            sizes[few] = norms / lengths
-            # An exact mode has no residual.
-            np.divide(force, np.where(norms > 0.0, norms, 1.0), out=units[:, few], casting="same_kind")
-        return units, sizes
+        force, inertia = self._products(self.combined(mixture))
+        lengths = _lengths(inertia)
+        inertia *= values
+        force -= inertia
+        del inertia
+        norms = _lengths(force)
+        units = np.empty(force.shape, np.float32)
+        # An exact mode has no residual.
+        np.divide(force, np.where(norms > 0.0, norms, 1.0), out=units, casting="same_kind")
+        return units, norms / lengths
 
-    def outside(self, block: FloatArray) -> npt.NDArray[np.float32]:
+    def outside(self, block: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         """Orthonormal basis of the part of a block, shape (n, width), outside the space; the block is overwritten."""
         basis, algebra = self._vectors[:, : self.size], self._algebra
         block /= _lengths(block)
         for last in (False, True):
             algebra.subtract(block, basis, algebra.products(basis, block))
-            values, turn = linalg.eigh(algebra.products(block, block))
+            values, turn = linalg.eigh(algebra.products(block, block, kind=np.float64))
             chosen = values > _WITHIN
-            mixture = turn[:, chosen] / np.sqrt(values[chosen])
+            block = algebra.combined(block, (turn[:, chosen] / np.sqrt(values[chosen])).astype(np.float32))
             if last or not chosen.any() or values[0] > _WELL_OUTSIDE:
                 break
-            block = algebra.combined(block, mixture)
-        return algebra.combined(block, mixture).astype(np.float32)
+        return block
 
-    def extend(self, vectors: npt.NDArray[np.float32]) -> None:
-        """Extend the space by orthonormal vectors outside it, shape (n, r)."""
+    def extend(self, vectors: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+        """Extend the space by orthonormal vectors outside it, shape (n, r), and return their products with M."""
         before, self.size = self.size, self.size + vectors.shape[1]
         self._vectors[:, before : self.size] = vectors
-        self._multiply(before)
+        return self._multiply(slice(before, self.size))
 
-    def _multiply(self, first: int) -> None:
-        """Products of the vectors from the first one on with those before them and with themselves."""
-        for few in _parts(first, self.size):
-            vectors = self._vectors[:, : few.stop]
-            shares = self._algebra.products(vectors, *self._products(vectors[:, few]))
-            for gram, share in zip(self._gram, np.hsplit(shares, 2), strict=True):
-                share[few] = 0.5 * (share[few] + share[few].T)
-                gram[: few.stop, few], gram[few, : few.stop] = share, share.T
+    def _multiply(self, new: slice) -> npt.NDArray[np.float32]:
+        """Products of some vectors with those before them and with themselves; and their products with M."""
+        vectors = self._vectors[:, : new.stop]
+        force, inertia = self._products(vectors[:, new])
+        shares = self._algebra.products(vectors, force, inertia)
+        for gram, share in zip(self._gram, np.hsplit(shares, 2), strict=True):
+            share[new] = 0.5 * (share[new] + share[new].T)
+            gram[: new.stop, new], gram[new, : new.stop] = share, share.T
+        return inertia.astype(np.float32)
 
     def shrink(self, count: int) -> None:
         """Keep the 2 ``count`` lowest Ritz vectors, and what rounding takes from the first ``count`` of them."""
         mixture = np.linalg.qr(self.ritz(2 * count)[1])[0]
         self._algebra.replace(self._vectors[:, : self.size], mixture, count)
         self.size = mixture.shape[1] + count
-        self._multiply(0)
+        for first in range(0, self.size, _BLOCK):
+            self._multiply(slice(first, min(first + _BLOCK, self.size)))
 
 
-def _lengths(columns: FloatArray) -> FloatArray:
+def _lengths(columns: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Length of each column, without the squares in memory."""
     return np.asarray(np.sqrt(np.einsum("ij,ij->j", columns, columns)))
-
-
-def _parts(first: int, last: int) -> list[slice]:
-    """Columns from the first to the one before the last, as many at a time as are multiplied at once."""
-    return [slice(begin, min(begin + _AT_ONCE, last)) for begin in range(first, last, _AT_ONCE)]

@@ -84,7 +84,8 @@ def critical_speeds(
     over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
     Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
     tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying
-    whirl), and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
+    whirl), and the real part of ω is given; of those with Re ω² ≤ 0 none is a critical speed: such a root is a forward
+    whirl that the disc takes away. Damping is left out, which is the usual definition; the damped whirl
     frequency crosses a little elsewhere, where `gearwhine.rotors.Campbell.crossings` has it.
 
     Parameters
@@ -145,6 +146,7 @@ def certified_criticals(
         NO_OSCILLATION * sets[0].floor,
         limit,
         None if limit is not None else count or DEFAULT_COUNT,
+        0.25 * np.pi,
     )
 
 

@@ -127,9 +127,9 @@ MOST_CUTS = 24
 MOST_NUDGES = 6
 
 
-def oscillating(least: float, most: float) -> Sector:
-    """Return the sector of motions that oscillate, stable or not."""
-    return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
+def oscillating(least: float, most: float, angle: float = NO_OSCILLATION) -> Sector:
+    """Return the sector of motions that oscillate, stable or not: λ by more than an angle [rad] off the real axis."""
+    return Sector(least, most, angle, np.pi - angle)
 
 
 def certified_roots(

@@ -324,16 +324,18 @@ def certified_whirl(
     least: float,
     limit: float | None,
     count: int | None,
+    angle: float = NO_OSCILLATION,
 ) -> tuple[WhirlRoots, ModeCertificate]:
     """Every motion below a limit, or the lowest ``count``, on bearings of constant coefficients.
 
     ``starts`` are starting values for every set of coupled motions.
 
     ``turning`` is the speed at which elements must be short enough [rad/s]; None where it follows the frequency.
+    ``angle`` is that of the least λ to the real axis [rad].
     """
     from gearwhine.rotors.whirl.eigenvalue_kernels import ascending
 
-    oscillating_starts = [ascending(values, least, NO_OSCILLATION) for _, values in starts]
+    oscillating_starts = [ascending(values, least, math.sin(angle)) for _, values in starts]
     sizes: list[list[float]] = [np.abs(values).tolist() for values in oscillating_starts]
     if limit is None:
         assert count is not None
@@ -350,9 +352,9 @@ def certified_whirl(
     ]
     if limit is None:
         assert count is not None
-        sector = oscillating(least, _limit_behind(refined, least, count))
+        sector = oscillating(least, _limit_behind(refined, least, count, angle), angle)
     else:
-        sector = oscillating(least, limit)
+        sector = oscillating(least, limit, angle)
     conservative = solver.is_conservative_rotor(bearings)
     parts = [
         certified_roots(equations, roots, speed, sector, conservative, values[k:])
@@ -381,11 +383,11 @@ def _reach_behind(ascending: Sequence[float], count: int) -> float:
     return ascending[last] * (1.0 + LEAST_GAP)
 
 
-def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
+def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int, angle: float) -> float:
     """Return a frequency in a gap above the lowest ``count`` roots, or above all of them."""
     from gearwhine.rotors.whirl.eigenvalue_kernels import ascending
 
-    sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()
+    sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, math.sin(angle))).tolist()
     if not sizes:
         return 10.0 * least
     for last in range(count, len(sizes)):

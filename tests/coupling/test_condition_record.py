@@ -146,6 +146,15 @@ def test_a_residual_that_the_turns_do_not_share_is_undefined() -> None:
         machine_condition(bare, ["fm5"])
 
 
+@pytest.mark.parametrize("shift", [0.0, 1.0 / 256.0, 1.0 / 384.0])
+def test_fm0_finds_peaks_between_coarse_samples(shift: float) -> None:
+    """Peak to peak of pulses of orders up to the limit, wherever in the turn they come."""
+    orders, fine = range(15, 25), np.arange(4096) / 4096.0
+    transient = _transient(lambda times: _pulses(times - shift / TURN, TURN, orders), 100e3, 2.0, limit=25.0 * TURN)
+    found = machine_condition(condition_record(transient), ["fm0"])
+    assert _values(found, "p")["fm0"] == pytest.approx(np.ptp(_pulses(fine, 1.0, orders)), rel=0.02)
+
+
 def test_a_bearing_tone_is_a_line_of_the_envelope() -> None:
     """(1 + m cos)² a² has the mean a² (1 + m²/2) and a line of 2 m a²."""
     m, tone = 0.4, 137.0

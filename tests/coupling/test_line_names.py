@@ -14,6 +14,7 @@ from gearwhine.coupling.linear.carriers.carrier_sidebands import Sideband
 from gearwhine.coupling.linear.mesh_harmonics import causes_in_words
 from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.figures.machine.system import _place_beside_harmonic
+from tests.machines.turning_set import TEETH, turning_machine
 
 WAVES = np.random.default_rng(2).normal(size=56)
 OUTPUT, STAGE = 19 * 21 / 72 / 56, 19 * 21 / 72
@@ -44,6 +45,14 @@ def test_a_whole_order_of_another_shaft_beside_a_sideband_has_its_own_name(
     machine = coupled(load_case(str(place), [f"gear.{key}.errors.pitch={one}" for key, one in listed.items()]).case)
     (found,) = line_names(machine, [50.0 * order], 4.0)
     assert found.name == name
+
+
+def test_a_line_many_turns_of_the_carrier_from_a_harmonic_is_told_by_them_with_their_sign() -> None:
+    machine = turning_machine((900.0, 1300.0))
+    turn, cycles = abs(machine.speeds["carrier"]) / (2.0 * np.pi), TEETH[0] + 2 * TEETH[1]
+    found = line_names(machine, [turn * (2 * cycles + beside) for beside in (-25.0, 25.0, 25.5)], 0.1)
+    assert [one.name for one in found[:2]] == [f"2× planets' meshes {sense} 25× carrier" for sense in "-+"]
+    assert [one.kind for one in found] == ["sideband", "sideband", "other"]
 
 
 def test_the_harmonic_that_a_line_is_the_fewest_turns_off_comes_first() -> None:

@@ -20,7 +20,7 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
     coupled = load_machine(machine, point).coupled
     # At the lowest speed more orders couple than in the machine there, and than are kept at the others.
     parts = (0.05, 0.62, 1.0, 1.4)
-    found = lines_over_speed(coupled, [part * machine.speed for part in parts], LIMIT)
+    found = lines_over_speed(coupled, [part * machine.speed for part in parts], LIMIT, of_housing=True)
     assert found.sensors == tuple(coupled.sensor_rows)
     assert len(found.sensors) == 2
     felt = list[float]()

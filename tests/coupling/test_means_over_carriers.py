@@ -1,6 +1,7 @@
 """Means over turns of carriers: forces, gaps and bearings do not depend on where the carriers start."""
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from gearwhine.coupling import Machine
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_equilibrium
 from gearwhine.coupling.load_analysis.planetary_load import ANGLES, over_carrier_turn
 from gearwhine.coupling.machine.coupled_system import times_over_turn
 from gearwhine.coupling.machine.loads import ShaftForce
@@ -136,8 +138,87 @@ def test_flanks_and_bearings_are_the_means_of_statics_over_a_turn() -> None:
         tangents = _planes([one.bearing.spatial_stiffness for one in about.bearings if one.elements], angle)
         np.testing.assert_allclose(tangents, stiffness.mean(axis=0), atol=0.03 * stiffness.max())
     forces = np.mean([[pair.force for pair in point.pairs] for point in points], axis=0)
-    means = [mean.force for mean in mean_meshes(about.assembled.system) if mean]
-    assert means == pytest.approx(forces, rel=1e-3)
+    means = [mean for mean in mean_meshes(about.assembled.system) if mean]
+    assert [mean.force for mean in means] == pytest.approx(forces, rel=1e-3)
+    rises = np.array([[pair.mean_stiffness for pair in point.pairs] for point in points])
+    assert [mean.stiffness for mean in means] == pytest.approx(rises.mean(axis=0), rel=0.02)
+
+
+HALF, WHOLE, LOAD = 0.02, 4e8, 800.0
+"""Half of a face [m], its stiffness where all of it carries [N/m], and its load [N]."""
+
+
+def _force(approach: float, slope: float) -> tuple[float, float]:
+    """Force and stiffness of flanks that stand open by a slope [rad] and carry over a part of their face."""
+    end = abs(slope) * HALF
+    if approach >= end:
+        return WHOLE * approach, WHOLE
+    carrying = max(0.0, approach + end) / abs(slope)
+    return WHOLE * carrying**2 * abs(slope) / (4.0 * HALF), WHOLE * carrying / (2.0 * HALF)
+
+
+def _approach(slope: float) -> float:
+    """Approach at which the load is carried [m]."""
+    end = abs(slope) * HALF
+    even = LOAD / WHOLE
+    return even if even >= end else math.sqrt(4.0 * HALF * LOAD * abs(slope) / WHOLE) - end
+
+
+def _swinging(slopes: FloatArray, moved: FloatArray) -> tuple[float, float]:
+    """Approach and stiffness of slices under the load, with gaps at several angles and the approach there."""
+    n = 241
+    z = HALF * ((2.0 * np.arange(n) + 1.0) / n - 1.0)
+    line = WHOLE / (2.0 * HALF)
+    slices = FaceSlices(
+        z, 2.0 * HALF / n, 0.0 * z, 0.0 * z, 2.0 * line, 0.0, changes=np.outer(slopes, z) - moved[:, None]
+    )
+    ones, owner = np.ones((1, n)), np.zeros(1, dtype=np.intp)
+    at, loads = face_equilibrium(slices, 2.0 * line * ones, 0.0 * ones, ones > 0.0, owner, np.array([LOAD]))
+    assert float(loads.force[0]) == pytest.approx(LOAD, rel=1e-8)
+    return float(at[0]), float(loads.tangent[0])
+
+
+def test_a_face_has_the_mean_force_of_its_gaps_at_one_approach() -> None:
+    """By the integral over the part that carries; at one of the gaps the flanks are apart."""
+    slopes, moved = np.array([2e-4, -1e-4, 3e-5, 1e-4]), np.array([0.0, 2e-7, -3e-7, -8e-6])
+    approach, stiffness = _swinging(slopes, moved)
+    each = [_force(approach + more, slope) for slope, more in zip(slopes, moved, strict=True)]
+    assert each[-1][0] == 0.0
+    assert np.mean([force for force, _ in each]) == pytest.approx(LOAD, rel=1e-3)
+    assert stiffness == pytest.approx(np.mean([rise for _, rise in each]), rel=0.01)
+
+
+def test_lines_at_the_mesh_frequency_are_those_of_the_mean_over_swinging_gaps() -> None:
+    """A mass on flanks that swing once in 90 mesh periods by more than their deflection, integrated as it is."""
+    slope, waves, steps = 3e-6 / HALF, 90, 40
+    angles = 2.0 * np.pi * np.arange(7) / 7
+    at_each = np.array([_approach(slope * math.cos(angle)) for angle in angles])
+    _, mean = _swinging(slope * np.cos(angles), at_each - at_each.mean())
+    damping, error = 0.1 * math.sqrt(WHOLE), 2e-8  # of a mass of 1 kg
+    frequency = 2.0 * math.sqrt(WHOLE)
+
+    def acceleration(time: float, place: float, speed: float) -> float:
+        phase = frequency * time
+        force, _ = _force(place - error * math.cos(phase), slope * math.cos(phase / waves))
+        return LOAD - force - damping * (speed + error * frequency * math.sin(phase))
+
+    step, place, speed = 2.0 * math.pi / frequency / steps, _approach(slope), 0.0
+    places = []
+    for number in range(2 * waves * steps):
+        time = number * step
+        a = acceleration(time, place, speed)
+        b = acceleration(time + 0.5 * step, place + 0.5 * step * speed, speed + 0.5 * step * a)
+        c = acceleration(time + 0.5 * step, place + 0.5 * step * (speed + 0.5 * step * a), speed + 0.5 * step * b)
+        d = acceleration(time + step, place + step * (speed + 0.5 * step * b), speed + step * c)
+        place, speed = place + step * (speed + step * (a + b + c) / 6.0), speed + step * (a + 2.0 * (b + c) + d) / 6.0
+        places.append(place)
+    line = 2.0 * abs(np.fft.rfft(places[waves * steps :])[waves]) / (waves * steps)
+
+    def answer(stiffness: float) -> float:
+        return error * abs(1.0 / (1.0 - frequency**2 / (stiffness + 1j * frequency * damping)))
+
+    assert answer(mean) == pytest.approx(line, rel=0.005)
+    assert abs(answer(WHOLE) / line - 1.0) > 0.05  # by the mean gap, which is none
 
 
 def _along_carrier(loads: Sequence[BearingLoad], turn: int) -> FloatArray:

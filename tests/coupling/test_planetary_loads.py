@@ -16,7 +16,16 @@ from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.statics.mean_mesh import mean_contact, mean_meshes
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.rotors import ShaftMaterial
-from tests.machines.plane_planetary_set import MESH_STIFFNESS, STEEL, equal_angles, plane_set
+from tests.machines.plane_planetary_set import (
+    BEARING_STIFFNESS,
+    MESH_STIFFNESS,
+    MODULE,
+    STEEL,
+    TEETH,
+    equal_angles,
+    independent_matrices,
+    plane_set,
+)
 
 ERROR = 20e-6  # m, of the first pin, along the circle
 STIFF = ShaftMaterial(2e14, 8e13, 7850.0)  # shafts that do not tilt the flanks
@@ -84,6 +93,29 @@ def test_four_planets_of_a_floating_sun_carry_alike_in_pairs() -> None:
     assert shares[0] == pytest.approx(shares[2], rel=3e-3)
     assert shares[1] == pytest.approx(shares[3], rel=1e-6)
     assert shares[1] > shares[0] + 0.02
+
+
+@pytest.mark.parametrize(("count", "floating"), [(3, False), (3, True), (4, False), (4, True)])
+def test_shares_past_a_displaced_pin_are_those_of_rigid_bodies_on_springs(count: int, floating: bool) -> None:
+    """Sun, carrier, ring and planets on springs in a plane, written out anew; the pin's spring is the one displaced."""
+    angles, alpha = equal_angles(count), np.radians(20.0)
+    stiffness = independent_matrices(angles, pressure_angle=alpha, with_ring=True)[2]
+    if floating:
+        stiffness[[3, 4], [3, 4]] -= (1.0 - SUN_BEARINGS_OF_A_FLOATING_SUN) * BEARING_STIFFNESS
+    sun, planet = TEETH
+    load = np.zeros(len(stiffness))
+    load[5] = 200.0 / (0.5 * MODULE * sun * np.cos(alpha))
+    load[2] = -200.0 * (2.0 + 2.0 * planet / sun) / (0.5 * MODULE * (sun + planet))
+    # The first pin stands on the x axis: displaced along y, with the carrier's own motion there.
+    load[[10, 1, 2]] += BEARING_STIFFNESS * ERROR * np.array([1.0, -1.0, -1.0])
+    motion = np.linalg.lstsq(stiffness, load, rcond=1e-12)[0]
+    pressed = []
+    for number, angle in enumerate(angles):
+        own, along = motion[9 + 3 * number : 12 + 3 * number], angle + 0.5 * np.pi - alpha
+        pressed.append((motion[3:5] - own[:2]) @ [np.cos(along), np.sin(along)] + motion[5] + own[2])
+    shares = np.array(pressed) / np.sum(pressed)
+    assert (np.ptp(shares) > 0.05) is not (count == 3 and floating)
+    np.testing.assert_allclose(_shares(_machine(count, floating=floating, shafts=STIFF)), shares, atol=1e-3)
 
 
 def test_forces_of_a_planet_balance_its_pin_and_its_circling() -> None:

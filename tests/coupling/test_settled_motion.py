@@ -248,7 +248,9 @@ def test_machine_and_analysis_take_the_motion_that_settles() -> None:
 
 def test_a_curve_through_the_critical_speeds_of_an_unsymmetric_shaft() -> None:
     """Its amplitude under a constant force has a closed form; its turning dashpots leave it unstable from the first."""
-    curve = settled_curve(lambda turn: rotating_shaft(turn, DAMPED)[0], 1.5, 3.5, points=11)
+    told: list[float] = []
+    curve = settled_curve(lambda turn: rotating_shaft(turn, DAMPED)[0], 1.5, 3.5, points=11, progress=told.append)
+    assert told == pytest.approx(np.arange(1, 12) / 11.0)
     assert curve.speeds == pytest.approx(np.linspace(1.5, 3.5, 11))
     assert curve.gaps == ()
     assert curve.ending == "end"

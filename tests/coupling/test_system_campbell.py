@@ -1,5 +1,6 @@
 """The machine's Campbell diagram: against the exact rotor equations, and modes followed where they cross and veer."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -57,6 +58,25 @@ def machine(bearings: list[Bearing], speed: float) -> CoupledMachine:
     part = rotor_component("shaft", ModalRotor(lateral, solve_torsional_modes(SHAFT, count=1)), start=0.0)
     mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
     return assemble_machine([part], None, speeds={"shaft": speed}, bearings=mounted)
+
+
+def test_a_crossing_that_does_not_converge_is_said_with_its_frequency_and_speeds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("gearwhine.coupling.linear.campbell.order_crossing", lambda *_: None)
+    speeds, lines = np.linspace(0.0, TOP, 6), [ExcitationLine("2x", "shaft", 2.0)]
+    diagram = system_campbell(machine(ROUND, 300.0), speeds, frequency_limit=800.0, lines=lines)
+    assert diagram.crossings == ()
+    assert len(diagram.unsettled) >= 4
+    for text in diagram.unsettled:
+        said = re.fullmatch(r"2x meets the mode at (\S+) Hz between (\S+) and (\S+) rad/s, but .*", text)
+        assert said is not None
+        hertz, left, right = map(float, said.groups())
+        # The order passes a mode of the speed to the left within the interval, and bends it little.
+        assert 2.0 * left / (2.0 * np.pi) <= 1.05 * hertz
+        assert hertz <= 1.05 * 2.0 * right / (2.0 * np.pi)
+        found = diagram.frequencies_hz[speeds.tolist().index(left)]
+        assert np.nanmin(np.abs(found / hertz - 1.0)) < 1e-4
 
 
 @pytest.mark.parametrize("bearings", [ROUND, pytest.param(TABLED, marks=pytest.mark.slow)])

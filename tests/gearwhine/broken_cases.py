@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from importlib.resources import files
 from typing import Any
@@ -45,6 +46,24 @@ def check_one_wrong(path: str, value: Any, key: str, expected: str, sound: dict[
     assert "expected" in lines[0], lines
     if isinstance(value, str) and lines[0].startswith(f"case.toml: {key}") and key.endswith(path.split(".")[-1]):
         assert f", got {value!r}" in lines[0], lines
+    example = re.search(r"such as '([^']+)'", lines[0])
+    if example and key == re.sub(r"\.(\d+)(?=\.|$)", r"[\1]", path):
+        accepted = broken((path, example[1]), sound=sound)
+        assert said_of(accepted, key) != said_of(broken((path, value), sound=sound), key), (
+            f"{example[0]} is refused too"
+        )
+
+
+def said_of(document: dict[str, Any], key: str) -> str:
+    """What a case's reader expects at a key; empty where it accepts the value."""
+    try:
+        parse_case(document, source="case.toml")
+    except CaseError as error:
+        lines = (
+            line for line in str(error).splitlines() if line.startswith((f"case.toml: {key}:", f"case.toml: {key} ("))
+        )
+        return next(lines, "").partition(", got ")[0]
+    return ""
 
 
 def check_several_wrong(

@@ -8,7 +8,7 @@ results file in the unit of the axis, and no curve leaves its axes.
 """
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import pytest
-from shown_units import SHOWN, dimension_of
+from shown_units import SHOWN, dimension_of, mislabelled
 
 from gearwhine.output.sections import Section, Table
 
@@ -109,9 +109,20 @@ def known_numbers(document: Mapping[str, Any]) -> defaultdict[str, list[float]]:
 def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) -> list[Shown]:
     """Numbers of texts that the document does not have."""
     known = known_numbers(document)
-    foreign = [one for section in sections for one in shown_in(section) if not _is_known(one, known)]
+    shown = [one for section in sections for one in shown_in(section)]
+    foreign = [one for one in shown if one.number == "-0" or not _is_known(one, known)]
     words = list(texts_in(document)) if foreign else []  # which are quoted
     return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
+
+
+def repeated_columns(sections: Iterable[Section]) -> list[str]:
+    """Headings of columns that show what another column of their table shows."""
+    several = list(sections)
+    repeated = [one for section in several for one in repeated_columns(section.inner)] if several else []
+    for table in (table for section in several for table in section.tables):
+        shown = Counter((column.of, column.shown) for column in table.columns)
+        repeated += [column.heading for column in table.columns if shown[column.of, column.shown] > 1]
+    return repeated
 
 
 def texts_in(value: Any) -> Iterator[str]:
@@ -125,6 +136,9 @@ def texts_in(value: Any) -> Iterator[str]:
 
 def unsaid_figures(entry: Mapping[str, Any]) -> list[str]:
     """Figures of a warning that its message does not say, in their unit or bare; a part also by its rest."""
+    named = {key: value for key, value in entry.items() if isinstance(value, Mapping)}
+    entry = {key: value for key, value in entry.items() if key not in named}
+    entry |= {f"{key}.{name}": value for key, values in named.items() for name, value in values.items()}
     message = str(entry["message"])
     said = [Shown(message, number, unit) for number, unit in _WITH_UNIT.findall(message)]
     bare = [Shown(message, number, "") for number in re.findall(_NUMBER, message)]
@@ -268,7 +282,8 @@ def foreign_in_texts(name: str, figure: Any, document: Mapping[str, Any]) -> lis
 def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
     """Read the texts of every result that is made, and look at every figure that is drawn, while it is on."""
     result = import_module("gearwhine.analyses.result").Result
-    as_made, drawn = result.__post_init__, result.figures
+    arrays = import_module("gearwhine.output.dataset").LabelledArrays
+    as_made, drawn, labelled = result.__post_init__, result.figures, arrays.__init__
 
     def read_back(self: Any) -> None:
         as_made(self)
@@ -278,8 +293,11 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
         unsaid = [one for entry in document["warnings"] for one in unsaid_figures(entry)]
         assert not unsaid, f"{self.command}: not in the message of the warning: {unsaid}"
         for compose in _composers().get(self.command, ()):
-            foreign = foreign_numbers(document, compose(document))
+            composed = list(compose(document))
+            foreign = foreign_numbers(document, composed)
             assert not foreign, f"{self.command}: not in the document: {foreign}"
+            repeated = repeated_columns(composed)
+            assert not repeated, f"{self.command}: two columns of one table show the same: {repeated}"
 
     def looked_at(self: Any, *given: Any) -> Iterator[tuple[str, Any]]:
         is_held = is_on() and self.solved is not None and self.command in _composers()
@@ -292,7 +310,13 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
                 assert not cut, f"{self.command}, {name}: cut by the axes: {cut}"
             yield name, figure
 
+    def labels_held(self: Any, variables: Any, *given: Any, **more: Any) -> None:
+        labelled(self, variables, *given, **more)
+        wrong = mislabelled(variables)
+        assert not wrong, f"labels of a file: {wrong}"
+
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(arrays, "__init__", labels_held)
         patch.setattr(result, "__post_init__", read_back)
         patch.setattr(result, "figures", looked_at)
         yield

@@ -1,6 +1,11 @@
 """Units as texts, tables and keys show them, with their dimensions: the tests' own table."""
 
 import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
 
 SHOWN = {
     "m": ("m", 1.0),
@@ -60,6 +65,9 @@ ENDS = {
 }
 """End of a key: the dimension of its value, which is in SI's unit, or in turns a minute, hours, decibels."""
 
+_SYMBOL = "(?:m|kg|s|h|N|Hz|rpm|rad|degree|Pa|W|J|dB)"
+_FILE_UNIT = re.compile(rf"(?:1|percent|see \w+|{_SYMBOL}-?[0-9.]*(?:[ /]{_SYMBOL}-?[0-9.]*)*)?")
+
 
 def dimension_of(key: str) -> str | None:
     """Dimension that the end of a key says, the last of its steps that says one."""
@@ -68,3 +76,58 @@ def dimension_of(key: str) -> str | None:
             if step.endswith(end):
                 return ENDS[end]
     return None
+
+
+NAMES = {
+    "frequency": {"Hz"},
+    "speed": {"rpm", "rad s-1"},
+    "force": {"N"},
+    "thrust": {"N"},
+    "preload": {"N"},
+    "torque": {"N m"},
+    "stiffness": {"N/m", ""},  # of all motions together in mixed units
+    "displacement": {"m", "m kg0.5"},
+    "deflection": {"m", "kg-0.5"},  # of a mode
+    "misalignment": {"rad"},
+    "tilt": {"rad"},
+    "rotation": {"rad"},
+    "pressure": {"Pa"},
+    "power": {"W"},
+    "angle": {"rad"},
+    "length": {"m"},
+    "mass": {"kg"},
+    "acceleration": {"m/s2", "m s-2"},
+    "period": {"s"},
+    "time": {"s"},
+    "level": {"dB"},
+    "ratio": {"1"},
+    "phase": {"rad", "1"},  # of a mesh period, too
+    "spectrum": {"m/s2", "N", "N m", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
+}
+"""Last word of a name in a file of results: units that it may have."""
+
+_FEWEST = 3  # values of an array that tell it from another
+
+
+def mislabelled(variables: Mapping[str, tuple[Sequence[str], Any, Mapping[str, Any]]]) -> list[str]:
+    """Variables of a file whose unit is none, or none of what the name says, or whose long name is no words."""
+    wrong = []
+    known: dict[tuple[str, bytes], str] = {}
+    for name, (_, values, attributes) in variables.items():
+        array = np.asarray(values)
+        if array.dtype.kind not in "fc":  # a label, a number of, a truth
+            continue
+        # Places along a shaft are those of several quantities, and a round orbit is as wide as its probe moves.
+        if not name.endswith(("place", "position", "major_axis")) and np.unique(array).size >= _FEWEST:
+            other = known.setdefault((attributes.get("units", ""), array.tobytes()), name)
+            if other != name:
+                wrong.append(f"{name} has the values of {other}")
+        unit, meaning = attributes.get("units", ""), attributes.get("long_name", "words")
+        word = re.split("_over_|_by_", name)[0].rpartition("_")[2]
+        if not _FILE_UNIT.fullmatch(unit):
+            wrong.append(f"{name} has the unit {unit!r}")
+        elif "transmissibility" not in name and unit not in NAMES.get(word, {unit}):
+            wrong.append(f"{name} is in {unit!r}")
+        if not re.search("[a-z]{3}", meaning):
+            wrong.append(f"{name} means {meaning!r}")
+    return wrong

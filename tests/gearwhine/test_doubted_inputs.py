@@ -1,5 +1,6 @@
 """Inputs of Python that are allowed and unlikely, or that lead nowhere: warned of, or refused where they are made."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -56,6 +57,9 @@ def test_a_rating_in_kilonewtons_a_factor_e_for_y_and_an_offset_in_millimetres_a
     (rating,) = on_tapered_rollers(dynamic=61.6)
     assert "bearing 'right'" in rating
     assert "it is 0.0616 kN" in rating
+    near = re.search(r"by ISO 281, ([\d.]+) kN", rating)
+    assert near is not None
+    assert float(near[1]) == pytest.approx(1e-3 * TAPERED["dynamic"], rel=0.3)
     (angle,) = on_tapered_rollers(contact_angle=np.arctan(0.4 / 0.37))
     assert "47.2° is a factor Y = 0.4 / tan α of 0.37" in angle
     (offset,) = on_tapered_rollers(offset=5e-3)

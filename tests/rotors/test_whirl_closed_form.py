@@ -110,6 +110,13 @@ def test_critical_speeds_of_the_rigid_rotor() -> None:
     # A thin disc, I_p > I_t, has no forward conical critical speed.
     thin = critical_speeds(rigid_rotor(polar=1.2), isotropic())
     np.testing.assert_allclose(thin.speeds, [math.sqrt(tilt / 2.0), cylinder, cylinder], rtol=1e-8)
+    # Nor in bearings that drive it, though its root i √(...) then has a real part.
+    driving = 0.1j * STIFFNESS * np.array([1.0, 1.0, -1.0])
+    squares = (STIFFNESS + driving) / STIFFNESS * [tilt / 2.0, cylinder**2, cylinder**2]
+    skew = critical_speeds(
+        rigid_rotor(polar=1.2), pair(STIFFNESS * np.array([[1.0, 0.1], [-0.1, 1.0]]), np.zeros((2, 2)))
+    )
+    np.testing.assert_allclose(skew.speeds, np.sqrt(squares).real, rtol=1e-8)
 
 
 def test_attached_loads_make_static_compliance_exact() -> None:

@@ -540,7 +540,8 @@ class ToothContact:
                 deviation[these] = curves.deviation(position[these])
         else:
             state = face_slice_states(self.faces, self.variant_curves, position[present], variant[present])
-            deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+            nearest = state.gap + self.faces.changes.min(axis=0)
+            deviation[present] = np.where(state.meeting, nearest, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
         return PairStates(position, present, variant, entered, stiffness, deviation + gap, gap, state)
 

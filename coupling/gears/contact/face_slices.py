@@ -21,6 +21,12 @@ its contact line, without steps as slices come into touch.
 
 T is that of both teeth in series, each of them from the shear coupling of neighbouring slices.
 
+The gap of a planet's mesh swings as the carrier turns, slowly beside the mesh frequency. About the compression that its
+load has at each angle the mesh is another spring: what acts on lines at the mesh harmonics is the mean of these over
+the turn. So where a face has gaps at several angles, its loads at a compression are the means of those at each, and so
+is its stiffness. The gaps contain the approach at each angle beside the mean one, so that each carries its own load at
+the common compression.
+
 A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
 the deflection of a slice as a beam under a load at the middle of the path of contact, with its bending and its shear,
 psi the rotation of its sections; both are 1 in the measure of the loaded point's deflection. Where W has a slope, the
@@ -64,6 +70,9 @@ _NO_SPAN = 1e-6
 """Span of a line of contact along the path below which it counts as one point [base pitches]."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
+_SETTLED_SHARE, _LEAST_SHARE = 1e-9, 1e-6
+"""Change of a load in a step at which gaps of several angles share it, and load of a mesh that is about to part, over
+the whole."""
 _UNSETTLED = "the iteration for the touching slices of the face does not converge; take fewer slices"
 _UNBOUNDED = "the slices of the face yield without bound; check the stiffness of the teeth"
 
@@ -127,6 +136,8 @@ class FaceSlices:
         T, shear force over slope [N]; 0 for independent slices.
     shared : ndarray, shape (m, m)
         Compliance that pairs in contact at once share, of loads and deflections like `shapes` [m/N]; (0, 0) for none.
+    changes : ndarray, shape (t, n)
+        Gaps at t angles of a carrier beside `gap` [m]. Loads at a compression are the means over them.
     """
 
     z: FloatArray
@@ -136,6 +147,7 @@ class FaceSlices:
     flattening: float
     coupling: float
     shared: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    changes: FloatArray = field(default_factory=lambda: np.zeros((1, 1)))
 
     @property
     def face_width(self) -> float:
@@ -193,8 +205,10 @@ class FaceSlices:
         z = self.face_width * ((np.arange(fine) + 0.5) / fine - 0.5)
         below = np.clip(np.searchsorted(self.z, z) - 1, 0, self.z.size - 2)
         part = (z - self.z[below]) / self.width
-        shift, gap = (one[below] + part * (one[below + 1] - one[below]) for one in (self.shift, self.gap))
-        return replace(self, z=z, width=0.5 * self.width, shift=shift, gap=gap)
+        changes = np.broadcast_to(self.changes, (len(self.changes), self.z.size))
+        rows = np.vstack([self.shift, self.gap, changes])
+        shift, gap, *changed = rows[:, below] + part * (rows[:, below + 1] - rows[:, below])
+        return replace(self, z=z, width=0.5 * self.width, shift=shift, gap=gap, changes=np.array(changed))
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,6 +240,11 @@ class FaceLoads:
         """Derivative of the force of each pair by compression [N/m], shape (p,)."""
         return np.asarray(self.width * self.line_tangent.sum(axis=1))
 
+    def where(self, closed: BoolArray) -> FaceLoads:
+        """Return the loads of the pairs that are closed (p,), none on the others."""
+        rows = closed[:, None]
+        return FaceLoads(self.line_load * rows, self.line_tangent * rows, self.touching & rows, self.width)
+
 
 def face_stations(width: float) -> FloatArray:
     """Stations over a face of a width [m], from its middle: Chebyshev points with both ends, shape (j,)."""
@@ -254,6 +273,7 @@ def face_slices(
     sense: int = 1,
     misalignment: float = 0.0,
     face_gap: Sequence[float] = (),
+    gap_changes: Sequence[Sequence[float]] = (),
     count: int | None = None,
 ) -> FaceSlices:
     """Slices of a gear pair's face.
@@ -269,6 +289,8 @@ def face_slices(
     face_gap : sequence of float
         Gap of the flanks at `face_stations` [m] that comes with it, such as that of bent and twisted shafts; empty for
         none.
+    gap_changes : sequence of sequence of float
+        Gaps there at angles of a carrier beside it [m]; empty for none.
     count : int or None
         Number of slices; None for `DEFAULT_SLICES`, or `FINE_SLICES` of helical teeth with a spall across their face.
     """
@@ -278,8 +300,9 @@ def face_slices(
     z = b * ((np.arange(count) + 0.5) / count - 0.5)
     hand = math.copysign(1.0, geometry.driver.helix_angle) * sense
     gap = misalignment * z
+    over = lagrange(face_stations(b), z)
     if face_gap:
-        gap = gap + lagrange(face_stations(b), z) @ np.array(face_gap)
+        gap = gap + over @ np.array(face_gap)
     for gear, middle in zip((geometry.driver, geometry.driven), geometry.common_middles, strict=True):
         if gear.helix_deviation is not None:
             gap = gap - gear.helix_deviation.at(z + middle, gear.face_width)
@@ -294,6 +317,7 @@ def face_slices(
         gap=np.asarray(gap, dtype=np.float64),
         flattening=1.0 / (hertz_compliance(geometry) * b),
         coupling=1.0 / sum(1.0 / coupling for coupling in couplings) if count > 1 else 0.0,
+        changes=np.array(gap_changes) @ over.T if gap_changes else np.zeros((1, 1)),
     )
 
 
@@ -333,6 +357,22 @@ def face_loads(
     ContactAccuracyError
         Where the set of touching slices does not converge.
     """
+    return _mean_loads(
+        [_face_loads(slices, base, gap + change, meeting, compression) for change in slices.changes], slices.width
+    )
+
+
+def _mean_loads(loads: Sequence[FaceLoads], width: float) -> FaceLoads:
+    """Mean of the loads at several gaps; slices touch that do so at one of them."""
+    if len(loads) == 1:
+        return loads[0]
+    load, tangent = (np.mean([getattr(one, name) for one in loads], axis=0) for name in ("line_load", "line_tangent"))
+    return FaceLoads(load, tangent, np.any([one.touching for one in loads], axis=0), width)
+
+
+def _face_loads(
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, compression: FloatArray
+) -> FaceLoads:
     touching = meeting & (compression[:, None] > gap)
     fixed, rising = _even(slices, base, gap, touching)
     unsettled = np.arange(compression.size)
@@ -376,9 +416,35 @@ def face_equilibrium(
     ContactAccuracyError
         Where the set of touching slices does not converge, or the loads do not balance to rounding.
     """
-    meshes = SlicedMeshes(slices, base, gap, meeting, owner, force.size)
-    balanced = meshes.balance(force, touching=touching)
-    return balanced.compression, balanced.faces
+    meshes = [SlicedMeshes(slices, base, gap + change, meeting, owner, force.size) for change in slices.changes]
+    balanced = [mesh.balance(force, touching=touching) for mesh in meshes]
+    if len(meshes) == 1:
+        return balanced[0].compression, balanced[0].faces
+    carried = np.tile(force, (len(meshes), 1))
+    for _ in range(_MOST_ROUNDS):
+        compression, compliance = (
+            np.array([getattr(one, name) for one in balanced]) for name in ("compression", "compliance")
+        )
+        # Newton's method for the common compression; a mesh that would pull there is apart.
+        apart = np.zeros(carried.shape, dtype=np.bool_)
+        while True:
+            stiffness = np.where(apart, 0.0, 1.0 / compliance)
+            held = np.where(apart, 0.0, carried - stiffness * compression)
+            common = (len(meshes) * force - held.sum(axis=0)) / stiffness.sum(axis=0)
+            pulls = ~apart & (held + stiffness * common < 0.0)
+            if not pulls.any():
+                break
+            apart |= pulls
+        changed = np.where(apart, 0.0, held + stiffness * common)
+        if np.all(apart | (np.abs(changed - carried) <= _SETTLED_SHARE * force)):
+            loads = [one.faces.where(~gone[owner]) for one, gone in zip(balanced, apart, strict=True)]
+            return common, _mean_loads(loads, slices.width)
+        carried = np.maximum(changed, _LEAST_SHARE * force)
+        balanced = [
+            mesh.balance(load, touching=one.faces.touching)
+            for mesh, load, one in zip(meshes, carried, balanced, strict=True)
+        ]
+    raise ContactAccuracyError(_UNSETTLED)
 
 
 @dataclass(frozen=True, eq=False)

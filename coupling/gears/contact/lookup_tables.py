@@ -180,14 +180,14 @@ def face_force_table(
     ends = variants[0].stiffness.knots[[0, -1]] if turning else np.zeros(0)
     pieces = _pieces(_breaks(variants, slices.reach, [*breaks, *ends]))
     knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
-    deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
+    deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap + slices.changes))
     unit = deepest / _DEPTHS**2
     compressions = unit * np.arange(_DEPTHS + 1.0) ** 2
     factors = [slices.width * weight(knots[:, None] + slices.shift) for weight in weights]
     touches, cells = [], []
     for number in range(len(variants)):
         state = face_slice_states(slices, variants, knots, np.full(knots.size, number))
-        gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+        gap = np.where(state.meeting, state.gap + slices.changes.min(axis=0), np.inf).min(axis=1)
         # At the very ends rounding may leave no slice in contact: the next position is taken.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
         shape = (knots.size, _DEPTHS + 1, slices.z.size)

@@ -144,7 +144,7 @@ class Gear:
     pressure_angle : float
         Normal pressure angle, of the basic rack [rad].
     face_width : float
-        Width of the teeth along the shaft [m].
+        Width of the teeth along the shaft [m]; see ``has_face``.
     profile_shift : float
         Profile shift coefficient, in normal modules, positive outward; of an internal gear inward. A positive one makes
         the teeth thicker.
@@ -199,6 +199,8 @@ class Gear:
     allow_undercut : bool
         Whether to accept a gear whose rack cuts away the foot of the involute; its flank then begins where trochoid
         and involute cross.
+    has_face : bool
+        Whether the face width is known. Else it is nominal, and the teeth touch in one point in its middle.
 
     Raises
     ------
@@ -236,10 +238,13 @@ class Gear:
     hub_diameter: float | None = None
     hub_width: float | None = None
     ring_support: RingSupport | None = None
+    has_face: bool = True
 
     def __post_init__(self) -> None:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
         keep_tuples(self, "pitch_deviations", "faults")
+        if isinstance(self.teeth, np.integer):
+            object.__setattr__(self, "teeth", int(self.teeth))
         _check_numbers(self)
         refuse(_body_findings(self), GearError)
         _check_rack(self)
@@ -556,8 +561,12 @@ def _check_numbers(gear: Gear) -> None:
             require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     if gear.root_radius is not None:
         require_finite(f"{label}root_radius", gear.root_radius, minimum=0.0)
-    pitches = Instance(tuple, "numbers, one for each tooth")
-    refuse(attribute_findings(("gear", gear.name), gear, pitch_deviations=pitches), GearError)
+    kinds = {
+        "pitch_deviations": Instance(tuple, "numbers, one for each tooth"),
+        "tip_relief": Instance(TipRelief, "a TipRelief, or None", optional=True),
+        "root_relief": Instance(RootRelief, "a RootRelief, or None", optional=True),
+    }
+    refuse(attribute_findings(("gear", gear.name), gear, **kinds), GearError)
     if gear.pitch_deviations and len(gear.pitch_deviations) != gear.tooth_count:
         expected = f"one deviation for each of {gear.tooth_count} teeth, or none"
         refuse([Finding(("gear", gear.name), "pitch_deviations", gear.pitch_deviations, expected)], GearError)

@@ -62,6 +62,8 @@ angle and helix angle of a pair agree within it, and a backlash of less, in modu
 _DECAY_LENGTH = 1.25
 """λ = √(T/k_b) over the module: 1.2 to 1.3 for the tooth models and solid gears of 18 to 120 teeth."""
 _SAME_WIDTH = 1e-9
+_POINT = 0.01
+"""Part of a nominal face over which teeth touch whose face width is not known: its tilt stiffness is 1e-4 of that."""
 # One per cent of a module: as much as cutting thins a tooth for backlash.
 _ALLOWED_JAM = 0.01
 # Reach of a tip below the form circle, along the line of action in modules. The fillet leaves the involute as a tangent
@@ -201,9 +203,14 @@ class GearPairGeometry:
 
     @property
     def face_width(self) -> float:
-        """Width of the common face, on which the pair carries [m]."""
+        """Width of the common face, on which the pair carries [m]; next to none where one is not known."""
         left, right = self._common_face
-        return right - left
+        return (right - left) * (1.0 if self.has_face else _POINT)
+
+    @property
+    def has_face(self) -> bool:
+        """Whether the width of both faces is known."""
+        return self.driver.has_face and self.driven.has_face
 
     @property
     def _common_face(self) -> tuple[float, float]:

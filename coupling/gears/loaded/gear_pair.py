@@ -15,7 +15,13 @@ from functools import cached_property
 import numpy as np
 
 from gearwhine.coupling.gears.contact.contact_law import ToothContact, law_between_rims, slices_of_teeth, tooth_contact
-from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_slices
+from gearwhine.coupling.gears.contact.face_slices import (
+    DEFAULT_SLICES,
+    FaceSlices,
+    face_slices,
+    face_stations,
+    mean_and_slope,
+)
 from gearwhine.coupling.gears.errors import GearError
 from gearwhine.coupling.gears.geometry.faults import MissingTooth
 from gearwhine.coupling.gears.geometry.gear import Gear
@@ -34,6 +40,7 @@ from gearwhine.coupling.gears.stiffness.models import (
     rim_compliances,
     stiffness_under_load,
 )
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
 
@@ -116,6 +123,9 @@ class GearPair:
     mean_force : float, optional
         Mean mesh force [N]; None: that of the torques. Of a pair that shares a torque with others it is that of the
         machine's operating point, see :meth:`gearwhine.coupling.Machine.at_operating_point`.
+    gap_changes : tuple of tuple of float
+        Gaps at angles over a turn of planet carriers beside ``face_gap``, at the same stations, with the approach of
+        the flanks there beside the mean one [m]; none where the gap stays. The contact law is the mean over them.
     """
 
     driver: str
@@ -129,10 +139,11 @@ class GearPair:
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
     mean_force: float | None = None
+    gap_changes: tuple[tuple[float, ...], ...] = ()
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
-        keep_tuples(self, "face_gap")
+        keep_tuples(self, "face_gap", "gap_changes")
         rules: dict[str, Rule] = {
             "driver": Text(),
             "driven": Text(),
@@ -144,7 +155,8 @@ class GearPair:
             "face_gap": Numbers(),
             "mean_force": Number(at_least=0.0, optional=True, unit="N"),
         }
-        part = ("gear pair", f"{self.driver} -> {self.driven}")
+        driver, driven = (getattr(gear, "name", gear) for gear in (self.driver, self.driven))
+        part = ("gear pair", f"{driver} -> {driven}")
         findings = list(attribute_findings(part, self, **rules))
         if not isinstance(self.stiffness, str) and not hasattr(self.stiffness, "pair_stiffness"):
             findings.append(Finding(part, "stiffness", self.stiffness, "a stiffness model, or the name of one"))
@@ -203,10 +215,21 @@ class GearPair:
         misalignment = self.misalignment or 0.0
         bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
         straight = all(deviation is None or deviation.is_straight for deviation in bent)
-        even = misalignment == 0.0 and not any(self.face_gap)
+        even = misalignment == 0.0 and not any(self.face_gap) and not self.gap_changes
         if geometry.driver.helix_angle == 0.0 and even and straight:
             return None
-        return face_slices(geometry, sense=sense, misalignment=misalignment, face_gap=self.face_gap)
+        return face_slices(
+            geometry, sense=sense, misalignment=misalignment, face_gap=self.face_gap, gap_changes=self.gap_changes
+        )
+
+    def gap_slopes(self, geometry: GearPairGeometry) -> FloatArray:
+        """Slope of the gap's best straight line over the face at each of ``gap_changes`` [rad]; none without them."""
+        stations = face_stations(geometry.face_width)
+        gaps = np.array(self.gap_changes).reshape(-1, stations.size) + (
+            np.array(self.face_gap) if self.face_gap else 0.0
+        )
+        middles = geometry.face_width * ((np.arange(DEFAULT_SLICES) + 0.5) / DEFAULT_SLICES - 0.5)
+        return np.asarray(gaps @ mean_and_slope(stations, middles)[1])
 
     def require_sound_faults(self, geometry: GearPairGeometry) -> None:
         """Refuse faults for which the mesh has no solution, before it is solved.

@@ -7,7 +7,9 @@ unit forces at nΩ + m'·f (:meth:`gearwhine.coupling.linear.carriers.turning_re
 
     h_{n,m} = -Σ_j κ_{n-j} u_{j,m},      u_{n,m} = u°_{n,m} + Σ_m' S_{m m'}(n) h_{n,m'},
 
-u° with the mean stiffness. κ couples the mesh harmonics, and S the meshes and the turns m: this is Hill's method for
+u° with the mean stiffness. At rest the load of a planet swings as its carrier turns: u°_{0,m}, m not 0, is the swing of
+the compression under the constant load, with which κ makes sidebands, and the harmonic itself where the planet's
+direction turns with its load. κ couples the mesh harmonics, and S the meshes and the turns m: this is Hill's method for
 two periods. The unknowns are thousands, and κ varies by a part of its mean: GMRES solves them in some tens of steps.
 
 κ is that of the mesh harmonics: what pitch deviations change in it is left out here.
@@ -22,7 +24,9 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
-from gearwhine.numerics.arrays import ComplexArray
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.statics.mean_mesh import MeanMesh
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _TOLERANCE = 1e-10  # of the compressions, relative
 _STEPS = 200  # of GMRES
@@ -50,8 +54,40 @@ class TurningStiffnessForce:
         return dict(zip(self.orders, self.amplitudes[harmonic].tolist(), strict=True))
 
 
+_SWING_TURNS = 3  # turns of carriers, all together, that the swing at rest is known of
+
+
+def swings_at_rest(
+    system: CoupledSystem, means: Sequence[MeanMesh | None], motions: FloatArray, model: TurningResponse
+) -> dict[int, dict[Order, complex]]:
+    """Swing of the compression of each loaded contact under the constant load, two-sided by turns of the carriers [m].
+
+    At rest a contact yields along its mean curve, by the harmonic mean of its stiffness. That is the answer of the mean
+    stiffness and of its variation together, of which u° is the former.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    means, motions
+        See `gearwhine.coupling.statics.mean_mesh.equilibrium_over_turn`.
+    model : TurningResponse
+    """
+    compressions = np.array([q @ at.contact_directions for q, at in zip(motions, system.over_turn, strict=True)])
+    orders = [order for order in model.orders if 0 < sum(map(abs, order)) <= _SWING_TURNS]
+    waves = np.exp(-1j * np.outer([model.shift(order) for order in orders], system.turn_times))
+    amplitudes = waves @ compressions / len(motions)
+    return {
+        number: dict(zip(orders, (amplitudes[:, number] * (mean.secant / mean.stiffness)).tolist(), strict=True))
+        for number, mean in enumerate(means)
+        if mean is not None and mean.stiffness > 0.0
+    }
+
+
 def turning_stiffness_forces(
-    meshes: Sequence[VaryingMesh], model: TurningResponse, loads: Callable[[int], Mapping[Order, ComplexArray]]
+    meshes: Sequence[VaryingMesh],
+    model: TurningResponse,
+    loads: Callable[[int], Mapping[Order, ComplexArray]],
+    swings: Mapping[int, Mapping[Order, complex]],
 ) -> dict[int, TurningStiffnessForce]:
     """Solve the forces of meshes of one frequency by their stiffness that varies, by contact.
 
@@ -64,6 +100,8 @@ def turning_stiffness_forces(
     loads : callable
         Loads of the meshes at a harmonic n of their frequency on the machine with the mean stiffness, by the order of
         their frequency, one-sided by e^{i(nΩ + m·f)t}.
+    swings : mapping of int to mapping of order to complex
+        See `swings_at_rest`.
 
     Raises
     ------
@@ -86,6 +124,9 @@ def turning_stiffness_forces(
             free[reach + harmonic] = 0.5 * by_loads
             free[reach + harmonic, still] -= [mesh.error[0, reach + harmonic] for mesh in meshes]
             free[reach - harmonic] = free[reach + harmonic][opposite].conj()
+    for place, number in enumerate(numbers):
+        for order, swing in swings.get(number, {}).items():
+            free[reach, model.orders.index(order), place] += swing
     varying = np.array([mesh.coupling[0] for mesh in meshes])
 
     def forces(compression: ComplexArray) -> ComplexArray:

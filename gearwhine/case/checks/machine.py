@@ -203,12 +203,11 @@ def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
             if not isinstance(coefficients, tuple):
                 continue
             tabled = True
-            count = 0 if bearing.speeds is None else len(bearing.speeds)
             if bearing.speeds is None:
                 expected = "one value, or with this list the key 'speeds' of the bearing"
                 yield Finding(("bearing", index, kind, key), expected)
-            elif len(coefficients) != count:
-                expected = f"one value for each of the {count} speeds (there are {len(coefficients)})"
+            elif len(coefficients) != len(bearing.speeds):
+                expected = f"one value for each of the {len(bearing.speeds)} speeds (there are {len(coefficients)})"
                 yield Finding(("bearing", index, kind, key), expected)
     if bearing.speeds is not None and not tabled:
         yield Finding(("bearing", index, "speeds"), "a list for each of these speeds in 'stiffness' or 'damping'")

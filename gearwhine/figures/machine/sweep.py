@@ -95,7 +95,7 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
         if levels.size:
             log_axis(axes, 0.8 * float(levels.min()), 1.25 * float(levels.max()))
-        axes.set_ylabel(f"acceleration, {rms} [m/s²]")
+        axes.set_ylabel(f"{rms} [m/s²]")
         panel_title(axes, sensor)
     _name_values(panels[-1].xaxis, dataset, along)
     name_lowest(panels, _axis_label(dataset, along))

@@ -72,13 +72,20 @@ def _differences(
         for key in changed
         if (not command or _reads(command, key)) and (has_sound or not key.startswith("acoustics."))
     ]
-    if not keys:
-        return []
-    listed = ", ".join(
-        f"{key} was {before.get(key, 'absent')}, is {now.get(key, 'absent')}" for key in keys[:_DIFFERENCES]
-    )
-    more = len(keys) - _DIFFERENCES
-    return [listed + (f", and {more} more keys" if more > 0 else "")]
+    tables = dict.fromkeys(key.partition(".")[0] for key in keys if "." in key)
+    whole = {
+        table: "is absent" if table in stored else "is new"
+        for table in tables
+        if (table in stored) != (table in present)
+    }
+    parts = [f"[{table}] {change}" for table, change in whole.items()]
+    parts += [
+        f"{key} was {before.get(key, 'absent')}, is {now.get(key, 'absent')}"
+        for key in keys
+        if key.partition(".")[0] not in whole
+    ]
+    more = len(parts) - _DIFFERENCES
+    return [", ".join(parts[:_DIFFERENCES]) + (f", and {more} more" if more > 0 else "")] if parts else []
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from gearwhine.coupling.gears import Gear, GearError, TipRelief
@@ -57,6 +58,8 @@ def test_inverse_involute_refuses(value: float) -> None:
 @pytest.mark.parametrize(
     ("changes", "kind", "words"),
     [
+        ({"tip_relief": 1e-5}, GearError, "tip_relief is 1e-05; expected a TipRelief, or None"),
+        ({"teeth": np.int64(4)}, GearError, "teeth must be a whole number of at least 5, got 4"),
         ({"teeth": 4}, GearError, "teeth must be a whole number of at least 5, got 4"),
         ({"teeth": 28.0}, GearError, "teeth"),
         ({"teeth": True}, GearError, "teeth"),

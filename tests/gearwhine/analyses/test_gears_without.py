@@ -76,6 +76,23 @@ def test_no_housing_is_solved_for_the_aim_of_a_relief_that_is_left_out(monkeypat
     assert study.gears(without=("relief",)).document["pairs"][0]["optimal_tip_relief"] is None
 
 
+def test_a_housing_that_is_solved_serves_the_aims_of_reliefs(monkeypatch: pytest.MonkeyPatch) -> None:
+    sought: list[Any] = []
+
+    def seek(*_: Any, housing: Any = None, **__: Any) -> None:
+        sought.append(housing)
+        raise RuntimeError("the aims are sought")
+
+    changes = ["housing.box.mesh_size=60 mm", "gear_pair.0.misalignment=10 urad"]  # which needs no housing
+    study = gw.load("small-gearbox", changes)
+    solved = study.housing
+    monkeypatch.setattr(gear_pairs, "relief_aims", seek)
+    with pytest.raises(RuntimeError, match="the aims are sought"):
+        study.gears()
+    assert sought == [solved]
+    assert pair_of(study, "relief")["optimal_tip_relief"] is None
+
+
 def test_the_command_writes_no_pictures_where_they_are_left_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

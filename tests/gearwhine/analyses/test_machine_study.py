@@ -62,6 +62,8 @@ def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.Study) -
         machine.simulate()
     with pytest.raises(CouplingError, match="a study is of a gearwhine\\.Machine, got 'spur-pair'"):
         gw.Study("spur-pair")  # type: ignore[arg-type]
+    with pytest.raises(CouplingError, match=r"a study takes gearwhine\.Settings, .* got 'a title'"):
+        gw.Study(given, "a title")  # type: ignore[arg-type]
 
 
 def test_writing_a_result_leaves_it_as_it_is(machine: gw.Study, tmp_path: Path) -> None:

@@ -48,6 +48,17 @@ def lines_of(study: gw.CaseStudy) -> str:
     )
 
 
+def test_each_part_of_a_checked_case_stands_under_its_own_name() -> None:
+    document = gw.load("helical-pair").check().document
+    first = {section.title: section.note.strip() for section in check_sections(document)}
+    words = {"rotors": "kg", "bearings": "on ground", "thrust": "thrust", "analysis": "Campbell", "operation": "rpm"}
+    words |= {"gear pairs": "contact ratio", "damping": "% of critical", "transient": "revolutions"}
+    assert {part for part, word in words.items() if word not in first.get(part, "")} == set()
+    assert first["bearings"].startswith(f"{document['bearings'][0]['name']}: ")
+    assert first["thrust"].startswith(f"{document['axial_location'][0]['rotor']}: ")
+    assert [row["torques"] for row in document["rotor_analysis"]] == [0] * len(document["rotor_analysis"])
+
+
 @pytest.mark.slow
 def test_check_names_the_arrangement_and_who_takes_which_thrust() -> None:
     back, face = gw.load("helical-pair", opposed()), gw.load("helical-pair", opposed(("-z", "+z")))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
 from broken_cases import GEARBOX, GONE, broken, check_one_wrong, check_several_wrong, problems
 
-from gearwhine.case import CaseError, parse_case
+from gearwhine.case import CaseError, load_case, parse_case
+from gearwhine.case.model import lacking
 
 ONE_WRONG = {
     # units and numbers
@@ -33,6 +35,15 @@ ONE_WRONG = {
     "discard all": ("transient.discard", 10, "transient.discard", "fewer revolutions than the 10 of the run"),
     # keys, forms and choices
     "missing length": ("rotor.0.segments.0.diameter", GONE, "rotor[0].segments[0].diameter", "'6.35 mm'"),
+    **{
+        f"rib {end} beyond the wall": (
+            "housing.box.ribs",
+            [{"face": "top", "along": "x", "at": 0, "height": "10 mm", "thickness": "8 mm", end: "900 mm"}],
+            f"housing.box.ribs[0].{end}",
+            "x = -110 mm to 110 mm",
+        )
+        for end in ("from", "to")
+    },
     "wrong choice": ("rotor.0.mass", "lumpy", "rotor[0].mass", "'distributed' or 'lumped'"),
     "text for a table": ("operation", "fast", "operation", "a table"),
     "table for a list": ("rotor.0.segments", {"length": "1 m"}, "rotor[0].segments", "a list"),
@@ -156,3 +167,12 @@ def test_problems_can_be_read_by_a_program() -> None:
     first, second = caught.value.problems
     assert (first.key, first.value, first.label) == ("gear[0].teeth", 1, 'gear "pinion"')
     assert (second.key, second.value) == ("operation.speed", "fast")
+
+
+@pytest.mark.parametrize("table", ["operation", "transient", "sweep"])
+def test_what_a_command_wants_of_a_missing_table_is_accepted_in_it(table: str) -> None:
+    case = load_case("steel-box").case
+    (line,) = str(lacking(case, table, command="run")).splitlines()
+    example = re.search(r"such as (\w+) = ('[^']+'|\{.*?\}|\d+)", line)
+    assert example is not None
+    load_case("small-gearbox", [f"{table}.{example[1]}={example[2]}"])

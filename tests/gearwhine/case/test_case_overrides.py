@@ -23,7 +23,7 @@ def test_values_are_toml_or_bare_words_and_quantities() -> None:
         "bearing.0.damping.xx=600 N*s/m",
         "rotor.output.segments.0.diameter='31 mm'",
         'housing.support.0.stiffness={ x = "1e8 N/m" }',
-        'housing.sensor."right wall".direction=[1, 0, 0]',
+        'housing.sensor."right wall".direction=[-2, 3, 6]',
         "title=Two words",
         "bearing.input-front.stiffness.xy=-10",
     )
@@ -36,7 +36,7 @@ def test_values_are_toml_or_bare_words_and_quantities() -> None:
     assert case.rotor[1].segments[0].diameter == 0.031
     assert case.housing.support[0].stiffness is not None
     assert case.housing.support[0].stiffness.x == 1e8
-    assert case.housing.sensor[1].unit_vector == (1.0, 0.0, 0.0)
+    assert case.housing.sensor[1].unit_vector == (-2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0)
     assert case.title == "Two words"
     assert case.bearing[1].stiffness.xy == -10.0  # type: ignore[union-attr]
 

@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 from broken_cases import GEARBOX, GONE, check_one_wrong, check_several_wrong
 
+from gearwhine.case import parse_case
+from gearwhine.case.checks.whole_case import warnings_of
+
 ONE_WRONG = {
     # units and numbers
     "percent for an angle": ("gear.0.pressure_angle", "20 %", "gear[0].pressure_angle", "an angle"),
@@ -184,3 +187,16 @@ def test_one_wrong_value_is_named_with_its_place_and_what_was_expected(kind: str
 @pytest.mark.parametrize("kind", SEVERAL_WRONG)
 def test_what_does_not_go_together_is_named(kind: str) -> None:
     check_several_wrong(*SEVERAL_WRONG[kind])
+
+
+@pytest.mark.parametrize(
+    ("key", "size"), [("module", "60 mm"), ("diametral_pitch", "16.6666 1/m"), ("base_radius", "789.36 mm")]
+)
+def test_a_module_that_hardly_any_gear_has_is_doubted_at_the_key_that_gives_it(key: str, size: str) -> None:
+    """Of 28 teeth of 60 mm the base circle has a radius of 28 × 30 mm cos 20°."""
+    wide = {"teeth": 28, key: size, "face_width": "600 mm", "pressure_angle": "20 deg", "material": "steel"}
+    pair = {"driver": "a", "driven": "b", "centre_distance": "1681 mm", "stiffness": {"model": "potential-energy"}}
+    gears = {"gear": [wide | {"name": name} for name in "ab"], "gear_pair": [pair]}
+    case = parse_case({"title": "mill", "material": {"steel": GEARBOX["material"]["steel"]}} | gears)
+    doubts = [text for text in warnings_of(case) if "as gears have" in text]
+    assert [text.partition(" ")[0] for text in doubts] == [f"gear[0].{key}", f"gear[1].{key}"]

@@ -1,5 +1,6 @@
 """Progress in lines, what it says where kernels are compiled, and work on two threads under it."""
 
+import io
 import logging
 import threading
 import time
@@ -24,6 +25,22 @@ def test_compilation_is_news_of_the_present_work(capsys: pytest.CaptureFixture[s
     news = ": compiling kernels, the first time only"
     expected = ["rotor input", "rotor input" + news, "rotor input: whirl over speed", "rotor input" + news]
     assert said == [*expected, "modes", "modes" + news]
+
+
+def test_a_live_line_keeps_its_times_beside_long_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    said = Terminal()
+    monkeypatch.setattr("sys.stderr", said)
+    for name, value in (("COLUMNS", "80"), ("NO_COLOR", "1"), ("TERM", "xterm")):
+        monkeypatch.setenv(name, value)
+    with shown(quiet=False) as progress:
+        progress("motion of the triangles with the housing's modes: " + 5 * "round after round ", 0.5)
+    (line, *_) = [line for line in said.getvalue().splitlines() if "motion of" in line]
+    assert "0:00:00" in line
+    assert "…" in line
 
 
 def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,12 +1,16 @@
 """The best indicator of a sensor, and its curve in the picture: detections made by hand, whose order is known."""
 
+import io
+
 import numpy as np
 import pytest
+from rich.console import Console
 
 from gearwhine.detection.detectability import Detectability, DetectionResult, Monitor, detectability
 from gearwhine.figures.detection import draw_detection
 from gearwhine.numerics.detection_probability import Detection, Share, hit_miss
 from gearwhine.output.sections import Table
+from gearwhine.output.terminal import show_section
 from gearwhine.results.detection import detection_document, sections
 
 SIZES = (0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3, 2e-3)
@@ -82,6 +86,17 @@ def test_a_bound_that_the_hits_leave_open_is_explained_and_thresholds_show_their
     assert low < value < high
 
 
+def test_healthy_values_that_the_fitted_distribution_does_not_have_are_warned_of() -> None:
+    """Evenly spaced ones may be of a log-normal distribution; half of them a hundred times as large are of none."""
+    healthy = (1.0 + 0.01 * np.arange(20.0)) * np.repeat([1.0, 100.0], 10)
+    two = detectability("roof", "rms", healthy, SAMPLES, np.full(40, 9.0), 0.01, "log-normal")
+    document = detection_document(_result(EARLY, two))
+    (told,) = [one for one in document["warnings"] if one["name"] == "distribution of healthy values"]
+    assert told["parts"] == 1
+    assert "values of rms at roof are not" in told["message"]
+    assert detection_document(_result(EARLY))["warnings"] == []
+
+
 def test_the_picture_draws_the_indicator_of_its_heading_and_tells_equal_curves_apart() -> None:
     found = _result(LATE, _part("rms", (0, 0, 0, 0, 8), 1.9e-3, None), EARLY, EQUAL)
     figure = dict(draw_detection("By hand", found))["detection-probability"]
@@ -105,3 +120,20 @@ def test_values_over_decades_are_drawn_over_a_logarithmic_axis() -> None:
     figures = dict(draw_detection("By hand", _result(far, EQUAL)))
     assert figures["detection-responses-1"].axes[0].get_yscale() == "log"
     assert figures["detection-responses-2"].axes[0].get_yscale() == "linear"
+
+
+def test_the_tables_of_a_study_stand_in_rows_at_80_columns_and_a_fault_that_none_finds_is_said() -> None:
+    console = Console(file=io.StringIO(), force_terminal=True, width=80, color_system=None)
+    for section in sections(detection_document(_result(LATE, EARLY))):
+        show_section(console, section)
+    assert isinstance(console.file, io.StringIO)
+    lines = [line.split() for line in console.file.getvalue().splitlines()]
+    assert [line[0] for line in lines if line and line[0] in ("sensor", "indicator", "roof")] == [
+        "indicator",
+        "sensor",
+        "roof",
+        "sensor",
+        "roof",
+    ]
+    content = sections(detection_document(_result(_part("rms", (0, 0, 0, 0, 0), None, None))))[0].content
+    assert any(str(one).startswith("No indicator at roof finds any of these sizes") for one in content)

@@ -91,7 +91,7 @@ def test_each_sensor_has_a_panel_of_its_own_levels(figures: dict[str, Figure]) -
     for name, (axes,) in shown.items():
         (curve,) = curves(axes, "-")
         held(curve, RMS[name])
-        assert (axes.get_ylabel(), axes.get_yscale()) == ("acceleration, rms [m/s²]", "log")
+        assert (axes.get_ylabel(), axes.get_yscale()) == ("rms [m/s²]", "log")
     lowest = min(figures["sweep-rms"].axes, key=lambda axes: axes.get_position().y0)
     assert "[rpm]" in lowest.get_xlabel()
 

@@ -268,7 +268,7 @@ def test_failed_designs_are_passed_over_and_named(tmp_path: Path) -> None:
     )
     study = _study(tmp_path, text)
     found = study.optimise(folder=tmp_path / "out", workers=1)
-    assert [row["number"] for row in found.document["failed"]] == [3, 4, 5]
+    assert [row["number"] for row in found.document["failed"]] == [4, 5, 6]
     assert all("gear" in row["message"] for row in found.document["failed"])
     assert found.document["keys"][0]["designs"] == ["28"]
     single = [
@@ -427,14 +427,14 @@ def test_keys_in_step_ends_of_lists_and_numbers_of_designs_are_told_as_the_case_
     (row,) = [line for line in shown.splitlines() if line.startswith(" operation.speed ")]
     assert "1100 rpm" in row
     assert row.rstrip().endswith("operation.force[1].x")
-    # The number in the table, in the title of the case and in the file is one; the picture counts from 0, too.
+    # The number in the table, in the title of the case and in the file is one, and counts from 1.
     (chosen,) = document["chosen"]
     assert f"Design {chosen['number']} (best of {document['designs']})" in shown
     assert tomllib.loads((out / "best.toml").read_text())["title"].endswith(f"design {chosen['number']}")
     with xr.open_dataset(out / "optimise.nc") as found:
         aims = found["aim_value"].values[:, 0]
-        assert aims[chosen["number"]] == aims.min()
-        assert int(found["design"][0]) == 0
+        assert aims[chosen["number"] - 1] == aims.min()
+        assert int(found["design"][0]) == 1
 
 
 def test_warnings_of_the_start_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,9 +29,15 @@ def _write(place: Path, content: str) -> None:
     (place / "own.txt").write_text(content, encoding="utf-8")
 
 
+@pytest.mark.parametrize("has_links", [True, False])
 def test_commands_keep_to_themselves_and_a_run_takes_the_folder(
-    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, has_links: bool
 ) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError("this file system has no links")
+
+    if not has_links:
+        monkeypatch.setattr(store.os, "link", refuse)
     moments = iter(f"2026-01-0{day}T10:00:00+00:00" for day in range(1, 9))
     monkeypatch.setattr(store, "_now", lambda: next(moments))
     out = tmp_path / "out"

@@ -3,14 +3,14 @@
 import io
 import math
 from collections.abc import Callable, Iterable
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
 from typing import Any
 
 import pytest
 from rich.console import Console
 
 from gearwhine.output.sections import Column, Section, Table, rms_of_band, significant
-from gearwhine.output.terminal import show_section, shown_by
+from gearwhine.output.terminal import say_warning, show_section, shown_by
 from gearwhine.results import comparison, housing, run, system
 
 Document = dict[str, Any]
@@ -216,3 +216,23 @@ def test_a_figure_stands_beside_its_unit_at_every_width(width: int) -> None:
     assert max(map(len, map(str.rstrip, lines))) <= width
     for words in ("136 %", "-22 %", "12.5 m/s²", "0.5 mm", "3 N·m"):
         assert sum(line.count(words) for line in lines) == 2, words
+
+
+def test_a_command_to_copy_has_no_line_end_inside_its_values() -> None:
+    values = "'operation.speed=" + ",".join(f"{speed} rpm" for speed in range(600, 2000, 100)) + "'"
+    console = Console(file=io.StringIO(), force_terminal=True, width=40, color_system=None, markup=False)
+    show_section(console, Section("", (f"Add these: gearwhine sweep CASE --over {values}",)))
+    assert isinstance(console.file, io.StringIO)
+    assert values in console.file.getvalue().splitlines()
+
+
+def test_a_warning_is_wrapped_at_the_width_of_a_terminal_between_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    message = "the flanks are -14 µm out of line over the face: stiffer shafts even it out"
+    for is_terminal, lines in (("1", ["warning: the flanks are", "         -14 µm out of line"]), ("", None)):
+        monkeypatch.setenv("FORCE_COLOR", is_terminal)
+        monkeypatch.setenv("COLUMNS", "28")
+        with redirect_stderr(io.StringIO()) as said:
+            say_warning(message)
+        told = said.getvalue().splitlines()
+        assert told[:2] == lines if lines else told == [f"warning: {message}"]
+        assert "".join(told).replace(" ", "") == f"warning:{message}".replace(" ", "")

@@ -8,9 +8,10 @@ import pytest
 
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
+from gearwhine.coupling.description.gear_train import EQUAL_MESHES
 from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.terminal import show
-from gearwhine.results.gears import gears_document, sections
+from gearwhine.results.gears import gears_document, report, sections
 from gearwhine.solve.gear_pairs import analyse_pairs
 
 Document = dict[str, Any]
@@ -40,7 +41,7 @@ def test_the_rig_in_one_screen(capsys: pytest.CaptureFixture[str]) -> None:
     for text in (
         "module 3.175 mm, pressure angle 20°",
         "95.250",  # tip circle
-        "34.051 over 4",  # span, as any table for 28 teeth of module 3.175 has it: 10.7246 modules
+        "34.051 (4)",  # span, as any table for 28 teeth of module 3.175 has it: 10.7246 modules
         "20.85°",  # roll angle at the pitch point, tan 20°
         "Contact ratio 1.63800",
         "Mesh frequency 2566.67 Hz, torque on the driver 71.77 N·m, mesh force 1718.2 N",
@@ -53,6 +54,32 @@ def test_the_rig_in_one_screen(capsys: pytest.CaptureFixture[str]) -> None:
         "Best linear relief: ",
     ):
         assert text in out, text
+
+
+def test_the_report_has_every_pair_as_the_terminal_shows_it_with_its_pictures() -> None:
+    first, second = (document("spur-pair")["pairs"][0] | {"driver": name, "driven": "b"} for name in ("a", "c"))
+    both = {"pairs": [first, second]}
+    chapter, shown = report(both), sections(both)
+    chapters, screens = (
+        [(one.title, one.sentences, [table.filled()[1] for table in one.tables]) for one in several]
+        for several in (chapter.inner, shown)
+    )
+    assert chapters == screens
+    for inner, stem in zip(chapter.inner, ("gears-a-b-", "gears-c-b-"), strict=True):
+        assert inner.pictures
+        assert all(picture.begins.startswith(stem) for picture in inner.pictures)
+
+
+def test_a_share_of_the_torque_stands_behind_the_force_that_it_gives(capsys: pytest.CaptureFixture[str]) -> None:
+    plain, shared = (
+        said(capsys, changed(document("spur-pair"), mean_force_from=origin)).splitlines()
+        for origin in (None, EQUAL_MESHES)
+    )
+    (force,) = [line for line in plain if "mesh force" in line]
+    (other,) = set(shared) - set(plain)
+    assert set(plain) - set(shared) == {force}
+    assert other.startswith(force)
+    assert any(line.strip().startswith("Backlash") for line in plain)
 
 
 def test_alike_teeth_are_not_said_to_be(capsys: pytest.CaptureFixture[str]) -> None:

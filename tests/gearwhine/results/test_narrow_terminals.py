@@ -24,7 +24,7 @@ def shown(document: Document, *sections: Section) -> str:
 
 
 def test_a_bore_is_told_by_its_diameter_place_and_length_in_millimetres() -> None:
-    bore = {"center_m": [0.0, 0.08, -0.115], "diameter_m": 0.052, "length_m": 0.015, "axis": "z"}
+    bore = {"center_m": [-1e-9, 0.08, -0.115], "diameter_m": 0.052, "length_m": 0.015, "axis": "z"}
     assert bore_line(bore) == "bore of 52 mm at (0, 80, -115) mm, 15 mm long"
     assert "along x" in bore_line(bore | {"axis": "x"})
 

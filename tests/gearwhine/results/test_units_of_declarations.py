@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 import pytest
-from shown_units import SHOWN, dimension_of
+from shown_units import NAMES, SHOWN, dimension_of
 
 import gearwhine.results as results
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
@@ -89,35 +89,6 @@ def test_a_factor_takes_the_key_s_unit_to_that_of_the_heading() -> None:
             wrong.append((one.where, one.key, one.heading, one.scale))
     assert wrong == []
     assert held > 100
-
-
-NAMES = {
-    "frequency": {"Hz"},
-    "speed": {"rpm", "rad s-1"},
-    "force": {"N"},
-    "thrust": {"N"},
-    "preload": {"N"},
-    "torque": {"N m"},
-    "stiffness": {"N/m", ""},  # of all motions together in mixed units
-    "displacement": {"m", "m kg0.5"},
-    "deflection": {"m", "kg-0.5"},  # of a mode
-    "misalignment": {"rad"},
-    "tilt": {"rad"},
-    "rotation": {"rad"},
-    "pressure": {"Pa"},
-    "power": {"W"},
-    "angle": {"rad"},
-    "length": {"m"},
-    "mass": {"kg"},
-    "acceleration": {"m/s2"},
-    "period": {"s"},
-    "time": {"s"},
-    "level": {"dB"},
-    "ratio": {"1"},
-    "phase": {"rad", "1"},  # of a mesh period, too
-    "spectrum": {"m/s2", "N", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
-}
-"""Last word of a name in the file: units that it may have."""
 
 
 def test_the_unit_in_the_file_is_one_of_what_its_name_says() -> None:

@@ -108,6 +108,38 @@ def test_contact_pressure_is_that_of_hertz(helical: Result[SolvedLoad]) -> None:
     assert told["contact_pressure_max_pa"] == pytest.approx(pressure.max(), rel=1e-6)
 
 
+def test_teeth_without_a_face_width_touch_in_one_point() -> None:
+    """The bearings of tilting shafts share the force by the lever: no width of a face is known that would shift it."""
+    at = {"input": 0.12, "output": 0.12}
+    pair = gw.build(
+        material={"steel": {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 7850.0}},
+        rotor=[
+            {"name": name, "material": "steel", "axis": [x, 0.0], "segments": [{"length": 0.2, "diameter": 0.03}]}
+            for name, x in (("input", 0.0), ("output", 0.1 / np.cos(np.radians(20.0))))
+        ],
+        bearing=[
+            {"name": f"{name} {z}", "rotor": name, "at": z, "stiffness": {"xx": 1e8, "yy": 1e8}}
+            for name in at
+            for z in (0.02, 0.18)
+        ],
+        gear=[
+            {"name": f"gear {name}", "rotor": name, "at": z, "teeth": 40, "base_radius": 0.05}
+            | {"mass": 1.0, "polar_inertia": 1e-3, "diametral_inertia": 6e-4}
+            for name, z in at.items()
+        ],
+        gear_pair=[
+            {"driver": "gear input", "driven": "gear output", "stiffness": {"model": "constant", "value": 2e8}},
+        ],
+        operation={"speed": 100.0, "torque": 50.0},
+    ).operating_point()
+    force = 50.0 / 0.05
+    shares = [np.linalg.norm(bearing["force_n"]) / force for bearing in pair.document["bearings"]]
+    np.testing.assert_allclose(shares, [0.06 / 0.16, 0.1 / 0.16] * 2, rtol=1e-4)
+    (told,) = pair.document["gear_pairs"]
+    assert told["k_h_beta"] == pytest.approx(1.0, abs=0.01)
+    assert told["line_load_n_per_m"] is told["contact_pressure_max_pa"] is told["face_width_m"] is None
+
+
 def test_arrays_have_axes_and_units(helical: Result[SolvedLoad]) -> None:
     data = helical.dataset
     expected = {

@@ -263,6 +263,12 @@ def test_a_run_without_orders_says_that_its_lines_are_means() -> None:
     shown = words(document)
     assert "highest lines" not in shown.lower()
     assert "means over the run: Hz (m/s², peak)" in shown
+    (highest,) = [
+        row[[column.heading for column in columns].index("means over the run: Hz (m/s², peak)")]
+        for section in sections(document)
+        for columns, (row,) in (table.filled() for table in section.tables if "sensor" in table.columns[0].heading)
+    ]
+    assert highest.startswith(f"{document['sensors'][0]['peaks'][0]['frequency_hz']:.0f} (")
     assert shown.count("means over its speeds") == 2
     steady = transient_document(replace(run, machine=replace(run.machine, speed_profile=None)))
     assert "kind" not in steady["sensors"][0]["peaks"][0]

@@ -1,5 +1,7 @@
 """Parts of the variance that samples explain, of functions whose parts are known in closed form."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,27 @@ def test_a_sum_is_split_by_the_variances_of_its_parts() -> None:
     assert found.explained["input 0"] == pytest.approx(9.0 / 25.0, abs=0.02)
     assert found.explained["input 1"] == pytest.approx(16.0 / 25.0, abs=0.02)
     assert found.importance() == found.explained
+
+
+@pytest.mark.parametrize("rises_on", [abs, float], ids=["both sides", "one side"])
+def test_coordinates_that_follow_each_other_share_no_part(rises_on: Callable[[float], float]) -> None:
+    """32 points of a Sobol' sequence: quarters of its coordinates coincide, and one alone makes the quantity."""
+    x = 2.0 * sobol_points(32, 19, 0) - 1.0
+    for cause in range(19):
+        noise = 0.05 * np.random.default_rng(cause).normal(size=32)
+        found = _statistics(np.array([rises_on(value) for value in x[:, cause]]) + noise, x)
+        assert max(found.explained, key=lambda name: found.explained[name]) == f"input {cause}"
+        assert found.explained[f"input {cause}"] > 0.9
+        assert sum(found.explained.values()) <= 1.0
+
+
+def test_a_part_of_few_samples_has_no_bias_and_a_small_one_stands_beside_a_large_one() -> None:
+    """10 x + 2 y with uniform x and y: 25/26 and 1/26; x + y: a half."""
+    x = sobol_points(64, 2, 1)
+    assert _statistics(x @ np.array([10.0, 2.0]), x).explained["input 1"] == pytest.approx(1.0 / 26.0, abs=0.01)
+    rng = np.random.default_rng(1)
+    halves = [_statistics(draw.sum(axis=1), draw[:, :1]).explained["input 0"] for draw in rng.random((400, 96, 2))]
+    assert np.mean(halves) == pytest.approx(0.5, abs=0.01)
 
 
 def test_chance_is_hardly_ever_told() -> None:

@@ -11,11 +11,16 @@ from sounding_gearbox import TOP
 
 import gearwhine as gw
 from gearwhine.case import CaseError
+from gearwhine.case.load import load_case
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.linear.lines_over_speed import housing_rates
 from gearwhine.coupling.sound.solution import build_radiation
 from gearwhine.numerics.distributions import Discrete
+from gearwhine.solve.housing_modes import solve_housing, with_modes_of
+from gearwhine.solve.machine import reduce_housing
+from gearwhine.variation.quantities import Wanted
+from gearwhine.variation.samples import VariedCase
 
 RPM = 30.0 / np.pi
 SPEEDS = (2500.0, 4000.0)
@@ -107,6 +112,16 @@ def test_a_gearbox_with_other_walls_has_a_radiation_of_its_own(tmp_path: Path) -
     assert found.solved.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
 
 
+def test_sound_of_thinner_air_is_as_much_lower(tmp_path: Path) -> None:
+    """The equivalent radiated power is the density of the air times what the walls do."""
+    air = {"variation.vary": {"acoustics.density": {"uniform": [0.6, 0.9]}}}
+    found = _coarse().changed(ESTIMATE).changed(STUDY | air).vary(1, folder=tmp_path / "out", workers=1).solved
+    lower = (
+        np.array(found.outcomes[0].curves["housing.sound_power_db"]) - found.nominal.curves["housing.sound_power_db"]
+    )
+    assert lower == pytest.approx(10.0 * np.log10(found.values[0, 0] / 1.204))
+
+
 def test_machines_of_python_sound_as_those_of_a_case(tmp_path: Path) -> None:
     study = _coarse().changed(ESTIMATE)
     found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1).solved
@@ -125,3 +140,23 @@ def test_machines_of_python_sound_as_those_of_a_case(tmp_path: Path) -> None:
     bare = replace(machine, housing=machine.housing_component)
     with pytest.raises(CouplingError, match="modes on a mesh"):
         gw.vary(lambda values: replace(bare, **values), law, 1, analyses=["sound"], **settings)
+
+
+def test_samples_of_other_damping_or_sensors_take_the_modes_that_are_solved() -> None:
+    study, source = _coarse(), load_case("small-gearbox", ["housing.box.mesh_size='60 mm'"]).source
+    assert study.housing is not None
+    varied = VariedCase(source, (), Wanted(("lines",)), solved=study.housing)
+    for change, of_modes in (
+        ("housing.damping_ratio=0.02", True),
+        ("housing.sensor.top.position=['20 mm', '160 mm', '-30 mm']", True),
+        ("housing.box.wall='11 mm'", False),
+    ):
+        case = source.changed_case([change])
+        known = with_modes_of(case, study.housing)
+        assert (known is not None) == of_modes
+        if known is not None:
+            assert known.record.modes is study.housing.record.modes
+        found, own = varied.machine(case).housing_component, reduce_housing(case, solve_housing(case))
+        assert found is not None
+        np.testing.assert_allclose(found.damping, own.damping, rtol=1e-12)
+        np.testing.assert_allclose(found.sensors["top"], own.sensors["top"], rtol=1e-9, atol=1e-12)

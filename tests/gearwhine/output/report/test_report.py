@@ -17,6 +17,7 @@ from gearwhine.case import Case, CaseError, dump_case, load_case
 from gearwhine.case.input_files import file_contents
 from gearwhine.output.report import Contents, report_page
 from gearwhine.output.report.freshness import mismatches
+from gearwhine.output.report.interactive import _coarse_curves, _coarse_table
 from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
@@ -588,12 +589,12 @@ CELLS = {
             "sensor": "top",
             "frequency_hz": 2566.67,
             "amplitude_m_per_s2": 1.505,
-            "level_db": 120.54,
+            "level_db": 95.54,
             "uncertainty": 0.0345,
             "name": "1× a -> b",
             "by": "housing mode 7",
         },
-        "sensor: top; line [Hz]: 2566.7; amplitude [m/s², peak]: 1.5; level [dB re 1e-6 m/s²]: 120.5; "
+        "sensor: top; line [Hz]: 2566.7; amplitude [m/s², peak]: 1.5; level [dB re 1e-6 m/s²]: 95.5; "
         "± by the modal basis [%]: 3.5; what it is: 1× a -> b; mostly by: housing mode 7",
     ),
     "SYSTEM": (
@@ -704,7 +705,30 @@ def test_modes_that_miss_their_proof_are_not_called_complete(tmp_path: Path) -> 
 
 def test_keys_that_came_or_went_are_told_too(tmp_path: Path) -> None:
     write(tmp_path, {"command": "run", "made_at": "2026-02-01T10:00:00+00:00"}, 'title = "two"\nnew = 4\n')
-    write(tmp_path / "gears", {"command": "gears", "made_at": "2026-01-01T10:00:00+00:00"}, 'title = "two"\nold = 3\n')
+    old = 'title = "two"\nold = 3\n[gone]\na = 1\nb = 2\n'
+    write(tmp_path / "gears", {"command": "gears", "made_at": "2026-01-01T10:00:00+00:00"}, old)
     (doubt,) = [line for line in read(tmp_path).text.splitlines() if "Does not fit the case any more" in line]
     assert "old was 3, is absent" in doubt
     assert "new was absent, is 4" in doubt
+    assert "[gone] is absent" in doubt
+    assert "gone.a" not in doubt
+
+
+def test_what_the_interactive_form_has_no_room_for_keeps_its_peaks_at_their_places() -> None:
+    """Of 40,000 samples and of a table of 3,000 columns and 900 rows, a peak is less than a step of them before it."""
+    x, y = 0.25 * np.arange(40_000.0), 3.0 * np.arange(900.0)
+    curves = np.full((2, x.size), 1e-3)
+    curves[1, 31_237] = 5.0
+    abscissae, coarse = _coarse_curves(x, curves)
+    step = abscissae[1] - abscissae[0]
+    assert abscissae.size < x.size
+    assert coarse[0].max() == 1e-3
+    assert 0.0 <= x[31_237] - abscissae[coarse[1].argmax()] < step
+    table = np.zeros((y.size, 3_000))
+    table[617, 2_111] = 7.0
+    columns, rows, cells = _coarse_table(x[:3_000], y, table)
+    row, column = np.unravel_index(cells.argmax(), cells.shape)
+    assert cells.shape == (rows.size, columns.size) < table.shape
+    assert 0.0 <= x[2_111] - columns[column] < columns[1] - columns[0]
+    assert 0.0 <= y[617] - rows[row] < rows[1] - rows[0]
+    assert cells[row, column] == 7.0
