@@ -122,6 +122,11 @@ class StudiedMachine:
         """Return the machine's own words."""
         return f"<Study of {self.machine!r}>"
 
+    def _repr_html_(self) -> str:
+        from gearwhine.notebook import machine_html
+
+        return machine_html(self.machine)
+
     @property
     def machine(self) -> "Machine":
         """The shafts, gears, bearings and gear pairs as one object, with all that loads it."""

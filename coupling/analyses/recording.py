@@ -34,7 +34,7 @@ from gearwhine.coupling.machine.driving_frequencies import (
     least_sampling_rate,
     varies_within,
 )
-from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile, SpeedRun
 from gearwhine.coupling.signals.decimation import Decimation
 from gearwhine.coupling.signals.decimation import decimation as coupled_decimation
 from gearwhine.coupling.signals.spectrum import (
@@ -48,7 +48,7 @@ from gearwhine.coupling.time.histories import Histories, ModalRecord
 from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.coupling.time.settings import Method, TransientSettings
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Choice, Finding, Number, Rule, attribute_findings, refuse
+from gearwhine.numerics.findings import Choice, Finding, Instance, Number, Rule, attribute_findings, refuse
 
 Arrays = Mapping[str, npt.NDArray[Any]]
 Start = Literal["equilibrium", "unloaded"]
@@ -166,6 +166,7 @@ class TransientPlan:
             refuse([Finding(_PART, "revolutions", self.revolutions, expected)], CouplingError)
         rules: dict[str, Rule] = {
             "revolutions": Number(above=0.0, at_most=1e6, optional=True),
+            "run": Instance((SpeedRun, FreeRun), "a SpeedRun or a FreeRun, or None", optional=True),
             "discard": Number(at_least=0.0, optional=True),
             "points_per_revolution": Number(at_least=200, at_most=1_000_000, whole=True),
             "tolerance": Number(above=0.0, at_most=0.1),

@@ -60,6 +60,9 @@ def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.Study) -
         TorqueOverTime((1.0, 0.0), (1.0, 2.0))
     with pytest.raises(CouplingError, match="simulate: expected how far to integrate"):
         machine.simulate()
+    with pytest.raises(CouplingError, match="run is '0 to 3000 rpm'; expected a SpeedRun or a FreeRun"):
+        machine.simulate(run="0 to 3000 rpm")
+    assert "5500" in machine._repr_html_()
     with pytest.raises(CouplingError, match="a study is of a gearwhine\\.Machine, got 'spur-pair'"):
         gw.Study("spur-pair")  # type: ignore[arg-type]
     with pytest.raises(CouplingError, match=r"a study takes gearwhine\.Settings, .* got 'a title'"):
