@@ -12,7 +12,7 @@ import gearwhine as gw
 from gearwhine.analyses.variation_result import name_problems, parts_of, wanted_of
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
-from gearwhine.case.variation import Variation
+from gearwhine.case.variation import Variation, Varied
 from gearwhine.results.check import summary
 from gearwhine.variation.inputs import Input, varied_inputs
 from gearwhine.variation.quantities import Wanted, possible_quantities
@@ -275,3 +275,9 @@ def test_check_refuses_studies_that_would_fail_later_and_names_their_keys() -> N
     ):
         with pytest.raises(CaseError, match=said):
             gw.load("helical-pair", {"variation": {"vary": varied, "limit": limit}} | change).check()
+
+
+def test_six_values_are_named_and_more_of_them_are_said_to_be_more() -> None:
+    six = [str(number) for number in (3, 5, 7, 11, 13, 17)]
+    assert Varied.model_validate({"values": [*map(int, six)]}).words == ", ".join(six)
+    assert Varied.model_validate({"values": [*map(int, six), 19]}).words == ", ".join([*six, "…"])
