@@ -2,13 +2,17 @@
 
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from idler_case import idler
 from scipy.spatial import cKDTree
 
+from gearwhine.case import load_case
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.description.gear_train import mesh_phases
 from gearwhine.coupling.gears import Gear, GearPairGeometry
@@ -113,3 +117,21 @@ def test_loops_must_fit(whole: int) -> None:
     assert len(assembled(math.pi * whole / 88.0)) == 4
     with pytest.raises(CouplingError, match=r"wheel would stand 0.300 pitches beside"):
         assembled(math.pi * (whole + 0.3) / 88.0)
+
+
+def test_back_flanks_of_a_machine_stand_at_the_other_sides_of_the_same_teeth(tmp_path: Path) -> None:
+    """Each mesh, drawn by the phase of its drive flanks and, turning the other way, by that of its back flanks."""
+    # The third axis stands at an angle, so that the second mesh is at no multiple of half a pitch.
+    aside = [f"{44.45 + 88.9 * math.cos(0.87):.6f} mm", f"{88.9 * math.sin(0.87):.6f} mm"]
+    changes = ["gear_pair.1.backlash=0.1 mm", f"rotor.third.axis={aside}"]
+    machine = coupled(load_case(str(idler(tmp_path)), changes).case)
+    contacts = {contact.name: contact for contact in machine.system.contacts}
+    phases = [contacts[mesh.name].phase for mesh in machine.meshes]
+    assert abs(2.0 * phases[1] - round(2.0 * phases[1])) > 0.01
+    for mesh, phase in zip(machine.meshes, phases, strict=True):
+        back = contacts[f"{mesh.name}, back"]
+        assert back.mesh_frequency == -contacts[mesh.name].mesh_frequency
+        drawn = pair_outlines(mesh.geometry, phase, centre_line_angle=0.3, sense=1, points=12)
+        mirrored = pair_outlines(mesh.geometry, back.phase, centre_line_angle=0.3, sense=-1, points=12)
+        for one, other in zip(drawn, mirrored, strict=True):
+            assert same_outline(one, other) < 1e-9

@@ -106,22 +106,13 @@ NAMES = {
 }
 """Last word of a name in a file of results: units that it may have."""
 
-_FEWEST = 3  # values of an array that tell it from another
-
 
 def mislabelled(variables: Mapping[str, tuple[Sequence[str], Any, Mapping[str, Any]]]) -> list[str]:
     """Variables of a file whose unit is none, or none of what the name says, or whose long name is no words."""
     wrong = []
-    known: dict[tuple[str, bytes], str] = {}
     for name, (_, values, attributes) in variables.items():
-        array = np.asarray(values)
-        if array.dtype.kind not in "fc":  # a label, a number of, a truth
+        if np.asarray(values).dtype.kind not in "fc":  # a label, a number of, a truth
             continue
-        # Places along a shaft are those of several quantities, and a round orbit is as wide as its probe moves.
-        if not name.endswith(("place", "position", "major_axis")) and np.unique(array).size >= _FEWEST:
-            other = known.setdefault((attributes.get("units", ""), array.tobytes()), name)
-            if other != name:
-                wrong.append(f"{name} has the values of {other}")
         unit, meaning = attributes.get("units", ""), attributes.get("long_name", "words")
         word = re.split("_over_|_by_", name)[0].rpartition("_")[2]
         if not _FILE_UNIT.fullmatch(unit):

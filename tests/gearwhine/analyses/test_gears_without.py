@@ -76,21 +76,20 @@ def test_no_housing_is_solved_for_the_aim_of_a_relief_that_is_left_out(monkeypat
     assert study.gears(without=("relief",)).document["pairs"][0]["optimal_tip_relief"] is None
 
 
-def test_a_housing_that_is_solved_serves_the_aims_of_reliefs(monkeypatch: pytest.MonkeyPatch) -> None:
-    sought: list[Any] = []
+def test_kept_modes_serve_the_aims_of_reliefs_that_are_sought(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pair of a given misalignment needs the housing for nothing else."""
+    kept, given = object(), list[Any]()
 
-    def seek(*_: Any, housing: Any = None, **__: Any) -> None:
-        sought.append(housing)
-        raise RuntimeError("the aims are sought")
+    def pairs_in(_case: Any, housing: Any, *_: Any) -> None:
+        given.append(housing)
+        raise RuntimeError("the pairs are solved")
 
-    changes = ["housing.box.mesh_size=60 mm", "gear_pair.0.misalignment=10 urad"]  # which needs no housing
-    study = gw.load("small-gearbox", changes)
-    solved = study.housing
-    monkeypatch.setattr(gear_pairs, "relief_aims", seek)
-    with pytest.raises(RuntimeError, match="the aims are sought"):
-        study.gears()
-    assert sought == [solved]
-    assert pair_of(study, "relief")["optimal_tip_relief"] is None
+    monkeypatch.setattr("gearwhine.solve.housing_modes.kept_housing", lambda *_: kept)
+    monkeypatch.setattr("gearwhine.solve.machine.solve_pairs", pairs_in)
+    for aims, without in (([], ()), ([], ("relief",)), ([PeakToPeak()], ())):
+        with pytest.raises(RuntimeError, match="the pairs are solved"):
+            gw.load("small-gearbox", ["gear_pair.0.misalignment=10 urad"]).gears(aims, without=without)  # type: ignore[arg-type]
+    assert given == [kept, None, None]
 
 
 def test_the_command_writes_no_pictures_where_they_are_left_out(

@@ -12,7 +12,7 @@ import pytest
 from case_housings import mesh_of
 
 import gearwhine as gw
-from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.case import Case, CaseError, UpdateParameter, bundled_files, case_document, load_case, parse_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.meshes import Mesh, write_mesh
@@ -206,3 +206,8 @@ def test_a_table_of_stiffness_is_the_one_that_was_read(tmp_path: Path) -> None:
         late.parts.gear_pairs[0]
     fresh = with_table(file)
     assert fresh.parts.gear_pairs[0].stiffness.stiffness.tolist() == [4e8, 4e8]  # type: ignore[union-attr]
+
+
+def test_a_bundled_case_comes_with_the_files_that_it_reads() -> None:
+    for name, ends in (("planetary-stage", ["toml", "step"]), ("spur-pair", ["toml"]), ("no-such-case", [])):
+        assert [file.name for file in bundled_files(name)] == [f"{name}.{end}" for end in ends]

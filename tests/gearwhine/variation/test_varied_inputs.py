@@ -12,7 +12,7 @@ import gearwhine as gw
 from gearwhine.analyses.variation_result import name_problems, parts_of, wanted_of
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
-from gearwhine.case.variation import Variation
+from gearwhine.case.variation import Variation, Varied
 from gearwhine.results.check import summary
 from gearwhine.variation.inputs import Input, varied_inputs
 from gearwhine.variation.named_quantities import analysis_of, possible_quantities
@@ -291,3 +291,9 @@ def test_the_analysis_of_a_name_with_stars_is_that_of_all_quantities_that_it_may
         "housing.level_db": None,
     }.items():
         assert analysis_of(name) == analysis, name
+
+
+def test_six_values_are_named_and_more_of_them_are_said_to_be_more() -> None:
+    six = [str(number) for number in (3, 5, 7, 11, 13, 17)]
+    assert Varied.model_validate({"values": [*map(int, six)]}).words == ", ".join(six)
+    assert Varied.model_validate({"values": [*map(int, six), 19]}).words == ", ".join([*six, "…"])
