@@ -25,7 +25,7 @@ _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9
 _FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-zµμ°%]{1,20})\s*(?:(?:\^|\*\*)\s*([+-]?[1-9]))?")
 _BRACKET = re.compile(r"/\s*\(([^()/]*)\)")  # "N*m/(rad*s)": the one place where brackets are customary
 _SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⋅": "·"})
-_RESPELT = {"°": "degree", "%": "percent"}
+_RESPELT = {"°": "degree", "%": "percent", "rev": "revolution"}
 
 
 class QuantityError(ValueError):

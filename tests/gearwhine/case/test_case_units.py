@@ -47,6 +47,7 @@ DEFINED = [
     ("3.2 kHz", units.FREQUENCY, 3200.0),
     ("658 Hz", units.FREQUENCY, 658.0),
     ("60 rpm", units.SPEED, 2 * math.pi),
+    ("60 rev/min", units.SPEED, 2 * math.pi),
     ("1 Hz", units.SPEED, 2 * math.pi),
     ("360 deg/s", units.SPEED, 2 * math.pi),
     ("7 rad/s", units.SPEED, 7.0),
