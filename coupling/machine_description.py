@@ -308,7 +308,8 @@ class Machine:
         rows = zip(self.gear_pairs, self.pair_geometries, self.pair_torques, self.mesh_speeds, strict=True)
         for pair, geometry, torque, speed in rows:
             yield from pair.findings(geometry)
-            yield from operation_findings(geometry, torque, speed)
+            if geometry.has_face:
+                yield from operation_findings(geometry, torque, speed)
 
     def _doubted_materials(self) -> Iterator[Finding]:
         """Yield unlikely materials of shafts and of the housing; a shaft without mass is a spring, and no error."""

@@ -262,8 +262,10 @@ _HANGS_OFF = 0.05
 
 
 def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
-    """Yield a shaft as thick as the gear on it, and a face that hangs off the end of its shaft."""
+    """Yield a shaft as thick as the gear on it, and a face that hangs off the end of its shaft, by a known width."""
     part, half = ("gear", gear.name), 0.5 * gear.face_width
+    if not gear.has_face:
+        return
     if gear.is_internal:
         yield from _ring_fit_findings(gear, rotor, at)
         return
@@ -434,10 +436,10 @@ def _bore_radius(rotor: Rotor, left: float, right: float) -> float:
 def placed_solids(
     shafts: Sequence[Shaft], gears: Sequence[ShaftGear], bearings: Sequence[MountedBearing]
 ) -> list[PlacedSolid]:
-    """Return the rings of all parts of a machine."""
+    """Return the rings of all parts of a machine, but of gears whose face width is not known."""
     by_name = {shaft.name: shaft for shaft in shafts}
     solids = [solid for shaft in shafts for solid in shaft_solids(shaft.rotor, shaft.axis, shaft.start)]
-    for mounted in gears:
+    for mounted in filter(lambda one: one.gear.has_face, gears):
         shaft = by_name[mounted.shaft]
         for solid in gear_solids(mounted.gear, shaft.name, shaft.axis, shaft.start + mounted.at):
             # A gear that is made from a hollow shaft has the bore of that.

@@ -26,7 +26,7 @@ _FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-zµμ°%]{1,20})(?:\s*(?:\^|\*\*)\s
 _BRACKET = re.compile(r"/\s*\(([^()/]*)\)")  # "N*m/(rad*s)": the one place where brackets are customary
 _SUPERSCRIPTS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "³": "3", "⋅": "·"})
 _A_MINUTE = ("1/min", "min^-1", "min-1")  # of a speed: revolutions, as catalogues write it
-_RESPELT = {"°": "degree", "%": "percent"}
+_RESPELT = {"°": "degree", "%": "percent", "rev": "revolution"}
 
 
 class QuantityError(ValueError):

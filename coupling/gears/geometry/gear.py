@@ -755,6 +755,6 @@ def _size_findings(gear: Gear) -> Iterator[Finding]:
         expected = f"a module of {1e3 * low:g} to {1e3 * high:g} mm, as gears have"
         yield Finding(part, "module", gear.module, expected, "warning")
     low, high = (each * gear.module for each in _PLAUSIBLE_WIDTHS)
-    if not low <= gear.face_width <= high:
+    if gear.has_face and not low <= gear.face_width <= high:
         expected = f"a face of 1 to 60 modules, {1e3 * low:.4g} to {1e3 * high:.4g} mm, as gears have"
         yield Finding(part, "face_width", gear.face_width, expected, "warning")

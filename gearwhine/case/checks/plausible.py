@@ -174,9 +174,7 @@ def _of_acoustics(acoustics: Acoustics, limit: float | None) -> Iterator[Finding
 def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterator[Finding]:
     for index, gear in enumerate(tables):
         for finding in gears[gear.name].findings:
-            if finding.attribute not in ("youngs_modulus", "density", "poisson_ratio") and not (
-                finding.attribute == "face_width" and gear.face_width is None
-            ):
+            if finding.attribute not in ("youngs_modulus", "density", "poisson_ratio"):
                 yield placed(("gear", index), finding, key_in_gear(gear, finding.attribute))
 
 
@@ -247,9 +245,7 @@ def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFindi
         wall_findings,
     )
 
-    shafts, bearings = parts.shafts, parts.unloaded_bearings
-    of_known_width = {gear.name for gear in parts.gear if gear.face_width is not None}
-    gears = [mounted for mounted in parts.shaft_gears if mounted.name in of_known_width]
+    shafts, gears, bearings = parts.shafts, parts.shaft_gears, parts.unloaded_bearings
     meshing = [frozenset((pair.driver, pair.driven)) for pair in parts.gear_pair]
     seats = {} if housing is None else {seat.name: seat.diameter for seat in housing.seat}
     yield from machine_findings(shafts, gears, bearings, meshing, seats)
@@ -338,15 +334,12 @@ def _of_pairs(parts: Parts) -> Iterator[Finding]:
     """Yield findings of gear pairs, and of their load and speed in operation."""
     from gearwhine.coupling.gears.loaded.gear_pair import operation_findings
 
-    tables = {gear.name: gear for gear in parts.gear}
     rows = zip(parts.gear_pair, parts.pair_geometries, parts.pair_torques, parts.mesh_speeds, strict=True)
     for index, (pair, geometry, torque, speed) in enumerate(rows):
         for finding in _built_pair(pair).findings(geometry):
             attribute = finding.attribute if finding.attribute in type(pair).model_fields else ""
             yield placed(("gear_pair", index), finding, (attribute,) if attribute else ())
-        if any(tables[name].face_width is None for name in (pair.driver, pair.driven)):
-            continue
-        for finding in operation_findings(geometry, torque, speed or 0.0):
+        for finding in operation_findings(geometry, torque, speed or 0.0) if geometry.has_face else ():
             yield placed(("operation",), finding)
 
 

@@ -51,6 +51,7 @@ DEFINED = [
     ("60 min⁻¹", units.SPEED, 2 * math.pi),
     ("7850 kg/m3", units.DENSITY, 7850.0),
     ("3 N/mm2", units.STRESS, 3e6),
+    ("60 rev/min", units.SPEED, 2 * math.pi),
     ("1 Hz", units.SPEED, 2 * math.pi),
     ("360 deg/s", units.SPEED, 2 * math.pi),
     ("7 rad/s", units.SPEED, 7.0),
