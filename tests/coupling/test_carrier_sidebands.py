@@ -321,7 +321,7 @@ def test_lines_are_those_of_an_integration_in_time(
         highest = max(map(abs, expected.values()))
         for at, amplitude in expected.items():
             if abs(amplitude) > 1e-2 * highest:
-                assert abs(spectrum[at] - amplitude) < (0.01 if push else 0.005) * abs(amplitude)
+                assert abs(spectrum[at] - amplitude) < 0.005 * abs(amplitude)
                 checked += 1
             elif by_line[at].is_suppressed and not push:
                 assert abs(spectrum[at]) < 1e-6 * highest
