@@ -835,7 +835,8 @@ class Machine:
             self.gear_pairs, self.train.shares_torque, self._mean_mesh_forces(points), strict=True
         ):
             if pair.misalignment is None:
-                pair = replace(pair, misalignment=0.0, **gaps.get((pair.driver, pair.driven), {}))
+                gap, changes = gaps.get((pair.driver, pair.driven), ((), ()))
+                pair = replace(pair, misalignment=0.0, face_gap=gap, gap_changes=changes)
             if shares and pair.mean_force is None:
                 pair = replace(pair, mean_force=force)
             pairs.append(pair)

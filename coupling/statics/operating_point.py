@@ -18,7 +18,6 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -250,7 +249,7 @@ class PairLoad:
     @property
     def face_gap(self) -> tuple[float, ...]:
         """Gap that mesh stiffness and motion take, see `face_gaps`."""
-        return face_gaps([self])["face_gap"]
+        return face_gaps([self])[0]
 
     @property
     def line_load(self) -> FloatArray:
@@ -354,7 +353,10 @@ class PairLoad:
         return float(self.pair.contact.stiffness_of(self.fine).mean())
 
 
-def face_gaps(loads: Sequence[PairLoad]) -> dict[str, tuple[Any, ...]]:
+FaceGaps = tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]
+
+
+def face_gaps(loads: Sequence[PairLoad]) -> FaceGaps:
     """Gap of a pair that motion takes at its loads over a turn of carriers: ``face_gap`` and ``gap_changes`` [m].
 
     The gap is the mean of `PairLoad.station_gap`; there is none where spur teeth carry evenly with all of them. Its
@@ -364,13 +366,13 @@ def face_gaps(loads: Sequence[PairLoad]) -> dict[str, tuple[Any, ...]]:
     is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
     small = max(_EVEN_GAP * float(np.mean([load.tooth_deflection for load in loads])), _LEAST_GAP)
     if is_spur and np.ptp(gaps, axis=1).max() <= small:
-        return {"face_gap": (), "gap_changes": ()}
+        return (), ()
     mean = gaps.mean(axis=0)
     if np.ptp(gaps - mean, axis=1).max() <= small:
-        return {"face_gap": tuple(mean.tolist()), "gap_changes": ()}
+        return tuple(mean.tolist()), ()
     approach = np.array([float(load.pair.contact.face_mean @ load.approach) for load in loads])
     changes = gaps - mean - (approach - approach.mean())[:, None]
-    return {"face_gap": tuple(mean.tolist()), "gap_changes": tuple(map(tuple, changes.tolist()))}
+    return tuple(mean.tolist()), tuple(map(tuple, changes.tolist()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -535,9 +537,7 @@ class OperatingPoint:
         )
 
 
-def flank_gaps(
-    points: Sequence[OperatingPoint], unaligned: Sequence[str]
-) -> dict[tuple[str, str], dict[str, tuple[Any, ...]]]:
+def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> dict[tuple[str, str], FaceGaps]:
     """Gap of the flanks over the face that motion takes at operating points, by the names of the gears.
 
     See `face_gaps`.

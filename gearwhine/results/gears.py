@@ -525,8 +525,10 @@ def _mesh(pair: Document) -> list[str]:
         words = misalignment_words(misalignment, origin, misalignment if origin == "operating point" else None)
         seats = _SEATS.get(pair.get("misalignment_seats", ""), "") if origin == "operating point" else ""
         if over_turn := pair.get("misalignment_over_turn_rad"):
-            least, greatest = (f"{_MICRO * angle:z.2f}" for angle in over_turn)
-            words += f", in the mean over a turn of the carrier; from {least} to {greatest} µrad over it"
+            words += (
+                f", in the mean over a turn of the carrier; from {_MICRO * over_turn[0]:z.2f} to "
+                f"{_MICRO * over_turn[1]:z.2f} µrad over it"
+            )
         if origin == "case":
             words += "; `gearwhine load` has the loaded teeth with the one that it finds, by the tilt of the shafts"
         lines.append(words[0].upper() + words[1:] + seats)

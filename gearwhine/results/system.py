@@ -874,16 +874,15 @@ def _peaks_of_all(responses: Sequence[Document], modes: list[Document]) -> Itera
         return f"{peak['frequency_hz']:.0f} ({significant(1e-6 * peak['amplitude'])}){where}"
 
     (force, force_unit), (acceleration, unit) = _RESPONSES
-    columns = [
+
+    def at_sensor(sensor: str) -> Column:
+        return Column(f"{sensor} {unit.split()[-1]}", lambda row: words({sensor: row[acceleration][sensor]}))
+
+    columns = (
         Column("by 1 µm of", "excitation"),
         Column(force_unit, lambda row: words(row[force], named=True)),
-        *(
-            Column(
-                f"{sensor} {unit.split()[-1]}", lambda row, sensor=sensor: words({sensor: row[acceleration][sensor]})
-            )
-            for sensor in responses[0][acceleration]
-        ),
-    ]
+        *map(at_sensor, responses[0][acceleration]),
+    )
     yield "Highest response to the error of each mesh at any frequency: Hz, and in brackets by 1 µm:"
     yield from table_of(columns, list(responses))
 
