@@ -15,7 +15,9 @@ from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.linear.mesh_harmonics import Response
+from gearwhine.coupling.load_analysis.ranking import solve_load_sensitivity
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.pins import PinSprings
 from gearwhine.coupling.statics import operating_point_search
 from gearwhine.coupling.statics.operating_point import OperatingPoint, PairLoad
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints, tilt_adjoint
@@ -238,6 +240,22 @@ def test_position_of_a_bearing_that_another_shaft_holds(made: Callable[[], Machi
     expected = difference(machine, number, moved, 2.5e-5)[:2]
     own = [pair[outcome].by_bearing_position(name) for outcome in OUTCOMES[:2]]
     np.testing.assert_allclose(own, expected, rtol=1e-6)
+
+
+def test_bearings_on_elastic_pins_have_no_derivative_by_their_place() -> None:
+    """The stiffness of the pin depends on it; a derivative without that would be off by 40 % to sixfold."""
+    machine = planets_of_a_fixed_carrier()
+    shafts = [one if one.carrier is None else replace(one, pin=PinSprings(0.03, 2e8, 2e4)) for one in machine.shafts]
+    point = replace(machine, shafts=shafts).operating_point()
+    ranked = solve_load_sensitivity(machine, point)
+    of_planets = {f"p {at} {planet}" for at in (0.01, 0.05) for planet in (1, 2, 3)}
+    every = {one.parameter for one in ranked.influences if one.kind == "bearing stiffness"}
+    assert {one.parameter for one in ranked.influences if one.kind == "bearing position"} == every - of_planets
+    assert ranked.note is not None
+    assert "'p 0.01 1', 'p 0.05 1'" in ranked.note
+    assert ranked.note.endswith("are not ranked, as they sit on elastic pins")
+    with pytest.raises(CouplingError, match="no derivative by its place on an elastic pin"):
+        pair_adjoints(point)[0]["misalignment"].by_bearing_position("p 0.01 1")
 
 
 def test_a_gear_that_is_made_from_a_hollow_shaft_leaves_room_for_a_shaft_inside() -> None:
