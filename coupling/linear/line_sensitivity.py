@@ -26,27 +26,27 @@ the housing's finite-element matrices to the loads of both fields make them
 (:func:`gearwhine.housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of
 these matrices, of which that of any other basis differs by second order.
 
-*Operating point*: where the tangent of a rolling bearing and the gap of flanks are those of the static equilibrium,
-these, and with them k, c, e and the shuttling, change with the deflections there. Their derivatives by bearing
-deflections and approaches of flanks, central differences of the laws, are the gradient of the output by the static
-coordinates; its adjoint (:mod:`gearwhine.coupling.statics.sensitivity`) gives the rest of the derivative. The energy of
-the flanks has continuous first derivatives, so e and the shuttling have a derivative by the gap at every phase, to
-which short steps converge. k is a second derivative: at each phase it has a step where a slice of the face comes into
-touch. Its mean over a mesh period is continuous, its mean over some phases is constant but for such steps. So its
-differences are taken over ten times as many phases and over many steps, and are good to a tenth of the derivative by a
-tilt.
+*Operating point*: where the tangent of a rolling bearing, the gap of flanks and a share of a torque are those of the
+static equilibrium, these, and with them k, c, e, the shuttling and friction, change with the deflections there. Their
+derivatives by bearing deflections, approaches of flanks and mesh forces, central differences of the laws, are the
+gradient of the output by the static coordinates, by which a mesh force that is a share of a torque has the derivative
+of :attr:`gearwhine.coupling.statics.operating_point.PairLoad.force_slope`; its adjoint
+(:mod:`gearwhine.coupling.statics.sensitivity`) gives the rest of the derivative. The energy of the flanks has
+continuous first derivatives, so e and the shuttling have a derivative by the gap at every phase, to which short steps
+converge. k is a second derivative: at each phase it has a step where a slice of the face comes into touch. Its mean
+over a mesh period is continuous, its mean over some phases is constant but for such steps. So its differences are taken
+over ten times as many phases and over many steps, and are good to a tenth of the derivative by a tilt.
 
 A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
 with the matrices changed to first order (:meth:`LineModel.stepped_housing`), which needs no new modes.
 
-Left out are the change of mean mesh forces where meshes share a torque, that of the ratios ζ and of dashpots, that of
-friction and of the housing's fields at other harmonics than the line's beyond its basis, and all that is not linear
-about the mean mesh: contact loss.
+Left out are the change of the ratios ζ and of dashpots, that of the housing's fields at other harmonics than the line's
+beyond its basis, and all that is not linear about the mean mesh: contact loss.
 """
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -54,15 +54,25 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
-from gearwhine.coupling.gears.contact.face_slices import FACE_STATIONS, face_stations, lagrange
-from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.gears.contact.contact_law import law_between_rims
+from gearwhine.coupling.gears.contact.face_slices import FACE_STATIONS, FaceSlices, face_stations, lagrange
+from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair, load_gear_pair
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import LineOutput, SensorAmplitude
-from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response, sum_of
+from gearwhine.coupling.linear.mesh_harmonics import (
+    HARMONICS,
+    MeshHarmonicModel,
+    Response,
+    alike_teeth,
+    friction_force,
+    mesh_under,
+    sum_of,
+)
 from gearwhine.coupling.linear.parametric_stiffness import LEAST_REACH, Cause, VaryingMesh, varying_mesh
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.machine.components import seat_in_section
-from gearwhine.coupling.machine.connectors import LinearConnector
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint
 from gearwhine.coupling.statics.sensitivity import deflection_slope, rigid_slope, section_slope
@@ -70,6 +80,7 @@ from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors.rolling_bearings import rolling_state
 
 _GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of transmission error and shuttling
+_FORCE_STEP = 1e-4  # step over the mean force, in the same differences
 _STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch
 _STIFFNESS_POINTS = 2000  # number of phases of a mesh period in the differences of k
 _BEARING_STEP = 1e-4  # step over a bearing's deflection, in the differences of its tangent
@@ -167,25 +178,33 @@ class Line(Response):
 
 
 @dataclass(frozen=True, eq=False)
-class _GapRates:
-    """Derivatives of a loaded contact by the gap of its flanks at the j stations of the face.
+class _FlankRates:
+    """Derivatives of a loaded contact by p quantities: the gap of its flanks at stations of the face, or its force.
 
     Attributes
     ----------
-    stiffness : ndarray, shape (j, 3, 3)
-        Derivative of the mesh's stiffness over mean approach, slope and tilt; of the first, k, [N/m per m].
-    error : ndarray of complex, shape (j, J)
-        Derivative of e [m per m].
-    shuttling : ndarray of complex, shape (j, harmonics, n)
-        Derivative of the moments on the coordinates.
-    varying : ndarray of complex, shape (j, 4 J + 1)
-        Derivative of the stiffness k̄ + κ by its two-sided amplitudes [N/m per m].
+    stiffness : ndarray, shape (p, 3, 3)
+        Derivative of the mesh's stiffness over mean approach, slope and tilt; of the first, k, [N/m].
+    error : ndarray of complex, shape (p, J)
+        Derivative of e [m].
+    loads : ndarray of complex, shape (p, harmonics, n)
+        Derivative of the moments of load shuttling and of friction on the coordinates.
+    varying : ndarray of complex, shape (p, 4 J + 1)
+        Derivative of the stiffness k̄ + κ by its two-sided amplitudes [N/m].
     """
 
     stiffness: FloatArray
     error: ComplexArray
-    shuttling: ComplexArray
+    loads: ComplexArray
     varying: ComplexArray
+
+
+class _Flanks(NamedTuple):
+    """Flanks under a mean force [N]: their law, and the slices of the face by which they resist tilting."""
+
+    contact: ToothContact
+    faces: FaceSlices | None
+    force: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,11 +220,14 @@ class LineModel(MeshHarmonicModel):
         Loaded pairs of the machine's meshes.
     found : tuple of bool
         Whether the gap of each pair's flanks is that of the operating point.
+    shared : tuple of bool
+        Whether the mean force of each pair is its share of a torque at the operating point.
     """
 
     point: OperatingPoint
     pairs: tuple[LoadedGearPair, ...]
     found: tuple[bool, ...]
+    shared: tuple[bool, ...]
 
     def lines(self, limit: float, count: int) -> tuple[Line, ...]:
         """Return the highest lines of each sensor, the highest of all first.
@@ -361,13 +383,16 @@ class LineModel(MeshHarmonicModel):
             total += tangent.bearings[load.name] @ self._by_bearing_deflection(line, load.name)
         for number in self.loaded:
             mesh, _ = self.machine.flanks(number)
+            pair = self.point.pairs[mesh]
+            by_approach = np.zeros(pair.pair.contact.size)
             if number in self._gap_rates:
-                contact = self.point.pairs[mesh].pair.contact
-                by_gap = self._by_gap(line, number)
+                by_gap = self._by_flanks(line, number, self._gap_rates[number])
                 # The gap is the mean approach less that at the stations.
-                by_approach = float(by_gap.sum()) * contact.face_mean
+                by_approach += float(by_gap.sum()) * pair.pair.contact.face_mean
                 by_approach[:-1] -= by_gap
-                total += tangent.pairs[mesh] @ by_approach
+            if number in self._force_rates:
+                by_approach += float(self._by_flanks(line, number, self._force_rates[number])[0]) * pair.force_slope
+            total += tangent.pairs[mesh] @ by_approach
         return total
 
     def by_bearing_stiffness(self, line: Line, bearing: str) -> float:
@@ -515,65 +540,101 @@ class LineModel(MeshHarmonicModel):
         return slice(first, first + components[place].size)
 
     @cached_property
-    def _gap_rates(self) -> dict[int, _GapRates]:
-        """Derivatives of the loaded contacts whose flanks follow the operating point."""
+    def _gap_rates(self) -> dict[int, _FlankRates]:
+        """Derivatives of the loaded contacts whose flanks follow the operating point, by the gap at the stations."""
         rates = {}
         for number in self.loaded:
             mesh, back = self.machine.flanks(number)
             law = self.machine.meshes[mesh].contact
             # Even flanks, such as those of spur gears in the middle, have no slices and no first-order change.
             if self.found[mesh] and law.faces is not None:
-                rates[number] = self._gap_rates_of(number, law, back)
+                rates[number] = self._rates_by_gap(number, law, law.faces, back)
         return rates
 
-    def _gap_rates_of(self, number: int, law: ToothContact, back: bool) -> _GapRates:
-        assert law.faces is not None
-        assert self.contact.force is not None
-        system, faces = self.machine.system, law.faces
-        rate, force = abs(system.contacts[number].mesh_frequency), float(self.contact.force[number])
+    def _rates_by_gap(self, number: int, law: ToothContact, faces: FaceSlices, back: bool) -> _FlankRates:
+        over, force = lagrange(face_stations(faces.face_width), faces.z), self._force(number)
+
+        def opened(station: int, step: float) -> _Flanks:
+            contact = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
+            contact = contact.back_flanks if back else contact
+            return _Flanks(contact, contact.faces, force)
+
         compression = force / float(self.contact.stiffness[number])
-        over = lagrange(face_stations(faces.face_width), faces.z)
-        standing, face = system.contacts[number], self.machine.face(number, law)
-        stiffness, mesh_of = np.zeros((FACE_STATIONS, 3, 3)), self.varying_harmonics.get(number)
-        varying = np.zeros((FACE_STATIONS, 1 if mesh_of is None else mesh_of.stiffness.shape[1]), dtype=np.complex128)
-        error = np.zeros((FACE_STATIONS, LEAST_REACH), dtype=np.complex128)
-        shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
+        steps = (_STIFFNESS_STEP * compression, _GAP_STEP * compression)
+        return self._rates_of(number, [partial(opened, station) for station in range(FACE_STATIONS)], steps)
 
-        def moved(station: int, step: float) -> ToothContact:
-            opened = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
-            return opened.back_flanks if back else opened
+    @cached_property
+    def _force_rates(self) -> dict[int, _FlankRates]:
+        """Derivatives of the loaded contacts that share a torque, by their mean force."""
+        return {
+            number: self._rates_by_force(number)
+            for number in self.loaded
+            if self.shared[self.machine.flanks(number)[0]]
+        }
 
-        for station in range(FACE_STATIONS):
+    def _rates_by_force(self, number: int) -> _FlankRates:
+        (place, back), force = self.machine.flanks(number), self._force(number)
+        mesh, loaded = self.machine.meshes[place], self.pairs[place]
+        speed, torque = self.machine.speeds[mesh.driver.rotor], loaded.undamped.mean_load
+
+        def pressed(step: float) -> _Flanks:
+            pair = replace(loaded.pair, mean_force=loaded.static.force + step)
+            stiff = load_gear_pair(pair, loaded.geometry, torque=torque, inertias=loaded.inertias, speed=speed)
+            contact = law_between_rims(stiff.contact, mesh.behind_rims)
+            contact = contact.back_flanks if back else contact
+            return _Flanks(contact, contact.faces or stiff.tilting_faces, force + step)
+
+        return self._rates_of(number, [pressed], (_STIFFNESS_STEP * force, _FORCE_STEP * force))
+
+    def _rates_of(
+        self, number: int, stepped: Sequence[Callable[[float], _Flanks]], steps: tuple[float, float]
+    ) -> _FlankRates:
+        """Differentiate a contact by quantities, each by its flanks at a step of it; steps of k, and of the rest."""
+        system, count = self.machine.system, len(stepped)
+        standing = system.contacts[number]
+        face, mesh_of = self.machine.face(number, standing.contact), self.varying_harmonics.get(number)
+        stiffness = np.zeros((count, 3, 3))
+        varying = np.zeros((count, 1 if mesh_of is None else mesh_of.stiffness.shape[1]), dtype=np.complex128)
+        error = np.zeros((count, LEAST_REACH), dtype=np.complex128)
+        loads = np.zeros((count, HARMONICS, system.size), dtype=np.complex128)
+        for place, at in enumerate(stepped):
             for way in (1.0, -1.0):
-                step = way * _STIFFNESS_STEP * compression
-                far = moved(station, step)
-                mean = self._mesh(number, far, _STIFFNESS_POINTS).mean_mesh_stiffness
-                stiffness[station] += face.with_contact(far).law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
-                step = way * _GAP_STEP * compression
-                near = moved(station, step)
-                pressed = self._mesh(number, near)
-                error[station] += self._error(number, pressed, LEAST_REACH) / (2.0 * step)
+                step = way * steps[0]
+                far, faces, force = at(step)
+                mean = mesh_under(far, force, _STIFFNESS_POINTS).mean_mesh_stiffness
+                tilted = face.with_contact(replace(far, faces=faces))
+                stiffness[place] += tilted.law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
+                step = way * steps[1]
+                near, _, force = at(step)
+                mesh, moved = mesh_under(near, force), self._with_flanks(number, near)
+                error[place] += self._error(number, mesh, LEAST_REACH) / (2.0 * step)
                 if mesh_of is not None:
-                    apart = varying_mesh(number, replace(standing, contact=near), 0.0, pressed, between=False)
-                    varying[station] += apart.stiffness[0] / (2.0 * step)
-                moments = face.with_contact(near).shuttling(force, standing.phase, standing.mesh_frequency)
-                for load in moments[1]:
-                    order = round(load.frequency / (2.0 * np.pi * rate))
-                    if order <= HARMONICS:
-                        shuttling[station, order - 1] += load.amplitude / (2.0 * step)
-        return _GapRates(stiffness, error, shuttling, varying)
+                    apart = varying_mesh(number, moved, 0.0, mesh, between=False)
+                    varying[place] += apart.stiffness[0] / (2.0 * step)
+                moments = self.shuttling_loads(number, face.with_contact(near), force)
+                alike = (mesh, None) if moved.sliding is None else alike_teeth(moved, force)
+                for order in range(1, HARMONICS + 1):
+                    rubbed = friction_force(moved, *alike, order)
+                    load = moments.get(order, 0.0) + (0.0 if rubbed is None else rubbed.load)
+                    loads[place, order - 1] += load / (2.0 * step)
+        return _FlankRates(stiffness, error, loads, varying)
 
-    def _by_gap(self, line: Line, number: int) -> FloatArray:
-        """Differentiate the output by a contact's gap at the stations of the face, shape (j,)."""
-        rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
+    def _with_flanks(self, number: int, law: ToothContact) -> ContactConnector:
+        """Contact of a number with another law of its flanks, by which its teeth share the friction, too."""
+        contact, mesh = self.machine.system.contacts[number], self.machine.meshes[self.machine.flanks(number)[0]]
+        if contact.sliding is None:
+            return replace(contact, contact=law)
+        friction = sliding_friction(mesh.geometry, law, mesh.friction)
+        return replace(contact, contact=law, sliding=replace(contact.sliding, friction=friction))
+
+    def _by_flanks(self, line: Line, number: int, rates: _FlankRates) -> FloatArray:
+        """Differentiate the output by the quantities of a contact's rates, shape (p,)."""
+        mesh = self.machine.flanks(number)[0]
         stiffness = float(self.contact.stiffness[number])
         rate = 2.0 * np.pi * abs(self.machine.system.contacts[number].mesh_frequency)
         face, law = self._faces[number]
         falls = 0.5 if self.pairs[mesh].pair.damping is None else 1.0
-        total, errors = (
-            np.zeros(FACE_STATIONS, dtype=np.complex128),
-            self._error(number, self.meshes[number], LEAST_REACH),
-        )
+        total, errors = np.zeros(len(rates.stiffness), dtype=np.complex128), self._errors[number]
         for w, motion, adjoint in line.fields:
             along, deflection = face.rows @ adjoint, face.rows @ motion
             # The damping is c/k times the law: c = 2 ζ sqrt(k m), or given.
@@ -586,13 +647,15 @@ class LineModel(MeshHarmonicModel):
             driven = np.outer(rates.error[:, harmonic - 1], law[0]) + rates.stiffness[:, 0] * errors[harmonic - 1]
             total += conjugate(driven) @ along
             if harmonic <= HARMONICS:
-                total += conjugate(rates.shuttling[:, harmonic - 1]) @ adjoint
+                total += conjugate(rates.loads[:, harmonic - 1]) @ adjoint
         if (varying := line.meshes.get(number)) is not None:
             total += self._by_varying_stiffness(varying, rates, face, law)
         return np.asarray(total.real)
 
-    def _by_varying_stiffness(self, line: _LineMesh, rates: _GapRates, face: MeshFace, law: FloatArray) -> ComplexArray:
-        """Differentiate the output by a contact's gap at the stations, by what it changes of κ, e and d there."""
+    def _by_varying_stiffness(
+        self, line: _LineMesh, rates: _FlankRates, face: MeshFace, law: FloatArray
+    ) -> ComplexArray:
+        """Differentiate the output by the quantities of a contact's rates, by what they change of κ, e and d there."""
         size, k = len(line.compression), law[0, 0]
         reach, places = size // 2, np.arange(size)
         # -Σ v_n dκ_{n-m} u_m, and h_n de_n at the harmonics on either side.
@@ -615,12 +678,11 @@ class LineModel(MeshHarmonicModel):
 
     @cached_property
     def _faces(self) -> dict[int, tuple[MeshFace, FloatArray]]:
-        """Face of every contact with `_gap_rates`, and its linear law, shape (3, 3)."""
-        assert self.contact.force is not None
+        """Face of every loaded contact, and its linear law, shape (3, 3)."""
         faces = {}
-        for number in self._gap_rates:
+        for number in self.loaded:
             face = self.machine.face(number, self.machine.system.contacts[number].contact)
-            law = face.law(float(self.contact.force[number]), float(self.contact.stiffness[number]))
+            law = face.law(self._force(number), float(self.contact.stiffness[number]))
             faces[number] = (face, law)
         return faces
 

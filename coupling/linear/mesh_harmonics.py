@@ -516,30 +516,14 @@ class MeshHarmonicModel:
     def friction(self, cause: Cause) -> Force | None:
         """Friction of a contact's teeth at a mesh harmonic under its mean force; None without friction."""
         number, harmonic = cause
-        contact, (mesh, friction) = self.machine.system.contacts[number], self.alike[number]
-        if friction is None or contact.sliding is None:
-            return None
-        shares = at_time_zero(polygon_phasors(mesh.phases, friction, [harmonic]), contact, harmonic)
-        return Force(contact.sliding.directions, -shares[:, 0], contact.sliding.turning)
+        return friction_force(self.machine.system.contacts[number], *self.alike[number], harmonic)
 
     @cached_property
     def alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
-        """Mesh of every loaded contact over a period with all teeth alike, and its friction force by position.
-
-        The friction is μ F (A, B) [N], shape (n, 2), see
-        `gearwhine.coupling.machine.tooth_friction.friction_of`.
-        """
-        meshes = {}
-        for number in self.loaded:
-            contact = self.machine.system.contacts[number]
-            law = contact.contact.teeth_alike
-            phases = mesh_period_phases(law, _POINTS)
-            if contact.sliding is not None:
-                steps = np.array(contact.sliding.friction.event_phases)
-                phases = np.unique(np.concatenate([phases, (steps - _BESIDE_STEP) % 1.0, (steps + _BESIDE_STEP) % 1.0]))
-            mesh = loaded_transmission_error(law, self._force(number), phases)
-            meshes[number] = (mesh, _friction(replace(contact, contact=law), mesh))
-        return meshes
+        """Mesh of every loaded contact over a period with all teeth alike, and its friction, as of `alike_teeth`."""
+        return {
+            number: alike_teeth(self.machine.system.contacts[number], self._force(number)) for number in self.loaded
+        }
 
     def varying_meshes(self, limit: float = 0.0, *, between: bool = True) -> list[VaryingMesh]:
         """Return the loaded meshes with the orders that count up to a limit [rad/s], `LEAST_REACH` harmonics at least.
@@ -606,19 +590,13 @@ class MeshHarmonicModel:
     @cached_property
     def meshes(self) -> dict[int, LoadedMesh]:
         """Mesh of every loaded contact under its mean force, over the mesh periods that differ."""
-        return {n: self._mesh(n, self.machine.system.contacts[n].contact) for n in self.loaded}
+        return {n: mesh_under(self.machine.system.contacts[n].contact, self._force(n)) for n in self.loaded}
 
     @cached_property
     def _shuttling(self) -> dict[int, dict[int, ComplexArray]]:
         """Return the moments of every loaded contact by harmonic."""
         contacts, face = self.machine.system.contacts, self.machine.face
         return {n: self.shuttling_loads(n, face(n, contacts[n].contact), self._force(n)) for n in self.loaded}
-
-    def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
-        """Mesh of the contact law ``law`` under the mean force of a contact."""
-        if law.hunting_period > 1:
-            return hunting_period_mesh(law, self._force(number))
-        return loaded_transmission_error(law, self._force(number), mesh_period_phases(law, points))
 
     def _error(self, number: int, mesh: LoadedMesh, count: int = HARMONICS) -> ComplexArray:
         """Harmonics of the transmission error of a contact at t = 0 [m], shape (count,)."""
@@ -646,6 +624,13 @@ def _merged(lines: Sequence[ResponseParts]) -> list[ResponseParts]:
     return merged
 
 
+def mesh_under(law: ToothContact, force: float, points: int = _POINTS) -> LoadedMesh:
+    """Mesh of a contact law under a force [N], over the mesh periods that differ."""
+    if law.hunting_period > 1:
+        return hunting_period_mesh(law, force)
+    return loaded_transmission_error(law, force, mesh_period_phases(law, points))
+
+
 def sum_of(loads: Mapping[str, ComplexArray]) -> ComplexArray:
     """Sum of loads or motions by mechanism, shape (n,)."""
     return np.asarray(np.sum([*loads.values()], axis=0))
@@ -669,15 +654,34 @@ def at_time_zero(
     return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * order * contact.phase))
 
 
-def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:
-    """Friction force of a contact by the phase under its mean force, shape (n, 2) [N]; None without friction."""
+def alike_teeth(contact: ContactConnector, force: float) -> tuple[LoadedMesh, FloatArray | None]:
+    """Mesh of a contact under a force [N] over a period with all teeth alike, and its friction force by the phase.
+
+    The friction is μ F (A, B) [N], shape (n, 2), see
+    `gearwhine.coupling.machine.tooth_friction.friction_of`; None without friction.
+    """
+    law = contact.contact.teeth_alike
+    phases = mesh_period_phases(law, _POINTS)
     if contact.sliding is None:
-        return None
+        return loaded_transmission_error(law, force, phases), None
     from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
 
     sliding = contact.sliding.friction
-    law, by_slices = contact.friction_law
+    steps = np.array(sliding.event_phases)
+    phases = np.unique(np.concatenate([phases, (steps - _BESIDE_STEP) % 1.0, (steps + _BESIDE_STEP) % 1.0]))
+    mesh = loaded_transmission_error(law, force, phases)
+    arguments, by_slices = replace(contact, contact=law).friction_law
     compression = np.ascontiguousarray(mesh.transmission_error)
-    shares = friction_history(mesh.phases, compression, law, by_slices, sliding.pitch_point, sliding.path_end)
+    shares = friction_history(mesh.phases, compression, arguments, by_slices, sliding.pitch_point, sliding.path_end)
     sense = np.sign(contact.sliding.nominal[1])
-    return np.asarray(sense * sliding.coefficient * mesh.force * shares)
+    return mesh, np.asarray(sense * sliding.coefficient * force * shares)
+
+
+def friction_force(
+    contact: ContactConnector, mesh: LoadedMesh, friction: FloatArray | None, harmonic: int
+) -> Force | None:
+    """Friction of a contact's teeth at a mesh harmonic, its mesh and friction those of `alike_teeth`; None without."""
+    if friction is None or contact.sliding is None:
+        return None
+    shares = at_time_zero(polygon_phasors(mesh.phases, friction, [harmonic]), contact, harmonic)
+    return Force(contact.sliding.directions, -shares[:, 0], contact.sliding.turning)

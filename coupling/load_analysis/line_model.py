@@ -218,7 +218,9 @@ def solve_lines(
     ]
     pairs = replace(about, gear_pairs=flanks).loaded_pairs(progress)
     components = about.rotor_components(progress=progress)
-    misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
+    gap_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
+    rows = zip(machine.gear_pairs, machine.train.shares_torque, strict=True)
+    is_share = tuple(shares and pair.mean_force is None for pair, shares in rows)
     limit = _TWO_PI * housing.trusted_limit_hz
     radiation = _radiation(acoustics, housing.with_modes(modes, None).displacement_field, progress)
 
@@ -226,7 +228,7 @@ def solve_lines(
         extended = housing.with_modes(modes, modal_damping(modes, matrices) if matrices.damping.nnz else None)
         part = component_of_housing(extended, participates=about.moves_housing_as_a_body, with_coarser=False)
         stands = replace(about, housing=part)
-        model = LineModel(stands.assemble(pairs, components, run), point, pairs, misalignment_is_found)
+        model = LineModel(stands.assemble(pairs, components, run), point, pairs, gap_is_found, is_share)
         lines = model.lines(limit, count)
         field = extended.displacement_field
         return SolvedLines(model, lines, _sound(acoustics, field, model, radiation, heard, progress), extended)

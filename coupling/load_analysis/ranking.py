@@ -329,7 +329,9 @@ def solve_load_sensitivity(
     adjoints, influences = ranking.adjoints, list[Influence]()
     for number, bearing in enumerate(point.bearings):
         progress("lines at a step of each bearing", number / len(point.bearings))
-        influences += [ranking.by_bearing_stiffness(bearing.name), ranking.by_bearing_position(bearing.name)]
+        influences.append(ranking.by_bearing_stiffness(bearing.name))
+        if not point.is_on_elastic_pin(bearing):
+            influences.append(ranking.by_bearing_position(bearing.name))
     density, line_density, sound_density = None, None, None
     if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
@@ -338,8 +340,8 @@ def solve_load_sensitivity(
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
-    if housing is not None:
-        note = "; ".join(filter(None, (note, _note_of_carriers(machine)))) or None
+    of_carriers = None if housing is None else _note_of_carriers(machine)
+    note = "; ".join(filter(None, (note, of_carriers, _note_of_pins(point)))) or None
     return LoadSensitivity(
         tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
     )
@@ -384,6 +386,12 @@ def _note_of_carriers(machine: Machine) -> str | None:
     verb = "s" if len(carriers) == 1 else ""
     plural = "" if len(carriers) == 1 else "s"
     return f"lines of sensors and sound are not ranked, as the carrier{plural} {names} turn{verb}"
+
+
+def _note_of_pins(point: OperatingPoint) -> str | None:
+    """Say that positions of bearings are not ranked, and why, where they sit on elastic pins."""
+    names = [repr(load.name) for load in point.bearings if point.is_on_elastic_pin(load)]
+    return f"positions of bearings {', '.join(names)} are not ranked, as they sit on elastic pins" if names else None
 
 
 def _walls(housing: Housing, machine: Machine) -> tuple[tuple[HousingChange, ...], str | None]:

@@ -495,6 +495,10 @@ class OperatingPoint:
         name = self.shaft(load.mounted.rotor).part.carrier or load.mounted.seat
         return name if any(shaft.name == name for shaft in self.shafts) else None
 
+    def is_on_elastic_pin(self, load: BearingLoad) -> bool:
+        """Whether a bearing of a planet sits on an elastic pin."""
+        return self.shaft(load.mounted.rotor).part.pin is not None
+
     def gear_forces(self, number: int) -> tuple[FloatArray, FloatArray]:
         """Return the forces of a pair's flanks on the shafts of driver and driven gear, (6,) each.
 

@@ -31,6 +31,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.face_load import FaceContact, FaceLoad, face_load_factor
 from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
@@ -76,8 +77,18 @@ class Adjoint:
         return -float(self.deflection(bearing) @ self.point.bearing(bearing).force)
 
     def by_bearing_position(self, bearing: str) -> float:
-        """Differentiate the outcome by a bearing's position on its shaft, towards +z [outcome/m]."""
+        """Differentiate the outcome by a bearing's position on its shaft, towards +z [outcome/m].
+
+        Raises
+        ------
+        CouplingError
+            For a bearing on an elastic pin, whose stiffness depends on its place.
+        """
         load = self.point.bearing(bearing)
+        if self.point.is_on_elastic_pin(load):
+            raise CouplingError(
+                f"bearing {bearing!r}: no derivative by its place on an elastic pin; expected a rigid one"
+            )
         moved = _deflection_slope(self.point, load, self._shaft, self.housing)
         return -float(moved @ load.force + self.force(bearing) @ deflection_slope(self.point, load))
 

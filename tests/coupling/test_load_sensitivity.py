@@ -13,12 +13,14 @@ from gearwhine.coupling import CouplingError, Machine, MountedBearing, Shaft, Sh
 from gearwhine.coupling.gears import ConstantStiffness
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
-from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.linear.mesh_harmonics import Response
+from gearwhine.coupling.load_analysis.ranking import solve_load_sensitivity
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.pins import PinSprings
 from gearwhine.coupling.statics import operating_point_search
 from gearwhine.coupling.statics.operating_point import OperatingPoint, PairLoad
-from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
+from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints, tilt_adjoint
 from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Pedestal, Rotor, Segment
@@ -127,7 +129,12 @@ def two_paths() -> Machine:
         ShaftGear(toothed("second wheel", TEETH[1], -1.0), "out", 0.13),
     ]
     pairs = [GearPair("pinion", "wheel", "iso6336"), GearPair("second pinion", "second wheel", "elastic-ring")]
-    return in_housing(replace(one, gears=[*one.gears, *second], gear_pairs=pairs))
+    return in_housing(replace(one, gears=[*one.gears, *second], gear_pairs=pairs), ["roof", "side"])
+
+
+def rubbing_pair() -> Machine:
+    """A helical pair with friction between its teeth, in a housing."""
+    return in_housing(one_stage(gear_pairs=[GearPair("pinion", "wheel", friction=0.08)]), ["roof", "side"])
 
 
 def planets_of_a_fixed_carrier() -> Machine:
@@ -235,6 +242,22 @@ def test_position_of_a_bearing_that_another_shaft_holds(made: Callable[[], Machi
     np.testing.assert_allclose(own, expected, rtol=1e-6)
 
 
+def test_bearings_on_elastic_pins_have_no_derivative_by_their_place() -> None:
+    """The stiffness of the pin depends on it; a derivative without that would be off by 40 % to sixfold."""
+    machine = planets_of_a_fixed_carrier()
+    shafts = [one if one.carrier is None else replace(one, pin=PinSprings(0.03, 2e8, 2e4)) for one in machine.shafts]
+    point = replace(machine, shafts=shafts).operating_point()
+    ranked = solve_load_sensitivity(machine, point)
+    of_planets = {f"p {at} {planet}" for at in (0.01, 0.05) for planet in (1, 2, 3)}
+    every = {one.parameter for one in ranked.influences if one.kind == "bearing stiffness"}
+    assert {one.parameter for one in ranked.influences if one.kind == "bearing position"} == every - of_planets
+    assert ranked.note is not None
+    assert "'p 0.01 1', 'p 0.05 1'" in ranked.note
+    assert ranked.note.endswith("are not ranked, as they sit on elastic pins")
+    with pytest.raises(CouplingError, match="no derivative by its place on an elastic pin"):
+        pair_adjoints(point)[0]["misalignment"].by_bearing_position("p 0.01 1")
+
+
 def test_a_gear_that_is_made_from_a_hollow_shaft_leaves_room_for_a_shaft_inside() -> None:
     machine = on_an_inner_shaft()
     thick = Rotor("inner", [Segment(0.25, 0.0262, 0.0, STEEL)])
@@ -252,7 +275,9 @@ def test_lines_by_the_position_of_a_bearing_that_another_shaft_holds() -> None:
     number = [one.bearing.name for one in about.bearings].index("out 0.01")
 
     def model(size: float = 0.0) -> LineModel:
-        return LineModel(with_moved(about, number, size).assemble(pairs, components), point, pairs, (True, True))
+        return LineModel(
+            with_moved(about, number, size).assemble(pairs, components), point, pairs, (True, True), (False, False)
+        )
 
     standing, step = model(), 1e-7
     load = standing.machine.rows("in", components[0].rotation(0.07))
@@ -267,10 +292,53 @@ def test_lines_by_the_position_of_a_bearing_that_another_shaft_holds() -> None:
         assert own == pytest.approx((after - before) / (2.0 * step), rel=1e-5)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("made", [two_paths, rubbing_pair])
+def test_lines_of_flanks_that_share_a_torque_or_rub(made: Callable[[], Machine]) -> None:
+    """Lines by a bearing's stiffness, in the equilibrium and in motion, against machines that are assembled anew.
+
+    To 2e-3 of line and derivative together. With mesh forces that keep their shares, or friction that stays, single
+    lines are 0.02 to 0.08 off.
+    """
+    described = made()
+    shared = described.train.shares_torque
+    assert all(shared) == (made is two_paths)
+    first = described.at_operating_point()
+    components, name = first.rotor_components(), described.bearings[-1].bearing.name
+
+    def model(size: float = 0.0) -> LineModel:
+        *others, last = described.bearings
+        stiff = (1.0 + size) * last.bearing.spatial_stiffness
+        machine = replace(
+            described, bearings=[*others, replace(last, bearing=linear_bearing(name, last.bearing.at, stiff))]
+        )
+        point = machine.operating_point()
+        about = machine.at_operating_point(point)
+        pairs = about.loaded_pairs()
+        return LineModel(about.assemble(pairs, components), point, pairs, (True,) * len(pairs), shared)
+
+    def amplitudes(lines: Sequence[Line]) -> FloatArray:
+        assert len(lines) == 12
+        return np.array([one.value for one in sorted(lines, key=lambda one: (one.output.sensor, one.frequency))])
+
+    standing, limit, step = model(), 4e4 * 2.0 * np.pi, 1e-3
+    lines = sorted(standing.lines(limit, 6), key=lambda one: (one.output.sensor, one.frequency))
+    own = np.array(
+        [
+            adjoint(standing.point, standing.by_static(one)).by_bearing_stiffness(name)
+            + standing.by_bearing_stiffness(one, name)
+            for one in lines
+        ]
+    )
+    more, less = (amplitudes(model(size).lines(limit, 6)) for size in (step, -step))
+    expected, level = (more - less) / (2.0 * step), amplitudes(lines)
+    assert (np.abs(own - expected) < 2e-3 * (level + np.abs(expected))).all()
+
+
 def test_lines_of_a_machine_whose_planets_turn_have_no_gradient() -> None:
     machine = in_housing(on_a_carrier(), ["roof"])
     point = machine.operating_point()
-    model = LineModel(machine.assembled, point, (), (False,) * 4)
+    model = LineModel(machine.assembled, point, (), (False,) * 4, (False,) * 4)
     output = SensorAmplitude("roof", model.machine.sensor_rows["roof"], model.housing)
     still = Response(100.0, (), np.zeros(model.machine.system.size, dtype=np.complex128))
     with pytest.raises(CouplingError, match="lines of a machine whose planets turn with their carrier"):

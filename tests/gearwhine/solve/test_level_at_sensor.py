@@ -82,7 +82,7 @@ def gearbox(housing: HousingModes, relief: TipRelief | None, *more: str) -> Gear
     case = helical_case(relief, *more)
     pairs = solve_gears(case.parts)
     point = describe_machine(case, reduce_housing(case, housing)).operating_point()
-    return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
+    return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,), (False,)))
 
 
 @pytest.fixture(scope="module")

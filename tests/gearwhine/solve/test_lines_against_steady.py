@@ -77,7 +77,7 @@ def test_lines_are_those_of_the_motion_where_the_mesh_hardly_varies(case: Case) 
     assert force.min() > 0.0
     first, mean, varying = 2.0 * np.pi / response.period, float(force.mean()), float(np.abs(force - force.mean()).max())
 
-    model = LineModel(machine, point, pairs, (False,))
+    model = LineModel(machine, point, pairs, (False,), (False,))
     phases = np.arange(SAMPLES) / SAMPLES
     compression, tangent = static_by_the_motions_law(drive.contact, mean, phases)
     of_slices = loaded_transmission_error(drive.contact, mean, phases).transmission_error
