@@ -12,6 +12,7 @@ from reducer_case import reducer
 from gearwhine.case import load_case
 from gearwhine.coupling.linear.carriers.carrier_sidebands import Sideband
 from gearwhine.coupling.linear.mesh_harmonics import causes_in_words
+from gearwhine.coupling.periodic.superposition import _name_of
 from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.figures.machine.system import _place_beside_harmonic
 from tests.machines.turning_set import TEETH, turning_machine
@@ -75,3 +76,10 @@ def test_of_two_meshes_the_much_nearer_one_is_named_and_both_where_neither_is(tm
     orders = [105.01, 19.0 * STAGE - 0.01, 0.5 * (105.0 + 19.0 * STAGE), 19.0 * 21.0]
     names = [one.name for one in line_names(machine, [50.0 * order for order in orders], 15.0)]
     assert names == ["5× a -> b", "19× c -> d", "5× a -> b, 19× c -> d", "19× a -> b, 72× c -> d"]
+
+
+def test_excitations_of_a_motion_are_named_by_the_part_that_turns_or_their_frequency() -> None:
+    parts = [SimpleNamespace(name=name) for name in ("input", "held", "output")]
+    system: Any = SimpleNamespace(contacts=[], components=parts, speeds=[-10.0, 0.0, 25.0])
+    group: Any = SimpleNamespace(meshes=(), turn=0.0, frequencies=(10.0, 25.0, 80.0 * np.pi))
+    assert _name_of(system, group) == "rotation of input, rotation of output, load at 40 Hz"

@@ -4,7 +4,8 @@ Sentences and tables are composed from the document by hand, for the terminal an
 test makes, its texts are composed here and read back: a factor, a unit or a sign that is wrong in one of them leaves a
 number which the document does not have. The other way round, a warning says the figures that belong to it. A figure
 that a test draws is looked at in the same way: the highest point of a curve, or its swing, is that of an array of the
-results file in the unit of the axis, and no curve leaves its axes.
+results file in the unit of the axis, and no curve leaves its axes. No column of a table shows what another does, and
+the variables of every file have units that fit their names, see ``shown_units.mislabelled``.
 """
 
 import re

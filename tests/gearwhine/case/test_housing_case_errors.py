@@ -58,7 +58,7 @@ ONE_WRONG = {
     "sensor outside": ("housing.sensor.0.position.1", "300 mm", "housing.sensor[0].position", "140 mm outside"),
     "sensor in cavity": ("housing.sensor.0.position.1", "80 mm", "housing.sensor[0].position", "from the front face"),
     "no geometry": ("housing.box", GONE, "housing", "exactly one of [housing.box], [housing.cad]"),
-    "how many modes": ("housing.modes", 5, "housing", "exactly one of 'frequency_limit'"),
+    "how many modes": ("housing.modes", 5, "housing", "'modes' (such as 25), got ['frequency_limit', 'modes']"),
 }
 
 SEVERAL_WRONG: dict[str, tuple[list[tuple[str, Any]], str, str]] = {

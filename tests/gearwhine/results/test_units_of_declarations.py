@@ -12,11 +12,13 @@ from types import ModuleType
 from typing import NamedTuple
 
 import pytest
-from shown_units import NAMES, SHOWN, dimension_of
+from numbers_of_texts import repeated_columns
+from shown_units import NAMES, SHOWN, dimension_of, mislabelled
 
 import gearwhine.results as results
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.output.quantity import factor_of, unit_of
+from gearwhine.output.sections import Column, Section, Table
 from gearwhine.results.line_columns import MECHANISMS as WORDS
 
 _WITHIN = {"harmonics", "mean", "maximum", "peak", "peak_of_tooth_pair"}
@@ -126,3 +128,23 @@ def test_every_mechanism_has_words_of_its_own() -> None:
     assert len(set(WORDS.values())) == len(WORDS)
     for mechanism, words in WORDS.items():
         assert mechanism.split("_")[0] in words
+
+
+@pytest.mark.parametrize(
+    ("unit", "meaning", "wrong"),
+    [
+        ("N", "mean force", []),
+        ("m", "mean force", ["bearing_force is in 'm'"]),
+        ("mean force", "N", ["bearing_force has the unit 'mean force'", "bearing_force means 'N'"]),
+    ],
+)
+def test_a_variable_whose_label_does_not_fit_its_name_is_found(unit: str, meaning: str, wrong: list[str]) -> None:
+    labels = {"units": unit, "long_name": meaning}
+    variables = {"bearing_force": (("bearing",), [1.0, 2.0], labels), "bearing": (("bearing",), ["a", "b"], {})}
+    assert mislabelled(variables) == wrong
+
+
+def test_a_column_that_shows_what_another_does_is_found() -> None:
+    mean, peak, same = Column("mean [N]", "mean_n"), Column("peak [N]", "peak_n"), Column("least [N]", "mean_n")
+    inner = Section("", (Table((mean, peak, same), ()),))
+    assert repeated_columns([Section("", (Table((mean, peak), ()),), inner=(inner,))]) == ["mean [N]", "least [N]"]

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numbers_of_texts import foreign_numbers
 
 from gearwhine.case import load_case
 from gearwhine.housing import HousingError, HousingModes
@@ -66,7 +67,9 @@ def test_the_twin_is_paired_by_shape(solved: HousingModes, twin: tuple[MeasuredM
 def test_the_screen_says_what_is_missing(
     solved: HousingModes, twin: tuple[MeasuredModes, np.ndarray], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shown_by(sections)(finite(comparison_document(pair_modes(solved, *twin), solved)))
+    document = finite(comparison_document(pair_modes(solved, *twin), solved))
+    assert foreign_numbers(document, sections(document)) == []
+    shown_by(sections)(document)
     out = capsys.readouterr().out
     assert "confidence" in out
     assert "Measured mode 2 (" in out
@@ -91,6 +94,11 @@ def test_measured_frequencies_alone_are_paired_as_the_case_says(solved: HousingM
     assert comparison.gap is not None
     assert comparison.pairs == compare_measured(CASE.measured, solved).comparison.pairs  # the case asks for dominance
     assert pair_modes(solved, given).pairing == "nearest"
+    document = finite(comparison_document(comparison, solved))
+    assert foreign_numbers(document, sections(document)) == []
+    counted, highest = document["model_modes"], float(given.frequencies.max()) / (2.0 * np.pi)
+    assert counted["below_hz"] >= min(highest, solved.trusted_limit_hz)
+    assert counted["count"] == np.count_nonzero(solved.modes.frequencies_hz < counted["below_hz"])
 
 
 @pytest.mark.parametrize("pairing", ["order", "nearest", "dominance"])
