@@ -1,8 +1,7 @@
 """Gradients of the sound power of mesh harmonics, against that of machines whose housing is moved and solved anew."""
 
-from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load
 from gearwhine.case.model import housing_table
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
-from gearwhine.coupling.load_analysis import ranking
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.load_analysis.influences import LineChange
 from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
@@ -210,20 +208,9 @@ SOUNDING = {
 
 
 @pytest.fixture(scope="module")
-def study() -> Iterator[gw.CaseStudy]:
-    """The gearbox with a quick sound, whose housing is solved once, and so are the lines that are ranked."""
-    study, found = gw.load("small-gearbox", SOUNDING), list[SolvedLines | None]()
-
-    def once(machine: Machine, point: OperatingPoint, housing: Any, *how: Any) -> SolvedLines | None:
-        if housing is not study.housing:
-            return solve_lines(machine, point, housing, *how)
-        if not found:
-            found.append(solve_lines(machine, point, housing, *how))
-        return found[0]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ranking, "solve_lines", once)
-        yield study
+def study(lines_solved_once: None) -> gw.CaseStudy:
+    """The gearbox with a quick sound, whose housing is solved once."""
+    return gw.load("small-gearbox", SOUNDING)
 
 
 @pytest.mark.slow
