@@ -51,7 +51,7 @@ from gearwhine.coupling.machine.connectors import (
     turned,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
-from gearwhine.coupling.machine.coupled_system import CoupledSystem, embed
+from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from gearwhine.coupling.machine.frames import Frames, in_frame, stiffness_in_frame
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
@@ -612,12 +612,15 @@ class MeanFaces:
     system : CoupledSystem
         System without the faces, whose mean load and stiffness they have.
     states : dict of int to tuple
+    shuttling : dict of int to list of HarmonicLoad
+        Moments of load shuttling on the loaded flanks, whose amplitudes are those at any speed.
     are_kept : bool
         Whether they stay under another mean load and stiffness of the same flanks.
     """
 
     system: CoupledSystem
     states: dict[int, _FaceState]
+    shuttling: dict[int, list[HarmonicLoad]]
     are_kept: bool = False
 
     def hold_in(self, system: CoupledSystem) -> bool:
@@ -655,16 +658,22 @@ def _with_faces(
     """
     mean = known if known is not None and known.hold_in(system) else None
     if mean is None:
-        mean = MeanFaces(system, _face_states(system, coordinates, flanks, turning))
+        states = _face_states(system, coordinates, flanks, turning)
+        shuttling: dict[int, list[HarmonicLoad]] = {}
+        for number, (face, _, under, _) in states.items():
+            if under.force > 0.0:
+                contact = system.contacts[number]
+                shuttling[number] = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+        mean = MeanFaces(system, states, shuttling)
     if not mean.states:
         return system, mean
     harmonics = list(system.harmonic_loads)
-    for number, (face, _, under, _) in mean.states.items():
-        if under.force > 0.0:
-            contact = system.contacts[number]
-            frame = mesh_frame(coordinates, flanks[number][0])
-            shuttling = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
-            harmonics += [part for load in shuttling for part in frames.harmonics(load, frame)]
+    for number, loads in mean.shuttling.items():
+        frame = mesh_frame(coordinates, flanks[number][0])
+        before, present = (abs(one.contacts[number].mesh_frequency) for one in (mean.system, system))
+        for load in loads:
+            order = round(load.frequency / (2.0 * np.pi * before))
+            harmonics += frames.harmonics(replace(load, frequency=2.0 * np.pi * order * present), frame)
     return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
 
 

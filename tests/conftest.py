@@ -405,6 +405,38 @@ def periodic_motions_found_once(kept: Kept) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="module")
+def reliefs_found_once(kept: Kept) -> Iterator[None]:
+    """Search the best relief of a pair of gears once for the cases of a run that differ in the rest."""
+    from gearwhine.coupling.analyses import gear_pairs
+    from gearwhine.coupling.gears.loaded import optimal_relief
+
+    search = gear_pairs.optimal_tip_relief
+
+    def found(*of: Any, tried: Any, **how: Any) -> Any:
+        key = sha256(pickle.dumps((of, how, optimal_relief._GRID, optimal_relief._MOST_REFINED))).hexdigest()
+        tried(0.0)  # as a search begins
+        return kept.once(f"relief-{key}", lambda: search(*of, tried=tried, **how))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gear_pairs, "optimal_tip_relief", found)
+        yield
+
+
+@pytest.fixture
+def few_reliefs_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Try so few reliefs that the best of them says nothing: for tests that only have it searched."""
+    from gearwhine.coupling.gears.loaded import optimal_relief
+
+    monkeypatch.setattr(optimal_relief, "_GRID", 3)
+    monkeypatch.setattr(optimal_relief, "_MOST_REFINED", 10)
+
+
+@pytest.fixture(scope="module")
+def solved_once(modes_solved_once: None, periodic_motions_found_once: None, reliefs_found_once: None) -> None:
+    """Solve no housing, motion or relief of a case again that another test of this run has solved."""
+
+
 @pytest.fixture(scope="session")
 def block_of() -> BlockOf:
     """``block_of(kind, size, cells, bend)``: a block from the origin, of one kind of solid element.

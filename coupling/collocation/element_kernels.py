@@ -29,7 +29,7 @@ from gearwhine.coupling.collocation.arrays import (
 from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, evaluate_contact
 from gearwhine.coupling.connector_forces.dense_kernels import SUMS, add_rows, solve_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
-from gearwhine.numerics.compiled import uncounted
+from gearwhine.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -42,7 +42,7 @@ _OVER: FloatArray = 1.0 / np.arange(1.0, _MOMENTS + _TERMS)
 """1 / 1, 1 / 2, ...: tabulated, as a division takes as long as the rest of a term."""
 
 
-@uncounted()
+@inner()
 def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
     """∫₀¹ e^{z(1-u)} uᵏ du for k = 0 ... count - 1, e^z being known."""
     if z.real * z.real + z.imag * z.imag < _SERIES_WITHIN**2:
@@ -63,7 +63,7 @@ def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
             out[k] = (k * out[k - 1] - 1.0) * inverse
 
 
-@uncounted()
+@inner()
 def end_matrices(
     reference: Reference, h: float, part: float, decay: FloatArray, source: FloatArray, integral: ComplexArray
 ) -> None:
@@ -84,7 +84,7 @@ def end_matrices(
                 source[j * c + b, m], source[j * c + b, count + m] = sent.real, sent.imag
 
 
-@uncounted()
+@inner()
 def advance_to(
     reference: Reference,
     h: float,
@@ -117,7 +117,7 @@ def advance_to(
         end[m], end[count + m] = total.real, total.imag
 
 
-@uncounted(fastmath={"contract"})
+@inner(fastmath={"contract"})
 def carry_on(
     reference: Reference,
     h: float,
@@ -173,7 +173,7 @@ def carry_on(
             end[i] += term[i]
 
 
-@uncounted()
+@inner()
 def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexArray, values: ComplexArray) -> None:
     """Fill in the matrices of an element of a slot's size."""
     c, h, count = reference.stiffness.size, steps.size[slot], reference.eigenvalue.size
@@ -237,13 +237,13 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
 _NEWTON_STEPS = 40
 
 
-@uncounted(forceinline=True)
+@inner(forceinline=True)
 def law(contacts: Contacts, a: int, time: float, delta: float, rate: float, laws: FloatArray, row: int) -> None:
     """Evaluate the law of one contact into a row."""
     evaluate_contact(contacts, a, time, delta, rate, laws, row)
 
 
-@uncounted(fastmath=SUMS)
+@inner(fastmath=SUMS)
 def product(row: FloatArray, a: int, z: FloatArray) -> float:
     """Product of a row of a matrix with the amplitudes."""
     total = 0.0
@@ -252,7 +252,7 @@ def product(row: FloatArray, a: int, z: FloatArray) -> float:
     return total
 
 
-@uncounted(fastmath={"contract"})
+@inner(fastmath={"contract"})
 def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray) -> None:
     """Amplitudes at the end or a place from those at the start and the excess forces."""
     count = decay.shape[1]
@@ -264,7 +264,7 @@ def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatA
     add_rows(source, excess, -1.0, end)
 
 
-@uncounted(forceinline=True)
+@inner(forceinline=True)
 def interpolated(values: FloatArray, a: int, u: float) -> float:
     """Evaluate at u the polynomial through values (ORDER + 2, c) at the Gauss points."""
     above, below = 0.0, 0.0
@@ -278,7 +278,7 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
     return above / below
 
 
-@uncounted(forceinline=True)
+@inner(forceinline=True)
 def solve_element(
     reference: Reference, contacts: Contacts, steps: Steps, slot: int, time: float, z: FloatArray, work: Work
 ) -> bool:
@@ -343,7 +343,7 @@ def solve_element(
     return solved or best <= 1e-9 * scale
 
 
-@uncounted(fastmath=SUMS, forceinline=True)
+@inner(fastmath=SUMS, forceinline=True)
 def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
     """Squares of the amplitude error at the end, by the defect of the excess polynomial, and of the amplitudes.
 
@@ -386,7 +386,7 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
     work.measure[0], work.measure[1] = wrong, size
 
 
-@uncounted()
+@inner()
 def held_energy(laws: FloatArray, first: int, count: int) -> float:
     """Energy stored in the teeth [J], summed over rows of the laws."""
     total = 0.0

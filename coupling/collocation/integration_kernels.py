@@ -85,7 +85,7 @@ _BEYOND = 0.06  # extension of an element's motion past its end, over its size
 NO_BALANCE, NO_ROOM = 1, 2
 
 
-@uncounted()
+@inner()
 def nearest_step_size(reference: Reference, steps: Steps, length: float, work: Work) -> int:
     """Slot of the size nearest to a length on the step-size ladder, with its matrices filled in."""
     first, last = steps.ladder[0], steps.size.size - 1
@@ -96,7 +96,7 @@ def nearest_step_size(reference: Reference, steps: Steps, length: float, work: W
     return slot
 
 
-@uncounted(forceinline=True)
+@inner(forceinline=True)
 def write_element(
     reference: Reference,
     contacts: Contacts,
@@ -299,7 +299,7 @@ def forces_at(
             out[i, a] = work.laws[row, FORCE]
 
 
-@uncounted()
+@inner()
 def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
     """Quadrature weights [s] at the places (s,) over an element; Gauss weights for an element of full size."""
     part = trace.part[element]
@@ -315,7 +315,7 @@ def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
         out[j] = total
 
 
-@uncounted()
+@inner()
 def amplitudes_of(
     steps: Steps, trace: Trace, excess: FloatArray, free: FreeMotion, first: int, room: PowersRoom
 ) -> int:
@@ -349,7 +349,7 @@ def loss_and_squares(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
     return power, squares
 
 
-@uncounted()
+@inner()
 def add_batch(powers: Powers, room: PowersRoom, count: int, totals: FloatArray) -> None:
     """Add the powers of a batch with known amplitudes and rates, and keep the largest kinetic energy."""
     for number in range(count):

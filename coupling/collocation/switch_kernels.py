@@ -24,7 +24,7 @@ from gearwhine.coupling.collocation.element_kernels import end_matrices, interpo
 from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
 from gearwhine.coupling.connector_forces.dense_kernels import SUMS, solve_part_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
-from gearwhine.numerics.compiled import uncounted
+from gearwhine.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,7 +34,7 @@ _ALMOST = 1.0 - 1e-14
 _PAIR, _HELD, _FADING, _FULL = 4, 1, 2, 3
 
 
-@uncounted()
+@inner()
 def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
     """Smooth branch of a contact law: the number of touching pairs and the state of the damping."""
     touching = int(laws[row, TOUCHING])
@@ -47,7 +47,7 @@ def branch(reference: Reference, a: int, laws: FloatArray, row: int) -> int:
     return _PAIR * touching + _FULL
 
 
-@uncounted()
+@inner()
 def by_pairs(old: int, new: int) -> bool:
     """Whether the first change from one branch to another is that a pair begins or ceases to touch."""
     if old // _PAIR == new // _PAIR:
@@ -55,7 +55,7 @@ def by_pairs(old: int, new: int) -> bool:
     return old == 0 or old % _PAIR == new % _PAIR or (new == 0 and old % _PAIR == _FADING)
 
 
-@uncounted()
+@inner()
 def next_part(x: float, other: float, third: float, f: float, f_other: float, f_third: float, near: float) -> float:
     """Next trial of a root search, as a fraction of the way from one bound to the other.
 
@@ -72,7 +72,7 @@ def next_part(x: float, other: float, third: float, f: float, f_other: float, f_
     return float(min(max(part, least), 1.0 - least))
 
 
-@uncounted()
+@inner()
 def has_left(old: int, reference: Reference, contacts: Contacts, a: int, at: float, u: float, work: Work) -> bool:
     """Whether a contact's law at the place u and the time ``at`` is on another branch than ``old``."""
     trial = work.laws.shape[0] - 1
@@ -80,7 +80,7 @@ def has_left(old: int, reference: Reference, contacts: Contacts, a: int, at: flo
     return branch(reference, a, work.laws, trial) != old
 
 
-@uncounted()
+@inner()
 def touching_changes(
     contacts: Contacts, a: int, time: float, h: float, stop: float, x: float, other: float, rank: int, near: float,
     work: Work,
@@ -107,7 +107,7 @@ def touching_changes(
     return (other, x) if swapped else (x, other)
 
 
-@uncounted()
+@inner()
 def placed(
     reference: Reference,
     contacts: Contacts,
@@ -147,7 +147,7 @@ def placed(
     return after
 
 
-@uncounted(forceinline=True)
+@inner(forceinline=True)
 def first_switch(
     reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
 ) -> tuple[float, int]:
@@ -193,7 +193,7 @@ def first_switch(
 _UNROLLED = 5  # number of forces in :func:`apply_sensitivity`: those of one contact in elements of order 5
 
 
-@uncounted()
+@inner()
 def force_sensitivity(steps: Steps, slot: int, work: Work) -> int:
     """Sensitivity of the forces to the amplitudes at the start, S f; returns the number of rows ``work.active``."""
     n, size = work.excess.size, steps.free_response.shape[2]
@@ -224,7 +224,7 @@ def force_sensitivity(steps: Steps, slot: int, work: Work) -> int:
     return active
 
 
-@uncounted()
+@inner()
 def gather_end_response(decay: FloatArray, source: FloatArray, slot: int, active: int, work: Work) -> None:
     """Response b of the amplitudes at an element's end to its forces, and their free decay e^{λh} from its start."""
     for i in range(active):
@@ -235,7 +235,7 @@ def gather_end_response(decay: FloatArray, source: FloatArray, slot: int, active
         work.decay[0, m], work.decay[1, m] = decay[slot, 0, m], decay[slot, 1, m]
 
 
-@uncounted(fastmath=SUMS)
+@inner(fastmath=SUMS)
 def apply_sensitivity(columns: FloatArray, decay: FloatArray, rows: FloatArray, ends: FloatArray) -> None:
     """Sensitivities at the end from those at the start, e^{λh} z - b g, with ``_UNROLLED`` forces."""
     size = columns.shape[1]
@@ -258,7 +258,7 @@ def apply_sensitivity(columns: FloatArray, decay: FloatArray, rows: FloatArray, 
             columns[k, j] = p * y + q * x - two
 
 
-@uncounted(fastmath=SUMS)
+@inner(fastmath=SUMS)
 def apply_sensitivity_of_any(
     columns: FloatArray,
     decay: FloatArray,
@@ -286,7 +286,7 @@ def apply_sensitivity_of_any(
                 columns[k, i] -= total * ends[row, i]
 
 
-@uncounted()
+@inner()
 def propagate_sensitivity(
     reference: Reference, steps: Steps, slot: int, part: float, columns: FloatArray, work: Work
 ) -> None:
@@ -304,7 +304,7 @@ def propagate_sensitivity(
         apply_sensitivity_of_any(columns, work.decay, work.force_rows, work.end_response, active, work.moved)
 
 
-@uncounted(fastmath=SUMS)
+@inner(fastmath=SUMS)
 def apply_saltation(reference: Reference, a: int, jump: float, columns: FloatArray) -> None:
     """Apply the saltation matrix of a step of a contact force: the sooner it comes, the longer it acts."""
     modes = columns.shape[1] // 2
@@ -318,7 +318,7 @@ def apply_saltation(reference: Reference, a: int, jump: float, columns: FloatArr
             columns[k, modes + m] -= jump * moved * reference.source[m, a].imag
 
 
-@uncounted()
+@inner()
 def saltation_factor(
     reference: Reference,
     contacts: Contacts,

@@ -93,9 +93,9 @@ def energy_at(
 @inner()
 def penetration(contacts: Contacts, k: int, nominal_time: float, delta: float, rank: int) -> float:
     """Penetration of the ``rank``-th most compressed tooth pair of a contact [m]."""
-    return ranked_penetration(
-        contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time, delta, contacts.law, contacts.law_at[k], rank
-    )
+    phase = contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time
+    # A literal, which max() does not return, would be compiled for anew.
+    return ranked_penetration(phase, delta, contacts.law, contacts.law_at[k], max(rank, 1))
 
 
 @inner()

@@ -18,6 +18,7 @@ integrands with a singularity at a vertex", SIAM Journal on Numerical Analysis 1
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numba
 import numpy as np
@@ -47,11 +48,16 @@ _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 _MOST_LEVELS = 7  # most halvings of a triangle near a point
 
 # Python's error for a division by zero is a branch, with which no loop becomes vector code.
-_compiled = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz"})
-_summed = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp", "nsz", "reassoc"})
+_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+_FUSED = {"contract", "arcp", "nsz"}
+_compiled = numba.njit(**_OPTIONS, fastmath=_FUSED)
+# Of kernels that kernels alone call.
+_OF_INNER = _OPTIONS | {"no_cpython_wrapper": True}
+_inner = numba.njit(**_OF_INNER, fastmath=_FUSED)
+_summed = numba.njit(**_OF_INNER, fastmath=_FUSED | {"reassoc"})
 
 
-@_compiled
+@_inner
 def _add_point(  # type: ignore[no-untyped-def]
     x, y0, y1, y2, normal, weight, k, b0, b1, b2, single, double, static
 ):
@@ -77,7 +83,7 @@ def _add_point(  # type: ignore[no-untyped-def]
     static[2] += b2 * dg0
 
 
-@_compiled
+@_inner
 def _near_triangle(x, corners, normal, area, k, rule, single, double, static, stack):  # type: ignore[no-untyped-def]
     """Integrate over a triangle near x, divided in four until each piece is no longer than its distance from x."""
     for i in range(3):
@@ -89,7 +95,9 @@ def _near_triangle(x, corners, normal, area, k, rule, single, double, static, st
     place = np.empty((3, 3))
     while depth > 0:
         depth -= 1
-        piece[:] = stack[depth]
+        for i in range(4):
+            for j in range(3):
+                piece[i, j] = stack[depth, i, j]  # as a whole would compile the message of shapes that differ
         level = piece[3, 0]
         for i in range(3):
             for j in range(3):
@@ -124,7 +132,7 @@ def _near_triangle(x, corners, normal, area, k, rule, single, double, static, st
             _add_point(x, y0, y1, y2, normal, part * rule[q, 3], k, b0, b1, b2, single, double, static)
 
 
-@_compiled
+@_inner
 def _corner_triangle(corners, area, k, corner, points, weights, single):  # type: ignore[no-untyped-def]
     """Integrate G phi_a over a triangle with x at one of its corners, in Duffy's coordinates.
 
@@ -148,7 +156,7 @@ def _corner_triangle(corners, area, k, corner, points, weights, single):  # type
             single[last] += u * v * g
 
 
-@_compiled
+@_inner
 def _sine_and_cosine(x):  # type: ignore[no-untyped-def]
     """Sine and cosine of a positive argument by Taylor's series about the nearest multiple of π/2.
 
@@ -174,7 +182,7 @@ _S = tuple((-1.0) ** (n + 1) / math.factorial(2 * n + 3) for n in range(6))
 _C = tuple((-1.0) ** (n + 1) / math.factorial(2 * n + 2) for n in range(7))
 
 
-@_compiled
+@_inner
 def _far_points(x, places, normals, weights, far, k, g, dg, dg0):  # type: ignore[no-untyped-def]
     """Weighted G, dG/dn and dG_0/dn at a quadrature point of some triangles; zero on those that are not far from x.
 
@@ -213,7 +221,7 @@ def _sum(values):  # type: ignore[no-untyped-def]
 _BLOCK = 256  # triangles whose values at quadrature points are held at once: 30 kB, which the nearest cache has
 
 
-@_compiled
+@_inner
 def _find_far(x, centers, reaches, far):  # type: ignore[no-untyped-def]
     """Set 1 where a triangle's centre is farther from x than the square root of its reach, else 0."""
     for e in range(far.size):

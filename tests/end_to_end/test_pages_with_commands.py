@@ -113,7 +113,7 @@ def _look_at_report(gearwhine: Any, folder: Path, place: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("linear_drawings", "swept_here")
+@pytest.mark.usefixtures("linear_drawings", "swept_here", "few_reliefs_tried")
 @pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
 def test_a_page_runs_from_its_first_line_to_its_last(
     gearwhine: Any, tmp_path: Path, page: Path, monkeypatch: pytest.MonkeyPatch

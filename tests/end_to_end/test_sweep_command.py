@@ -29,7 +29,7 @@ UNSTABLE = "bearing.input-back.stiffness.xy=0,1e10 N/m"
 # Teeth may be pressed flat before or after the motion itself is out of bounds.
 DIVERGED = "pressed together by|motion diverged"
 ROTORS = (
-    *("sweep", "spur-pair", "-o", "out", "--json"),
+    *("sweep", "spur-pair", "-o", "out", "--json", "--no-pictures"),
     *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
     # Points that take half a second or so, so that there is something to interrupt.
     *("--set", "transient.revolutions=6", "--set", "transient.discard=5", "--set", "transient.tolerance=2e-4"),

@@ -17,8 +17,8 @@ Example = Callable[..., dict[str, Any]]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _solved_once(modes_solved_once: None, periodic_motions_found_once: None) -> None:
-    """Modes and periodic motions that another test of this process has found are not sought again."""
+def _solved_once(solved_once: None) -> None:
+    """Solve nothing again that another test has solved."""
 
 
 @pytest.fixture

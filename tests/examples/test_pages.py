@@ -166,6 +166,7 @@ def test_the_reducer_of_the_tutorial_is_the_bundled_one() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_reliefs_tried")
 def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     mesh_box = mesh.mesh_box

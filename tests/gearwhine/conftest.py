@@ -4,13 +4,8 @@ import pytest
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _modes_solved_once(modes_solved_once: None) -> None:
-    """Modes of a housing that another test of this process has solved are not solved again."""
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _periodic_motions_found_once(periodic_motions_found_once: None) -> None:
-    """Periodic motions of a machine that another test of this process has found are not sought again."""
+def _solved_once(solved_once: None) -> None:
+    """Solve nothing again that another test has solved."""
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -355,7 +355,8 @@ def _contact_force_and_energy(phase: float, compression: float, rate: float, law
         touches = uneven or excess < nearest
         if abs(excess - nearest) <= doubt and not uneven:
             # Within rounding of its first touch a pair counts if the search for that event counts it.
-            touches = ranked_penetration(phase, compression, law, at, touching) > 0.0
+            # At least one touches; max() is no literal, for which the kernel would be compiled anew.
+            touches = ranked_penetration(phase, compression, law, at, max(touching, 1)) > 0.0
         if touches:
             energy += excess * (0.5 * excess * tangent - force)
             slope += excess * (excess * curve - slope_by_x)

@@ -442,6 +442,7 @@ def test_the_density_of_even_strains(case: Case, solved: Solved) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("lines_solved_once")
 def test_the_document_ranks_by_a_line() -> None:
     study = gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm", "gear_pair.0.misalignment": "0 rad"})
     result = study.operating_point(line="right wall")

@@ -208,7 +208,7 @@ SOUNDING = {
 
 
 @pytest.fixture(scope="module")
-def study() -> gw.CaseStudy:
+def study(lines_solved_once: None) -> gw.CaseStudy:
     """The gearbox with a quick sound, whose housing is solved once."""
     return gw.load("small-gearbox", SOUNDING)
 
