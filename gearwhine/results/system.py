@@ -869,7 +869,7 @@ def _peaks_of_all(responses: Sequence[Document], modes: list[Document]) -> Itera
     def words(peaks: Mapping[str, Sequence[Document]], named: bool = False) -> str:
         peak, name = highest(peaks)
         if peak is None:
-            return "none damped"
+            return "undamped" if any(peaks.values()) else "none"
         where = f" at {name}" if named else ""
         return f"{peak['frequency_hz']:.0f} ({significant(1e-6 * peak['amplitude'])}){where}"
 

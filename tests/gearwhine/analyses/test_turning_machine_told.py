@@ -81,9 +81,10 @@ def test_system_tells_sidebands_exponents_and_the_error_of_frozen_carriers(tmp_p
     (answers,) = (rows for columns, rows in tables if columns[0].heading == "by 1 µm of")
     assert len(answers) == len(document["transmissibility"]) == 6
     for row, response in zip(answers, document["transmissibility"], strict=True):
-        highest = max(response["sensor_acceleration_m_per_s2"]["x"], key=lambda peak: peak["amplitude"])
-        shown = f"{highest['frequency_hz']:.0f} ({1e-6 * highest['amplitude']:.3g})"
-        assert (row[0], row[2]) == (response["excitation"], shown)
+        peaks = response["sensor_acceleration_m_per_s2"]["x"]
+        shown = [f"{peak['frequency_hz']:.0f} ({1e-6 * peak['amplitude']:.3g})" for peak in peaks]
+        assert row[0] == response["excitation"]
+        assert row[2] in (shown[int(np.argmax([peak["amplitude"] for peak in peaks]))] if peaks else "none")
     (told,) = (one for one in text if one.startswith("Equal planets would cancel in"))
     count = sum((round(line["frequency_hz"] / carrier) % 3) != 0 for line in document["mesh_lines"])
     assert f"in {count} of {len(document['mesh_lines'])} lines" in told
