@@ -217,6 +217,7 @@ def solve_modes(
             n_nodes=system.n_nodes,
             orders=port_orders,
             begin=responses.found if responses is not None else (),
+            solve_approximately=solution.factor.solve_approximately,
             threads=threads,
             progress=lambda step: progress(f"{work}: {step}"),
         )
@@ -326,6 +327,7 @@ class ModeSetExtension:
                 free=system.free,
                 n_nodes=system.n_nodes,
                 orders=orders,
+                solve_approximately=self._factor.solve_approximately,
                 threads=system.threads,
                 progress=progress,
             )[0]
@@ -372,7 +374,7 @@ class ModeSetExtension:
             found = missing_harmonic_responses(
                 system.stiffness,
                 system.mass,
-                self._factor.solve,
+                self._factor.solve_approximately,
                 [(frequency, load[system.free]) for frequency, load in loads],
                 self._vectors,
                 np.asarray(system.mass @ self._vectors),

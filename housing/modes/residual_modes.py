@@ -170,6 +170,7 @@ def residual_attachment_modes(
     n_nodes: int,
     orders: int = 1,
     begin: Sequence[FloatArray] = (),
+    solve_approximately: Solve | None = None,
     threads: int = 2,
     progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[ResidualModes, FloatArray]:
@@ -200,6 +201,8 @@ def residual_attachment_modes(
         there too, see Eq. (5).
     begin : sequence of ndarray, shape (n, r)
         X, from which the sweeps start, then X_1 and so on, where they are known; whatever they have of Φ is taken off.
+    solve_approximately : callable, optional
+        X ≈ A⁻¹ B, positive definite on the complement, for the sweeps whose directions Eq. (5) does not need.
     threads : int
         Threads of the products of block vectors; the numbers are the same for any.
     progress : callable
@@ -239,7 +242,8 @@ def residual_attachment_modes(
         for response in begin:
             algebra.subtract(response, vectors, algebra.products(inertia, response))
         static.begin([(response, np.asarray(stiffness @ response)) for response in begin])
-    sweeps = _sweep_until_settled(stiffness, mass, solve, [static], vectors, inertia, algebra, progress)
+    solves = [solve] * (orders - 1) + [solve_approximately or solve]
+    sweeps = _sweep_until_settled(stiffness, mass, solves, [static], vectors, inertia, algebra, progress)
     residual = static.x
     algebra.subtract(residual, vectors, algebra.products(inertia, residual))
     span = _independent(np.asarray(stiffness @ residual), residual, modal.diagonal(), algebra)
@@ -353,7 +357,7 @@ def missing_harmonic_responses(
     stiffness, mass : matrix or operator, shape (n, n)
         Matrices on the free degrees of freedom.
     solve : callable
-        X = A⁻¹ B with A = K - σM, σ between the kept and the discarded modes.
+        X ≈ A⁻¹ B with A = K - σM, σ between the kept and the discarded modes.
     loads : sequence of (float, ndarray of shape (n, m))
         ω below the limit [rad/s], and F [N].
     vectors, inertia : ndarray, shape (n, p)
@@ -386,7 +390,7 @@ def missing_harmonic_responses(
         algebra.subtract(left, inertia, algebra.products(vectors, left))
         searches.append(_ConjugateGradients(left, w**2, _HARMONIC_SETTLED, energy, algebra))
         energies.append(energy)
-    _sweep_until_settled(stiffness, mass, solve, searches, vectors, inertia, algebra, progress)
+    _sweep_until_settled(stiffness, mass, [solve], searches, vectors, inertia, algebra, progress)
     missing = []
     for search, energy in zip(searches, energies, strict=True):
         x = search.x
@@ -457,18 +461,22 @@ class _ConjugateGradients:
 def _sweep_until_settled(
     stiffness: Operator,
     mass: Operator,
-    solve: Solve,
+    solves: Sequence[Solve],
     searches: Sequence[_ConjugateGradients],
     vectors: FloatArray,
     inertia: FloatArray,
     algebra: BlockAlgebra,
     progress: Callable[[str], None],
 ) -> int:
-    """Sweep several searches side by side, preconditioned by A⁻¹, until each has settled; the number of sweeps."""
+    """Sweep several searches side by side until each has settled, and return the number of sweeps.
+
+    These are preconditioned by A⁻¹, each by a solve of its own, the last one also those beyond it.
+    """
     unsettled = list(searches)
     for sweep in range(1, _MOST_SWEEPS + 1):
         progress(f"sweep {sweep}")
         left = [search.left for search in unsettled]
+        solve = solves[min(sweep, len(solves)) - 1]
         steps = solve(left[0] if len(left) == 1 else np.hstack(left))
         algebra.subtract(steps, vectors, algebra.products(inertia, steps))
         products = np.asarray(stiffness @ steps)
