@@ -146,13 +146,11 @@ class PairAnalysis:
     solved : LoadedGearPair
     misalignment : TakenMisalignment
         Misalignment of the flanks.
-    widths_given : tuple of bool
-        Whether the face width of the driver and of the driven gear is given; no pressure follows from a default.
     unloaded : ndarray, shape (n,)
         Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
         Hertzian pressure of every pair at every phase [Pa], see
-        `gearwhine.coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or given face
+        `gearwhine.coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or known face
         widths.
     pitch_pressure : float or None
         Largest pressure at the pitch point [Pa]; None also where that is not on the path of contact.
@@ -173,7 +171,6 @@ class PairAnalysis:
 
     solved: LoadedGearPair
     misalignment: TakenMisalignment
-    widths_given: tuple[bool, bool]
     unloaded: FloatArray
     pressure: FloatArray | None
     pitch_pressure: float | None
@@ -324,9 +321,7 @@ def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
     return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
 
 
-def analyse_pair(
-    pair: LoadedGearPair, misalignment: TakenMisalignment, widths_given: tuple[bool, bool] = (True, True)
-) -> PairAnalysis:
+def analyse_pair(pair: LoadedGearPair, misalignment: TakenMisalignment) -> PairAnalysis:
     """Analyse a solved gear pair under its mean torque and without load.
 
     A misalignment of the operating point is the mean over a turn of planet carriers, where the gap changes over it.
@@ -336,10 +331,10 @@ def analyse_pair(
         over_turn = float(slopes.min()), float(slopes.max())
         misalignment = replace(misalignment, taken=float(slopes.mean()), over_turn=over_turn)
     unloaded = first_touch(pair.carrying_flanks, pair.static.phases)
-    if pair.static.force == 0.0 or not pair.has_single_pairs or not all(widths_given):
-        return PairAnalysis(pair, misalignment, widths_given, unloaded, None, None)
+    if pair.static.force == 0.0 or not pair.has_single_pairs or not pair.geometry.has_face:
+        return PairAnalysis(pair, misalignment, unloaded, None, None)
     pressure = mesh_pressure(pair.geometry, pair.carrying_flanks, pair.static)
-    return PairAnalysis(pair, misalignment, widths_given, unloaded, pressure, _pitch_pressure(pair))
+    return PairAnalysis(pair, misalignment, unloaded, pressure, _pitch_pressure(pair))
 
 
 def force_origins(train: GearTrain, point: OperatingPoint | None) -> tuple[str, ...]:

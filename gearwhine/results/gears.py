@@ -33,11 +33,10 @@ def _start(gear: Gear, relief: TipRelief) -> float:
 
 
 class _Gear(NamedTuple):
-    """Geometry of a gear pair, one of its gears, and whether the case gives the width of its face."""
+    """Geometry of a gear pair, and one of its gears."""
 
     geometry: GearPairGeometry
     gear: Gear
-    width_given: bool
 
 
 def _span(row: _Gear) -> dict[str, Any] | None:
@@ -78,7 +77,7 @@ GEAR = (
     Quantity("undercut", "gear.is_undercut"),
     Quantity(
         "face_width_m",
-        lambda row: row.gear.face_width if row.width_given else None,
+        lambda row: row.gear.face_width if row.gear.has_face else None,
         heading="face",
         shown=".5g",
         scale=_MM,
@@ -173,9 +172,9 @@ PATH = (
 """Quantities of the named points of a path of contact, on both gears."""
 
 
-def _gears(geometry: GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[_Gear]:
+def _gears(geometry: GearPairGeometry) -> list[_Gear]:
     gears = (geometry.driver, geometry.driven)
-    return [_Gear(geometry, gear, given) for gear, given in zip(gears, widths_given, strict=True)]
+    return [_Gear(geometry, gear) for gear in gears]
 
 
 GEOMETRY = (
@@ -363,7 +362,7 @@ PAIR = (
     Quantity("misalignment_from", "misalignment.origin"),
     Quantity("mean_force_n", "solved.static.force"),
     Quantity("mean_force_from", "force_origin"),
-    Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
+    Rows("gears", lambda pair: _gears(pair.solved.geometry), GEAR),
     Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
     Part("", lambda pair: path_of_contact(pair.solved.geometry), PATH),
     Part("", lambda pair: pair.curves(), CURVES),

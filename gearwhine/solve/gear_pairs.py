@@ -40,8 +40,7 @@ def analyse_pairs(
         strict=True,
     )
     for entry, pair, misalignment, origin in rows:
-        driver, driven = (case.gear_named(name).face_width is not None for name in (entry.driver, entry.driven))
-        analysis = analyse_pair(pair, misalignment, (driver, driven))
+        analysis = analyse_pair(pair, misalignment)
         analysed.append(replace(analysis, aim_given=entry.relief_aim is not None, force_origin=origin))
     return tuple(analysed)
 
