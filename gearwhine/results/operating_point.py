@@ -512,8 +512,8 @@ PLANETARY = (
 BOLT = (
     Quantity("shaft", heading="shaft"),
     Quantity("angle_rad", "bolt.angle", heading="bolt at", shown=lambda row: f"{math.degrees(row['angle_rad']):.4g}°"),
-    Quantity("radial_force_n", "radial", heading="radial\n[N]", shown=".0f"),
-    Quantity("tangential_force_n", "tangential", heading="tangential\n[N]", shown=".0f"),
+    Quantity("radial_force_n", "radial", heading="radial\n[N]", shown="z.0f"),
+    Quantity("tangential_force_n", "tangential", heading="tangential\n[N]", shown="z.0f"),
     Quantity("axial_force_n", "axial", heading="axial\n[N]", shown="z.0f"),
 )
 """Quantities of a bolt of a torque support: force of the shaft on it; a row is a :class:`_Bolt`."""
