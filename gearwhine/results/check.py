@@ -720,7 +720,7 @@ def _bushing_line(kind: str, bushing: Document) -> str:
 
 
 def _rotor_line(rotor: Document) -> str:
-    speed = "" if rotor["speed_rpm"] is None else f", {rotor['speed_rpm']:+.6g} rpm"
+    speed = "" if rotor["speed_rpm"] is None else f", {rotor['speed_rpm']:+z.6g} rpm"
     length = f"{1e3 * rotor['length_m']:g} mm"
     parts = f" with {counted(rotor['couplings'], 'coupling')}" if rotor["couplings"] else ""
     return f"{rotor['name']}: {length}{parts}, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"

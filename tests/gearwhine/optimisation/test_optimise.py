@@ -448,7 +448,7 @@ def test_the_picture_of_convergence_counts_designs_as_the_file_does() -> None:
     figures = dict(draw_optimisation("Area", found.solved))
     (axes,) = figures["optimise-convergence"].axes
     drawn = {(float(x), float(y)) for line in axes.lines[:2] for x, y in line.get_xydata()}
-    assert drawn == {(float(number), float(one.aims[0])) for number, one in enumerate(found.solved.designs)}
+    assert drawn == {(float(number), float(one.aims[0])) for number, one in enumerate(found.solved.designs, start=1)}
     level = gw.optimise(
         lambda values: {"sensor.roof.level_db": values["x"]},
         {"x": Uniform(0.1, 1.0)},

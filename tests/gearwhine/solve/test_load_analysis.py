@@ -235,7 +235,7 @@ def test_tables_of_long_names_fit_a_hundred_columns() -> None:
     for influence in document["sensitivity"]:
         influence["parameter"] = long
     text = io.StringIO()
-    console = Console(file=text, width=WIDEST, highlight=False, markup=False)
+    console = Console(file=text, width=WIDEST, highlight=False, markup=False, force_terminal=True, color_system=None)
     for section in sections(document):
         show_section(console, section)
     lines = text.getvalue().splitlines()
