@@ -142,7 +142,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-6  # part of a force by which two operating points differ by rounding
 
-_ROUNDS = 20  # number of rounds of forces and stiffness of teeth, which leave rounding: a change falls to a quarter
+_ROUNDS = 20  # largest number of rounds in which forces and stiffness of teeth settle; each leaves at most a quarter
 _SETTLED_FORCE = 1e-6  # change of a mesh force in the last round, over the largest
 
 _GEOMETRIC = frozenset(
@@ -716,14 +716,18 @@ class Machine:
             point = self._equilibrium(pairs, rims)
             change = np.where(follows, [pair.force for pair in point.pairs] - forces, 0.0)
             if np.abs(change).max(initial=0.0) <= _SETTLED_FORCE * forces[follows].max(initial=0.0):
-                break
+                return point
             forces = forces + change
             # The structure that the search starts from stays as it is.
             pairs = [
                 pair if pair.under is None else replace(pair.under(force), nominal=pair.nominal, under=pair.under)
                 for pair, force in zip(pairs, forces.tolist(), strict=True)
             ]
-        return point
+        # Own laws of Python may be steeper than those of teeth.
+        raise EquilibriumNotFoundError(
+            f"the stiffness of teeth that share a torque does not settle in {_ROUNDS} rounds; their forces still "
+            f"change by {np.abs(change).max():.3g} N"
+        )
 
     def _static_pair(self, number: int, force: float, rims: Mapping[str, GearBody]) -> StaticPair:
         """Place a pair in the static model, of teeth as stiff as under a mesh force [N]."""

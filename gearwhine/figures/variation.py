@@ -28,6 +28,7 @@ from gearwhine.figures.style import (
     stacked,
 )
 from gearwhine.figures.style import HEAD as STYLE_HEAD
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ HEAD = STYLE_HEAD + 5.0  # for the titles of the upper panels [mm]
 _BAR = 5.0  # height of a bar [mm]
 _NAMES = 52.0  # width for the names of inputs beside bars [mm]
 _MOST_CURVES = 8
+_NO_LINE = -100.0  # highest level that stands for none [dB]
 _MOST_WIDENED = 20
 _LONG_LABEL = 30  # letters beyond which a label is smaller than a panel's height
 
@@ -232,6 +234,11 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
     return figure
 
 
+def _heard(levels: FloatArray) -> FloatArray:
+    """Return levels [dB] without those that stand for no line, as where the mesh frequency is beyond the modes."""
+    return np.where(levels > _NO_LINE, levels, np.nan)
+
+
 def _over_speed(title: str, varied: VariedResult) -> Figure:
     curves = list(varied.nominal.curves)[:_MOST_CURVES]
     note = f"{_begins(title, 40)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest."
@@ -242,10 +249,10 @@ def _over_speed(title: str, varied: VariedResult) -> Figure:
         values = varied.curve(name)[varied.representative]
         values = values[np.all(np.isfinite(values), axis=1)][:, order]
         if len(values):
-            low, high = np.quantile(values, (0.05, 0.95), axis=0)
+            low, high = map(_heard, np.quantile(values, (0.05, 0.95), axis=0))
             axes.fill_between(rpm[order], low, high, color=PALE, edgecolor=GREY, lw=0.5)
-            axes.plot(rpm[order], values.max(axis=0), "--", color=GREY, lw=0.8)
-        axes.plot(rpm[order], varied.nominal.curves[name][order], ".-", color=BLUE, lw=1.2, ms=4.0)
+            axes.plot(rpm[order], _heard(values.max(axis=0)), "--", color=GREY, lw=0.8)
+        axes.plot(rpm[order], _heard(varied.nominal.curves[name][order]), ".-", color=BLUE, lw=1.2, ms=4.0)
         limit = varied.limits.get(name)
         for end in () if limit is None else (limit.at_least, limit.at_most):
             if end is not None:

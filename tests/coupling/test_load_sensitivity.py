@@ -10,6 +10,7 @@ from own_statics import FULL, STEEL, TEETH, linear_bearing, one_stage, toothed
 from planetary_machines import set_parts
 
 from gearwhine.coupling import CouplingError, Machine, MountedBearing, Shaft, ShaftGear, machine_description
+from gearwhine.coupling.errors import EquilibriumNotFoundError
 from gearwhine.coupling.gears import ConstantStiffness
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
@@ -364,6 +365,9 @@ def test_rounds_of_shared_forces_settle(monkeypatch: pytest.MonkeyPatch) -> None
         assert pair.pair.under is not None
         own = pair.pair.under(pair.force).between_rims.at(pair.touched)
         assert own.force == pytest.approx(pair.force, rel=1e-6)
+    monkeypatch.setattr(machine_description, "_ROUNDS", 2)
+    with pytest.raises(EquilibriumNotFoundError, match=r"does not settle in 2 rounds.*change by 0\.0"):
+        machine.operating_point()
 
 
 @pytest.mark.slow

@@ -236,3 +236,12 @@ def test_pictures_keep_titles_off_the_note_and_the_ends_of_long_keys() -> None:
     (axes,) = over_speed.axes
     (title,) = [one for one in axes.get_children() if isinstance(one, Text) and one.get_text().startswith("sensor")]
     assert not any(title.get_window_extent().overlaps(note.get_window_extent()) for note in over_speed.texts)
+
+
+def test_a_speed_without_a_line_is_a_gap_in_the_picture() -> None:
+    study = told(np.array([80.0, 90.0, 85.0]) + 5.0 * sobol_points(64, 1, 1), sobol_points(64, 1, 1))
+    (name,) = study.nominal.curves
+    silent = replace(study.nominal, curves={name: np.array([80.0, -120.0, 85.0])})
+    (axes,) = dict(draw_variation("By hand", replace(study, nominal=silent)))["vary-speeds"].axes
+    assert axes.get_ylim()[0] > 70.0
+    assert np.isfinite(axes.lines[1].get_ydata()).tolist() == [True, False, True]
