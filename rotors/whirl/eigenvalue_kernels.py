@@ -199,7 +199,7 @@ def newton(
                 at += change
             # Estimated error after the step, from the decrease of the last two steps.
             forecast = math.inf
-            if share < math.sqrt(ACCEPTED) and last < 1.0:
+            if share < math.sqrt(ACCEPTED) and 0.0 < last < 1.0:
                 forecast = share**2 * (1.0 / last if reuse else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
             # Old factors serve one step: a root that has not converged by then gets new ones.
