@@ -338,8 +338,8 @@ class _Expansion:
             turns = self._angles(one)
             errors = self._pin_errors(one, len(turns))
             places = self._places(one, rotors)
-        except (PydanticCustomError, ValueError):
-            return
+        except (PydanticCustomError, TypeError, ValueError):
+            return  # its tables tell what is wrong with it
         if turns:
             self._copy(one, rotors, turns, errors, places)
             for key in ("count", "angles", "pin_errors"):
