@@ -281,6 +281,7 @@ def with_implied_pairs(document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 _KINDS = ("rotor", "gear", "bearing", "gear_pair")
+_NAMES = ("name", "rotor", "driver", "driven")
 
 
 def _are_names(names: object) -> TypeGuard[Sequence[str]]:
@@ -300,11 +301,12 @@ class _Expansion:
                 self.document[kind] = list(document[kind])
 
     def entries(self, kind: str) -> list[tuple[int, dict[str, Any]]]:
+        """Return tables of a kind with their places, but those with a name that is no text: it is refused later."""
         listed = self.document.get(kind)
         return [
             (index, entry)
             for index, entry in enumerate(listed if isinstance(listed, list) else [])
-            if isinstance(entry, dict)
+            if isinstance(entry, dict) and all(isinstance(entry.get(key, ""), str) for key in _NAMES)
         ]
 
     def named(self, kind: str, name: object) -> dict[str, Any] | None:

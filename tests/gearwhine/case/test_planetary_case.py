@@ -199,6 +199,10 @@ REFUSED: dict[str, tuple[Any, list[str]]] = {
     "bearing": (_without_pin, ['rotor[1] (rotor "p")', "on its pin"]),
     "axis": (_changed("rotor", "ring", axis=["5 mm", "60 mm"]), ["rotor[2].axis", "it is 10 mm off it"]),
     "no axis": (_changed("rotor", "carrier", axis=1e30), ['axis (rotor "carrier")', "expected a list, got 1e+30"]),
+    "no name": (
+        lambda document: document["bearing"][2].update(name=[1, 2]),
+        ["bearing[2].name: expected a name of 1 to 100 characters", "got [1, 2]"],
+    ),
     "no errors": (_changed("planetary", "stage", pin_errors=1.0), ["pin_errors", "expected a list, got 1.0"]),
     "carrier": (_changed("planetary", "stage", carrier="sum"), ["planetary[0].carrier", "did you mean 'sun'?"]),
     "errors": (_changed("planetary", "stage", pin_errors=["1 um"]), ["pin_errors", "one for each of 3 planets"]),
