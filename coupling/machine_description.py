@@ -107,7 +107,7 @@ from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.settling import SettledMotion, circles, settled_response
 from gearwhine.coupling.periodic.shooting import periodic_response
-from gearwhine.coupling.statics.operating_point import OperatingPoint, flank_gaps, linearised_about
+from gearwhine.coupling.statics.operating_point import FlankGap, OperatingPoint, flank_gaps, linearised_about
 from gearwhine.coupling.statics.operating_point_search import solve_operating_point
 from gearwhine.coupling.statics.static_model import (
     StaticGear,
@@ -839,8 +839,8 @@ class Machine:
             self.gear_pairs, self.train.shares_torque, self._mean_mesh_forces(points), strict=True
         ):
             if pair.misalignment is None:
-                gap, changes = gaps.get((pair.driver, pair.driven), ((), ()))
-                pair = replace(pair, misalignment=0.0, face_gap=gap, gap_changes=changes)
+                gap = gaps.get((pair.driver, pair.driven), FlankGap())
+                pair = replace(pair, misalignment=0.0, **gap._asdict())
             if shares and pair.mean_force is None:
                 pair = replace(pair, mean_force=force)
             pairs.append(pair)

@@ -112,6 +112,13 @@ class PiecewiseCubic:
         powers = np.diff(self.knots)[:, None] ** np.arange(4)
         return PPoly(np.ascontiguousarray((self.coefficients / powers).T[::-1]), self.knots)
 
+    def plus(self, start: float, slope: float) -> PiecewiseCubic:
+        """Return the sum with the straight line that is `start` at 0."""
+        coefficients = self.coefficients.copy()
+        coefficients[:, 0] += start + slope * self.knots[:-1]
+        coefficients[:, 1] += slope * np.diff(self.knots)
+        return PiecewiseCubic(self.knots, coefficients)
+
     @property
     def mean(self) -> float:
         """Mean value over the whole range."""

@@ -54,7 +54,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
-from gearwhine.coupling.gears.contact.contact_law import law_between_rims
+from gearwhine.coupling.gears.contact.contact_law import law_between_rims, with_path_slope
 from gearwhine.coupling.gears.contact.face_slices import FACE_STATIONS, FaceSlices, face_stations, lagrange
 from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair, load_gear_pair
@@ -386,10 +386,11 @@ class LineModel(MeshHarmonicModel):
             pair = self.point.pairs[mesh]
             by_approach = np.zeros(pair.pair.contact.size)
             if number in self._gap_rates:
-                by_gap = self._by_flanks(line, number, self._gap_rates[number])
-                # The gap is the mean approach less that at the stations.
-                by_approach += float(by_gap.sum()) * pair.pair.contact.face_mean
+                *by_gap, by_rise = self._by_flanks(line, number, self._gap_rates[number])
+                # The gap is the mean approach less that at the stations, and its slope along the path that by the tilt.
+                by_approach += sum(by_gap) * pair.pair.contact.face_mean
                 by_approach[:-1] -= by_gap
+                by_approach[-1] += pair.pair.axial * pair.pair.geometry.base_pitch * by_rise
             if number in self._force_rates:
                 by_approach += float(self._by_flanks(line, number, self._force_rates[number])[0]) * pair.force_slope
             total += tangent.pairs[mesh] @ by_approach
@@ -541,7 +542,10 @@ class LineModel(MeshHarmonicModel):
 
     @cached_property
     def _gap_rates(self) -> dict[int, _FlankRates]:
-        """Derivatives of the loaded contacts whose flanks follow the operating point, by the gap at the stations."""
+        """Derivatives of the loaded contacts whose flanks follow the operating point.
+
+        They are by the gap at the stations and by what it rises along the line of action in a base pitch [m].
+        """
         rates = {}
         for number in self.loaded:
             mesh, back = self.machine.flanks(number)
@@ -554,14 +558,20 @@ class LineModel(MeshHarmonicModel):
     def _rates_by_gap(self, number: int, law: ToothContact, faces: FaceSlices, back: bool) -> _FlankRates:
         over, force = lagrange(face_stations(faces.face_width), faces.z), self._force(number)
 
+        geometry = self.pairs[self.machine.flanks(number)[0]].geometry
+
         def opened(station: int, step: float) -> _Flanks:
-            contact = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
+            contact = (
+                replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
+                if station < FACE_STATIONS
+                else with_path_slope(law, geometry, step / geometry.base_pitch)
+            )
             contact = contact.back_flanks if back else contact
             return _Flanks(contact, contact.faces, force)
 
         compression = force / float(self.contact.stiffness[number])
         steps = (_STIFFNESS_STEP * compression, _GAP_STEP * compression)
-        return self._rates_of(number, [partial(opened, station) for station in range(FACE_STATIONS)], steps)
+        return self._rates_of(number, [partial(opened, station) for station in range(FACE_STATIONS + 1)], steps)
 
     @cached_property
     def _force_rates(self) -> dict[int, _FlankRates]:

@@ -22,7 +22,7 @@ from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
 from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.machine_description import Machine
-from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.operating_point import FlankGap, OperatingPoint
 from gearwhine.housing import HousingModes, ModeSet, modal_damping
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.housing_field import HousingField
@@ -211,9 +211,11 @@ def solve_lines(
         )
     about = machine.at_operating_point(point)
     # Flanks that nearly carry evenly keep their gap here, whose derivative is sought.
-    gaps = {pair.names: pair.station_gap for pair in point.pairs}
+    gaps = {pair.names: FlankGap(pair.station_gap, (), pair.path_slope) for pair in point.pairs}
     flanks = [
-        replace(pair, face_gap=gaps.get((pair.driver, pair.driven), ())) if given.misalignment is None else pair
+        replace(pair, **gaps.get((pair.driver, pair.driven), FlankGap())._asdict())
+        if given.misalignment is None
+        else pair
         for pair, given in zip(about.gear_pairs, machine.gear_pairs, strict=True)
     ]
     pairs = replace(about, gear_pairs=flanks).loaded_pairs(progress)

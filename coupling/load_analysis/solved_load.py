@@ -22,7 +22,7 @@ from gearwhine.coupling.load_analysis.planetary_load import (
     planetary_load,
 )
 from gearwhine.coupling.machine_description import Machine
-from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
+from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection, flank_gap
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
@@ -257,7 +257,7 @@ def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> Loade
     if load.force == 0.0 or not any(gear.pitch_deviations or gear.faults for gear in gears):
         return None
     # Inertias are for the damping alone.
-    pair = replace(machine.gear_pairs[number], misalignment=0.0, face_gap=load.face_gap, damping=0.0)
+    pair = replace(machine.gear_pairs[number], misalignment=0.0, damping=0.0, **flank_gap([load])._asdict())
     torque = math.copysign(load.force * abs(geometry.driver.base_radius), machine.pair_torques[number])
     speed = machine.mesh_speeds[number]
     return load_gear_pair(pair, geometry, torque=torque, inertias=(1.0, 1.0), speed=speed).hunting

@@ -18,6 +18,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +27,7 @@ from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.gears.loaded.face_load import FaceLoad, face_load_factor
-from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, even_phases, mesh_period_phases, period_mean
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.static_model import (
@@ -146,7 +147,6 @@ _FORCE_STEP = 1e-4  # step over a mesh force, in the differences of loads by the
 # Largest gap over the face of spur teeth that counts as none, of the teeth's mean deflection, and at least [m]: the
 # face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
 _EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
-_TE_PHASES = 200
 
 CAUSES = ("shafts", "bearings", "housing", "carrier", "seats", "bodies")
 """Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, of planets that of
@@ -191,8 +191,18 @@ class PairLoad:
 
     @cached_property
     def fine(self) -> FaceLoad:
-        """Face load at 200 phases of the mesh period, for the transmission error."""
-        return self.pair.contact.under_force(self.loading, self.shape, np.arange(_TE_PHASES) / _TE_PHASES)
+        """Face load at even phases of the mesh period, for the transmission error."""
+        return self.pair.contact.under_force(self.loading, self.shape, even_phases())
+
+    @cached_property
+    def period(self) -> FaceLoad:
+        """Face load at those phases and at both sides of every step and corner between them, see `mesh_period_phases`.
+
+        Of helical teeth, which have none, it is `fine`.
+        """
+        phases = mesh_period_phases(self.pair.contact.tooth_contact)
+        more = phases.size > self.fine.phases.size
+        return self.pair.contact.under_force(self.loading, self.shape, phases) if more else self.fine
 
     @property
     def names(self) -> tuple[str, str]:
@@ -247,9 +257,9 @@ class PairLoad:
         return self.force / self.mean_stiffness if self.force > 0.0 else 0.0
 
     @property
-    def face_gap(self) -> tuple[float, ...]:
-        """Gap that mesh stiffness and motion take, see `face_gaps`."""
-        return face_gaps([self])[0]
+    def path_slope(self) -> float:
+        """Slope of that gap along the line of action, by the tilt of the shafts against each other [1]."""
+        return self.pair.axial * float(self.approach[-1])
 
     @property
     def line_load(self) -> FloatArray:
@@ -295,12 +305,12 @@ class PairLoad:
     @property
     def mean_transmission_error(self) -> float:
         """Mean static transmission error under the mean load [m]."""
-        return float(np.mean(self.transmission_error))
+        return period_mean(self.period.phases, self.period.deflection)
 
     @property
     def peak_to_peak_transmission_error(self) -> float:
         """Peak-to-peak static transmission error under the mean load [m]."""
-        return float(np.ptp(self.transmission_error))
+        return float(np.ptp(self.period.deflection))
 
     @property
     def thrust(self) -> float:
@@ -339,7 +349,8 @@ class PairLoad:
     @cached_property
     def peak_pressure(self) -> float:
         """Greatest Hertzian pressure of the flanks on the path of contact over the mesh period [Pa]."""
-        pressure = mesh_pressure(self.pair.geometry, self.pair.contact.tooth_contact, self.mesh)
+        mesh = self.pair.contact.loaded_mesh(self.period)
+        pressure = mesh_pressure(self.pair.geometry, self.pair.contact.tooth_contact, mesh)
         return float(np.nanmax(pressure, initial=0.0))
 
     @property
@@ -350,29 +361,36 @@ class PairLoad:
     @property
     def mean_stiffness(self) -> float:
         """Mean mesh stiffness under load over the mesh period [N/m]."""
-        return float(self.pair.contact.stiffness_of(self.fine).mean())
+        return period_mean(self.period.phases, self.pair.contact.stiffness_of(self.period))
 
 
-FaceGaps = tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]
+class FlankGap(NamedTuple):
+    """Gap of the flanks that mesh stiffness and motion take, by the attributes of a gear pair."""
+
+    face_gap: tuple[float, ...] = ()
+    gap_changes: tuple[tuple[float, ...], ...] = ()
+    path_slope: float = 0.0
 
 
-def face_gaps(loads: Sequence[PairLoad]) -> FaceGaps:
-    """Gap of a pair that motion takes at its loads over a turn of carriers: ``face_gap`` and ``gap_changes`` [m].
+def flank_gap(loads: Sequence[PairLoad]) -> FlankGap:
+    """Gap of a pair that motion takes at its loads over a turn of carriers.
 
     The gap is the mean of `PairLoad.station_gap`; there is none where spur teeth carry evenly with all of them. Its
-    changes contain the approach at each load beside the mean one. A gap that moves as little has none.
+    changes contain the approach at each load beside the mean one. A gap that moves as little has none. Its slope along
+    the path is the mean of all.
     """
     gaps = np.array([load.station_gap for load in loads])
     is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
     small = max(_EVEN_GAP * float(np.mean([load.tooth_deflection for load in loads])), _LEAST_GAP)
     if is_spur and np.ptp(gaps, axis=1).max() <= small:
-        return (), ()
+        return FlankGap()
     mean = gaps.mean(axis=0)
+    path_slope = float(np.mean([load.path_slope for load in loads]))
     if np.ptp(gaps - mean, axis=1).max() <= small:
-        return tuple(mean.tolist()), ()
+        return FlankGap(tuple(mean.tolist()), (), path_slope)
     approach = np.array([float(load.pair.contact.face_mean @ load.approach) for load in loads])
     changes = gaps - mean - (approach - approach.mean())[:, None]
-    return tuple(mean.tolist()), tuple(map(tuple, changes.tolist()))
+    return FlankGap(tuple(mean.tolist()), tuple(map(tuple, changes.tolist())), path_slope)
 
 
 @dataclass(frozen=True, eq=False)
@@ -541,10 +559,10 @@ class OperatingPoint:
         )
 
 
-def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> dict[tuple[str, str], FaceGaps]:
+def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> dict[tuple[str, str], FlankGap]:
     """Gap of the flanks over the face that motion takes at operating points, by the names of the gears.
 
-    See `face_gaps`.
+    See `flank_gap`.
 
     Parameters
     ----------
@@ -564,4 +582,4 @@ def flank_gaps(points: Sequence[OperatingPoint], unaligned: Sequence[str]) -> di
             f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
             "expected a torque, or the misalignment"
         )
-    return {loads[0].names: face_gaps(loads) for loads in zip(*pairs, strict=True)}
+    return {loads[0].names: flank_gap(loads) for loads in zip(*pairs, strict=True)}

@@ -275,7 +275,9 @@ class ToothContact:
         mesh harmonics: some nanometres.
         """
         faces = self.faces
-        return faces if faces is None or faces.half_span == 0.0 or faces.z.size > DEFAULT_SLICES else faces.halved()
+        if faces is None or faces.half_span == 0.0 or faces.z.size > DEFAULT_SLICES:
+            return faces
+        return faces.in_slices(2 * faces.z.size)
 
     @cached_property
     def body_tilt(self) -> PiecewiseCubic | None:
@@ -671,7 +673,7 @@ def tooth_contact(
     curves = tooth_pair_curves(geometry, stiffness, flattening, variants.faults, corner_contact=corner_contact)
     none = np.zeros(0)
     deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
-    return ToothContact(
+    contact = ToothContact(
         float(stiffness.knots[-1]),
         curves[0].stiffness,
         curves[0].deviation,
@@ -687,6 +689,20 @@ def tooth_contact(
         shared_compliance=shared_compliance(model, geometry),
         tooth_counts=(abs(geometry.driver.tooth_count), abs(geometry.driven.tooth_count)),
     )
+    return contact if faces is None else with_path_slope(contact, geometry, faces.path_slope)
+
+
+def with_path_slope(contact: ToothContact, geometry: GearPairGeometry, slope: float) -> ToothContact:
+    """Return a contact whose gaps rise along the line of action by a slope [1] from the pitch point.
+
+    The spring of a whole mesh has no place on it, and stays as it is.
+    """
+    if slope == 0.0 or is_whole_mesh(contact.contact_ratio, geometry):
+        return contact
+    scale = slope * geometry.base_pitch
+    start, rise = -scale * geometry.pitch_point_position, scale * geometry.contact_ratio / contact.contact_ratio
+    variants = tuple(replace(curves, deviation=curves.deviation.plus(start, rise)) for curves in contact.variants)
+    return replace(contact, deviation=contact.deviation.plus(start, rise), variants=variants)
 
 
 def places_on_line_of_action(contact: ToothContact, geometry: GearPairGeometry, positions: FloatArray) -> FloatArray:
@@ -727,4 +743,5 @@ def with_flanks_of(contact: ToothContact, geometry: GearPairGeometry) -> ToothCo
         replace(variant, deviation=faults_of_variant)
         for variant, faults_of_variant in zip(contact.variants, others, strict=True)
     )
-    return replace(contact, deviation=sound, variants=tuple(variants))
+    other = replace(contact, deviation=sound, variants=tuple(variants))
+    return other if contact.faces is None else with_path_slope(other, geometry, contact.faces.path_slope)

@@ -138,6 +138,8 @@ class FaceSlices:
         Compliance that pairs in contact at once share, of loads and deflections like `shapes` [m/N]; (0, 0) for none.
     changes : ndarray, shape (t, n)
         Gaps at t angles of a carrier beside `gap` [m]. Loads at a compression are the means over them.
+    path_slope : float
+        Slope of the gap along the line of action, where it is 0 at the pitch point [1].
     """
 
     z: FloatArray
@@ -148,6 +150,7 @@ class FaceSlices:
     coupling: float
     shared: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     changes: FloatArray = field(default_factory=lambda: np.zeros((1, 1)))
+    path_slope: float = 0.0
 
     @property
     def face_width(self) -> float:
@@ -195,20 +198,20 @@ class FaceSlices:
         first, last = np.clip(position - half, start, end), np.clip(position + half, start, end)
         return np.asarray((last - first) / (2.0 * half), dtype=np.float64)
 
-    def halved(self) -> FaceSlices:
-        """Return the same face in twice as many slices; the gap is interpolated linearly.
+    def in_slices(self, count: int) -> FaceSlices:
+        """Return the same face in another number of slices; gaps are interpolated linearly.
 
         Slices of helical teeth come into touch one by one, which ripples force and deflection with one wave per slice
         in a base pitch. The ripple's amplitude falls with the square of the slices' width.
         """
-        fine = self.z.size * 2
-        z = self.face_width * ((np.arange(fine) + 0.5) / fine - 0.5)
+        z = self.face_width * ((np.arange(count) + 0.5) / count - 0.5)
         below = np.clip(np.searchsorted(self.z, z) - 1, 0, self.z.size - 2)
         part = (z - self.z[below]) / self.width
         changes = np.broadcast_to(self.changes, (len(self.changes), self.z.size))
         rows = np.vstack([self.shift, self.gap, changes])
         shift, gap, *changed = rows[:, below] + part * (rows[:, below + 1] - rows[:, below])
-        return replace(self, z=z, width=0.5 * self.width, shift=shift, gap=gap, changes=np.array(changed))
+        width = self.face_width / count
+        return replace(self, z=z, width=width, shift=shift, gap=gap, changes=np.array(changed))
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,6 +277,7 @@ def face_slices(
     misalignment: float = 0.0,
     face_gap: Sequence[float] = (),
     gap_changes: Sequence[Sequence[float]] = (),
+    path_slope: float = 0.0,
     count: int | None = None,
 ) -> FaceSlices:
     """Slices of a gear pair's face.
@@ -291,6 +295,8 @@ def face_slices(
         none.
     gap_changes : sequence of sequence of float
         Gaps there at angles of a carrier beside it [m]; empty for none.
+    path_slope : float
+        Slope of the gap along the line of action, where it is 0 at the pitch point [1].
     count : int or None
         Number of slices; None for `DEFAULT_SLICES`, or `FINE_SLICES` of helical teeth with a spall across their face.
     """
@@ -318,6 +324,7 @@ def face_slices(
         flattening=1.0 / (hertz_compliance(geometry) * b),
         coupling=1.0 / sum(1.0 / coupling for coupling in couplings) if count > 1 else 0.0,
         changes=np.array(gap_changes) @ over.T if gap_changes else np.zeros((1, 1)),
+        path_slope=path_slope,
     )
 
 

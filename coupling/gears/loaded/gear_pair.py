@@ -126,6 +126,9 @@ class GearPair:
     gap_changes : tuple of tuple of float
         Gaps at angles over a turn of planet carriers beside ``face_gap``, at the same stations, with the approach of
         the flanks there beside the mean one [m]; none where the gap stays. The contact law is the mean over them.
+    path_slope : float
+        Slope of that gap along the line of action from the pitch point [1]: of helical teeth, whose force has an axial
+        part, on shafts that tilt against each other in the plane of action.
     """
 
     driver: str
@@ -140,6 +143,7 @@ class GearPair:
     face_gap: tuple[float, ...] = ()
     mean_force: float | None = None
     gap_changes: tuple[tuple[float, ...], ...] = ()
+    path_slope: float = 0.0
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
@@ -154,6 +158,7 @@ class GearPair:
             "misalignment": Number(at_least=-0.1, at_most=0.1, optional=True, unit="rad"),
             "face_gap": Numbers(),
             "mean_force": Number(at_least=0.0, optional=True, unit="N"),
+            "path_slope": Number(at_least=-0.1, at_most=0.1),
         }
         driver, driven = (getattr(gear, "name", gear) for gear in (self.driver, self.driven))
         part = ("gear pair", f"{driver} -> {driven}")
@@ -219,7 +224,12 @@ class GearPair:
         if geometry.driver.helix_angle == 0.0 and even and straight:
             return None
         return face_slices(
-            geometry, sense=sense, misalignment=misalignment, face_gap=self.face_gap, gap_changes=self.gap_changes
+            geometry,
+            sense=sense,
+            misalignment=misalignment,
+            face_gap=self.face_gap,
+            gap_changes=self.gap_changes,
+            path_slope=self.path_slope,
         )
 
     def gap_slopes(self, geometry: GearPairGeometry) -> FloatArray:

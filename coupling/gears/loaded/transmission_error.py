@@ -27,6 +27,8 @@ from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.coupling.gears.geometry.faults import NO_CONTACT_GAP
 from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
+EVEN_PHASES = 400
+"""Equally spaced phases of a mesh period, of the static mesh by itself and in its machine."""
 _HAIR = 1e-9
 """Compression for the tangent stiffness of an unloaded face [m]."""
 _EVENT_DISTANCE = 1e-9
@@ -91,7 +93,12 @@ class LoadedMesh:
         return period_mean(self.phases, self.tangent_stiffness / (1.0 - compliance * self.tangent_stiffness))
 
 
-def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 1) -> FloatArray:
+def even_phases(points: int = EVEN_PHASES) -> FloatArray:
+    """Return the middles of equal parts of a mesh period, shape (n,)."""
+    return (np.arange(points) + 0.5) / points
+
+
+def mesh_period_phases(contact: ToothContact, points: int = EVEN_PHASES, periods: int = 1) -> FloatArray:
     """Phases over whole mesh periods, with both sides of every step and every corner among them.
 
     Parameters
@@ -107,7 +114,7 @@ def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 
     ndarray, shape (n,)
         Ascending, in [0, periods).
     """
-    even = (np.arange(points) + 0.5) / points
+    even = even_phases(points)
     events = np.array(contact.event_phases)
     limits = np.concatenate([events - _EVENT_DISTANCE, events + _EVENT_DISTANCE, np.array(contact.corner_phases)]) % 1.0
     period = np.unique(np.concatenate([even, limits]))

@@ -13,7 +13,7 @@ import pytest
 from coupled_cases import coupled
 
 from gearwhine.case import Case, load_case, parse_case
-from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques, with_coarser_slices
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques
 from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
@@ -22,7 +22,7 @@ from gearwhine.coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.contact.face_slices import face_slices, face_stations
 from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT
 from gearwhine.coupling.gears.loaded.optimal_relief import transmission_error_harmonics
 from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
@@ -192,11 +192,13 @@ def test_a_coarser_face_is_the_one_that_would_be_cut_so() -> None:
         replace(analysed(*EVEN).solved.geometry.driver, helix_angle=0.2),
         replace(analysed(*EVEN).solved.geometry.driven, helix_angle=-0.2),
     )
-    fine, expected = face_slices(pair, misalignment=1e-4), face_slices(pair, misalignment=1e-4, count=21)
-    coarse = with_coarser_slices(fine, 21)
-    for name in ("z", "width", "shift", "gap", "flattening", "coupling"):
-        np.testing.assert_allclose(getattr(coarse, name), getattr(expected, name), rtol=1e-12, atol=1e-18)
-    assert with_coarser_slices(expected, 61) is expected
+    tilts = [turn * face_stations(pair.face_width) for turn in (1e-5, -1e-5)]
+    fine, expected = (
+        face_slices(pair, misalignment=1e-4, gap_changes=tilts, path_slope=1e-5, count=count) for count in (None, 21)
+    )
+    coarse = fine.in_slices(21)
+    for name in ("z", "width", "shift", "gap", "flattening", "coupling", "changes", "path_slope"):
+        np.testing.assert_allclose(getattr(coarse, name), getattr(expected, name), rtol=1e-12, atol=1e-17)
 
 
 def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.CaptureFixture[str]) -> None:

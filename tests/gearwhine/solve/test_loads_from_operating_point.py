@@ -316,6 +316,20 @@ def test_the_library_takes_the_same_misalignment_as_the_case() -> None:
     assert gw.GearPair("pinion", "wheel").face_slices(pair.geometry, 1).gap == pytest.approx(0.0)
 
 
+@pytest.mark.parametrize(("case", "torque"), [("helical-pair", 150.0), ("helical-pair", -150.0), ("spur-pair", 50.0)])
+def test_gears_by_themselves_have_the_transmission_error_of_their_machine(case: str, torque: float) -> None:
+    """Shafts of gears off their middle tilt: over the face, and against each other along the path of helical teeth."""
+    helical = {"gear.*.at": "60 mm", "gear_pair.*.misalignment": "found"} if case == "helical-pair" else {}
+    machine = gw.load(case, {**helical, "operation.torque": torque}).machine
+    point = machine.operating_point()
+    (load,), (pair,) = point.pairs, machine.with_flanks_of(point).loaded_pairs()
+    assert (abs(load.path_slope) > 5e-5) == (case == "helical-pair")
+    mesh = pair.static
+    assert mesh.mean_transmission_error == pytest.approx(load.mean_transmission_error, rel=1e-9)
+    assert mesh.peak_to_peak_transmission_error == pytest.approx(load.peak_to_peak_transmission_error, rel=1e-9)
+    assert mesh.mean_mesh_stiffness == pytest.approx(load.mean_stiffness, rel=1e-9)
+
+
 def test_a_gap_of_a_hundredth_of_the_teeth_deflection_is_none() -> None:
     """The largest gap of spur teeth that motion leaves out moves no harmonic of their transmission error by 0.01 dB."""
     aligned, tilted = (
