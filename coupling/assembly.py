@@ -76,7 +76,7 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
-from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors import Bearing
 
 # Clearance between tip and root, in normal modules. Teeth compressed by more would touch there, and no
@@ -84,6 +84,7 @@ from gearwhine.rotors import Bearing
 _GREATEST_COMPRESSION = 0.25
 
 _ROUNDS = 12  # largest number of rounds in which mean forces and faces of meshes that share a torque settle
+_SAME_FORCE = 1e-9  # relative difference below which two mean forces are one
 _SETTLED_FORCE_CHANGE = 1e-6  # change of the mean forces in the last round, over the largest
 
 _PER_GAP = 16  # number of chords that replace a bearing's cubic between two speeds of its table
@@ -623,6 +624,14 @@ class MeanFaces:
     shuttling: dict[int, list[HarmonicLoad]]
     are_kept: bool = False
 
+    def moments_under(self, number: int, force: float) -> dict[int, ComplexArray] | None:
+        """Moments of load shuttling by mesh harmonic; None where they are not those under a mean force [N]."""
+        loads = self.shuttling.get(number)
+        if loads is None or abs(self.states[number][2].force - force) > _SAME_FORCE * force:
+            return None
+        rate = self.system.contacts[number].mesh_frequency
+        return {load.harmonic_of(rate): load.amplitude for load in loads}
+
     def hold_in(self, system: CoupledSystem) -> bool:
         """Whether a system has the same flanks, turning, and the same mean load and stiffness unless faces are kept."""
         before = self.system
@@ -670,9 +679,9 @@ def _with_faces(
     harmonics = list(system.harmonic_loads)
     for number, loads in mean.shuttling.items():
         frame = mesh_frame(coordinates, flanks[number][0])
-        before, present = (abs(one.contacts[number].mesh_frequency) for one in (mean.system, system))
+        before, present = mean.system.contacts[number].mesh_frequency, abs(system.contacts[number].mesh_frequency)
         for load in loads:
-            order = round(load.frequency / (2.0 * np.pi * before))
+            order = load.harmonic_of(before)
             harmonics += frames.harmonics(replace(load, frequency=2.0 * np.pi * order * present), frame)
     return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
 

@@ -8,6 +8,7 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
 from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.machine_description import Machine
@@ -79,9 +80,9 @@ class LoadedMachine:
         return BasisError(self.coupled, other.assemble(self.pairs, components, self.run))
 
     @cached_property
-    def mechanisms(self) -> LineMechanisms:
-        """What excites the lines of its sensors."""
-        return LineMechanisms(self.coupled)
+    def bands(self) -> DampingBand:
+        """Bands of the lines of its sensors by damping, and what excites them."""
+        return DampingBand(LineMechanisms(self.coupled))
 
 
 def load_machine(

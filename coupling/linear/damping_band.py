@@ -25,7 +25,7 @@ from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpair
 from gearwhine.coupling.linear.frequency_response import excitations
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
-from gearwhine.coupling.linear.unequal_teeth import DampedMachine
+from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -84,8 +84,7 @@ class DampingBand:
 
     def _loads(self, scale: int, w: FloatArray, within: float) -> list[list[ComplexArray]]:
         """Return the loads on the machine with damping by a scale, by frequency and group."""
-        forces = self.mechanisms.stiffness_forces(DampedMachine(*self._solved[scale][1]))
-        driven = [self.mechanisms.loads(frequency, within, forces) for frequency in w.tolist()]
+        driven = [self.mechanisms.loads(frequency, within, self._forces[scale]) for frequency in w.tolist()]
         return [[np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in groups] for groups in driven]
 
     def _levels(self, scale: int, w: FloatArray, loads: list[list[ComplexArray]], rows: FloatArray) -> FloatArray:
@@ -132,6 +131,11 @@ class DampingBand:
             dynamic = stiffness + 1j * frequency * damping - frequency**2 * np.eye(len(stiffness))
             moved[number] = (rows @ np.linalg.solve(dynamic, loads[0].T)).T
         return moved
+
+    @cached_property
+    def _forces(self) -> list[dict[int, StiffnessForce]]:
+        """Forces by the mesh stiffness that varies with damping by each scale, by contact."""
+        return [self.mechanisms.stiffness_forces(DampedMachine(*matrices)) for _, matrices in self._solved]
 
     @cached_property
     def _solved(self) -> list[tuple[Eigenpairs | None, tuple[FloatArray, FloatArray]]]:

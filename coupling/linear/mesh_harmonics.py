@@ -454,9 +454,8 @@ class MeshHarmonicModel:
     def shuttling_loads(self, number: int, face: MeshFace, force: float) -> dict[int, ComplexArray]:
         """Moments of load shuttling by harmonic, of the flanks of a face under a force [N], shape (n,) each."""
         standing = self.machine.system.contacts[number]
-        rate = abs(standing.mesh_frequency)
         loads = face.shuttling(force, standing.phase, standing.mesh_frequency)[1]
-        return {round(load.frequency / (2.0 * np.pi * rate)): load.amplitude for load in loads}
+        return {load.harmonic_of(standing.mesh_frequency): load.amplitude for load in loads}
 
     def _dynamic(self, w: float) -> ComplexArray:
         stiffness, damping = self._matrices
@@ -595,8 +594,14 @@ class MeshHarmonicModel:
     @cached_property
     def _shuttling(self) -> dict[int, dict[int, ComplexArray]]:
         """Return the moments of every loaded contact by harmonic."""
-        contacts, face = self.machine.system.contacts, self.machine.face
-        return {n: self.shuttling_loads(n, face(n, contacts[n].contact), self._force(n)) for n in self.loaded}
+        machine, found = self.machine, dict[int, dict[int, ComplexArray]]()
+        for n in self.loaded:
+            known = None if machine.mean_faces is None else machine.mean_faces.moments_under(n, self._force(n))
+            if known is None:
+                face = machine.face(n, machine.system.contacts[n].contact)
+                known = self.shuttling_loads(n, face, self._force(n))
+            found[n] = known
+        return found
 
     def _error(self, number: int, mesh: LoadedMesh, count: int = HARMONICS) -> ComplexArray:
         """Harmonics of the transmission error of a contact at t = 0 [m], shape (count,)."""

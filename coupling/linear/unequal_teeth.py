@@ -12,12 +12,11 @@ harmonic with 27 and 62 teeth, so that their motion is that of the modes of the 
 directly, too; where the two differ, as with eigenvectors that are nearly one, all are solved so.
 """
 
-import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import linalg
@@ -54,14 +53,15 @@ class DampedMachine:
         if key not in self._factors:
             if len(self._factors) >= _FEW:
                 self._factors.clear()
-            dynamic = self.stiffness + 1j * w * self.damping
+            dynamic = np.empty(self.stiffness.shape, dtype=np.complex128, order="F")
+            dynamic.real, dynamic.imag = self.stiffness, w * self.damping
             if self.mass is None:
                 dynamic[np.diag_indices_from(dynamic)] -= w**2
             else:
                 dynamic -= w**2 * self.mass
-            self._factors[key] = linalg.lu_factor(dynamic, overwrite_a=True, check_finite=False)
-        trans: Literal[0, 1] = 1 if transposed else 0
-        return np.asarray(linalg.lu_solve(self._factors[key], load, trans=trans, check_finite=False))
+            # What scipy's functions do beside LAPACK's takes as long as a machine of a hundred coordinates.
+            self._factors[key] = linalg.lapack.zgetrf(dynamic, overwrite_a=True)[:2]
+        return np.asarray(linalg.lapack.zgetrs(*self._factors[key], load, trans=int(transposed))[0])
 
     def answers(self, outputs: FloatArray, direction: FloatArray, frequency: FloatArray) -> ComplexArray:
         """Motions along rows (o, n) by a unit load along a direction (n,), shape (o, *frequency.shape).
@@ -86,23 +86,45 @@ class DampedMachine:
         return np.reshape(np.array(directly, dtype=np.complex128), (-1, len(outputs))).T
 
     def _by_modes(self, outputs: FloatArray, direction: FloatArray, frequencies: FloatArray) -> ComplexArray:
-        values, vectors = self._modes
+        values, vectors, share = self._modes_driven_along(direction)
+        motions = (outputs @ vectors[: len(self.stiffness)]) * share
+        found = np.empty((len(outputs), frequencies.size), dtype=np.complex128)
+        for first in range(0, frequencies.size, _AT_ONCE):
+            part = frequencies[first : first + _AT_ONCE]
+            # m/(iω - λ) with its conjugate; of a real λ the half of both.
+            gains = 1.0 / ((np.abs(values) ** 2)[:, None] - part**2 - 2.0j * np.multiply.outer(values.real, part))
+            by_mode = 1j * part * (motions.real @ gains) - (motions * values.conj()).real @ gains
+            found[:, first : first + _AT_ONCE] = 2.0 * by_mode
+        return found
+
+    def _modes_driven_along(self, direction: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Eigenvalues of Im λ >= 0, their right eigenvectors in columns, and the share of each in a velocity.
+
+        With a conjugate for each λ, real ones twice by halves, the velocity is the real part of twice their sum.
+        """
+        values, packed = self._modes
         size = len(self.stiffness)
-        # An ill-conditioned solution is found out by the answer that is solved directly.
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", linalg.LinAlgWarning)
-            share = linalg.solve(vectors, np.concatenate([np.zeros(size), direction]))
-        motions = (outputs @ vectors[:size]) * share
-        parts = np.array_split(frequencies, -(-frequencies.size // _AT_ONCE))
-        return np.concatenate([motions @ (1.0 / (1j * part - values[:, None])) for part in parts], axis=1)
+        share = np.linalg.solve(packed, np.concatenate([np.zeros(size), direction]))
+        upper, paired = np.flatnonzero(values.imag >= 0.0), values.imag > 0.0
+        vectors, shares = packed[:, upper].astype(np.complex128), 0.5 * share[upper].astype(np.complex128)
+        above = paired[upper]
+        vectors[:, above] += 1j * packed[:, upper[above] + 1]
+        shares[above] -= 0.5j * share[upper[above] + 1]
+        return values[upper], vectors, shares
 
     @cached_property
-    def _modes(self) -> tuple[ComplexArray, ComplexArray]:
-        """Eigenvalues (2 n,) and right eigenvectors (2 n, 2 n) of the state matrix."""
+    def _modes(self) -> tuple[ComplexArray, FloatArray]:
+        """Eigenvalues (2 n,) and right eigenvectors (2 n, 2 n) of the state matrix, conjugate ones by real columns.
+
+        The columns of λ and its conjugate, which follows it, are the real and the imaginary part of λ's vector.
+        """
         size = len(self.stiffness)
         state = np.block([[np.zeros((size, size)), np.eye(size)], [-self.stiffness, -self.damping]])
-        values, vectors = linalg.eig(state)
-        return np.asarray(values), np.asarray(vectors)
+        work = int(linalg.lapack.dgeev_lwork(2 * size, compute_vl=0)[0])
+        real, imaginary, _, vectors, info = linalg.lapack.dgeev(state, compute_vl=0, lwork=work, overwrite_a=1)
+        if info != 0:
+            raise np.linalg.LinAlgError("the eigenvalues of a damped machine do not converge")
+        return np.asarray(real + 1j * imaginary), np.asarray(vectors)
 
     @cached_property
     def _factors(self) -> dict[float, Any]:

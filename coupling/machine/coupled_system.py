@@ -73,6 +73,10 @@ class HarmonicLoad:
     mechanism: Literal["unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "load"] = "load"
     circling: float | None = None
 
+    def harmonic_of(self, mesh_frequency: float) -> int:
+        """Return the harmonic of a mesh frequency [Hz] that the load has."""
+        return round(self.frequency / (2.0 * np.pi * abs(mesh_frequency)))
+
     @property
     def stands_in_a_frame(self) -> bool:
         """Whether it is a constant load that acts on coordinates of another frame."""

@@ -97,7 +97,7 @@ class MachineUnderLoad:
         progress("comparing with another modal basis")
         add_uncertainty(document, self.loaded.basis_error, document["trusted_below_hz"])
         progress("mechanisms of the lines, and their bands by damping")
-        add_mechanisms(document, self.loaded.mechanisms)
+        add_mechanisms(document, self.loaded.bands)
         self.add_parts_to(document)
 
     def add_parts_to(self, document: dict[str, Any]) -> None:
@@ -292,7 +292,7 @@ def motion_document(
     if signature is not None:
         add_warnings(document, settling_warnings(transient, signature))
     add_uncertainty(document, loaded.basis_error, transient.trusted_limit)
-    add_mechanisms(document, loaded.mechanisms, transient.line_tolerance_hz)
+    add_mechanisms(document, loaded.bands, transient.line_tolerance_hz)
     add_warnings(document, run_signature_warnings(transient, motion.tracking))
     add_warnings(document, unbalanced_torque_warnings(loaded.machine, loaded.run))
     if along is not None:
@@ -305,12 +305,12 @@ def motion_document(
 def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tuple[SolvedSystem, dict[str, Any]]:
     """Find the modes and responses of a machine, and the part of a run's document that they are."""
     progress("comparing with another modal basis")
-    basis, mechanisms = machine.loaded.basis_error, machine.loaded.mechanisms
+    basis = machine.loaded.basis_error
     solved = solve_system(machine.coupled, progress)
     document: dict[str, Any] = {"system": system_document(solved, machine.origin.housing)}
     add_warnings(document, solved.warnings)
     add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
-    add_mechanisms(document["system"], mechanisms)
+    add_mechanisms(document["system"], machine.loaded.bands)
     machine.add_parts_to(document)
     return solved, document
 

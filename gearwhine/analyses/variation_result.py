@@ -349,7 +349,7 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
             with staging(folder.path) as place:
                 write_mode_cache(place, housing)
             housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
-    reduced, key = reduce_housing(case, housing), varied.key_of_housing(case)
+    reduced, key = reduce_housing(case, housing, with_coarser=False), varied.key_of_housing(case)
     return replace(varied, solved=housing, housing=reduced, housing_key=key, radiated=radiated), housing
 
 

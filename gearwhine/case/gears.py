@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
@@ -440,16 +441,24 @@ class Gear(Table):
         gearwhine.coupling.gears.GearError
             Where there is no such gear.
         """
+        if material is None:
+            return self._of_steel
+        from gearwhine.numerics.own_copies import unchecked
+
+        # The case's materials check themselves.
+        return unchecked(
+            self._of_steel,
+            youngs_modulus=material.youngs_modulus,
+            poisson_ratio=material.poisson_ratio,
+            density=material.density,
+        )
+
+    @cached_property
+    def _of_steel(self) -> BuiltGear:
+        """The gear of steel: checks of a case and its machine need it one after the other."""
         from gearwhine.coupling.gears import Gear as BuiltGear
 
         module, errors = self.tooth_module, self.errors
-        of_material: dict[str, float] = {}
-        if material is not None:
-            of_material = {
-                "youngs_modulus": material.youngs_modulus,
-                "poisson_ratio": material.poisson_ratio,
-                "density": material.density,
-            }
         return BuiltGear(
             name=self.name,
             teeth=self.teeth,
@@ -478,7 +487,6 @@ class Gear(Table):
             ring_support=None if self.ring_support is None else self.ring_support.build(),
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
-            **of_material,
         )
 
     @property

@@ -6,7 +6,6 @@ import numpy as np
 
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import BasisError
-from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 
 _TWO_PI = 2.0 * np.pi
 _BANDS = 8  # bands of equal width up to the limit
@@ -44,7 +43,7 @@ def _sensor_lines(document: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
     return [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
 
 
-def add_mechanisms(document: dict[str, Any], mechanisms: LineMechanisms, within_hz: float = 0.0) -> None:
+def add_mechanisms(document: dict[str, Any], bands_by_damping: DampingBand, within_hz: float = 0.0) -> None:
     """Add its mechanisms and its band by damping to every line of the document's sensors.
 
     ``parts`` are the amplitudes by what excites the line, ``part_shares`` the parts in phase with their sum, and
@@ -55,17 +54,19 @@ def add_mechanisms(document: dict[str, Any], mechanisms: LineMechanisms, within_
     Parameters
     ----------
     document : dict
-    mechanisms : LineMechanisms
+    bands_by_damping : DampingBand
+        Bands, with the mechanisms of the lines.
     within_hz : float
         Distance within which the frequencies of lines are known [Hz].
     """
+    mechanisms = bands_by_damping.mechanisms
     rows, harmonics = _sensor_lines(document), document.get("mesh_lines") or ()
     frequencies = np.unique([line["frequency_hz"] for line in (*(line for _, line in rows), *harmonics)])
     frequencies = frequencies[frequencies > 0.0]
     if not frequencies.size or not mechanisms.machine.sensor_rows:
         return
     within = _TWO_PI * within_hz
-    bands = DampingBand(mechanisms).at(_TWO_PI * frequencies, within)
+    bands = bands_by_damping.at(_TWO_PI * frequencies, within)
     steady = document.get("run") is None
     parts = [mechanisms.parts(_TWO_PI * hertz, within) for hertz in frequencies.tolist()] if steady else None
 

@@ -21,11 +21,15 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 
 
-def reduce_housing(case: Case, solved: HousingModes) -> HousingComponent:
-    """Reduce a solved housing to the quantities that the case's machine needs: kilobytes, without mesh and shapes."""
+def reduce_housing(case: Case, solved: HousingModes, *, with_coarser: bool = True) -> HousingComponent:
+    """Reduce a solved housing to the quantities that the case's machine needs: kilobytes, without mesh and shapes.
+
+    Without the coarser one the error of its basis cannot be estimated.
+    """
     operation = case.operation
     participates = operation is not None and (operation.base is not None or operation.gravity is not None)
-    return replace(component_of_housing(solved, participates=participates), displacement_field=None)
+    component = component_of_housing(solved, participates=participates, with_coarser=with_coarser)
+    return replace(component, displacement_field=None)
 
 
 def load_of_case(

@@ -123,7 +123,7 @@ def solve_motion_of_point(
     if load is not None:
         document["load"] = load_part(load)
     add_uncertainty(document, loaded.basis_error, solved.trusted_limit)
-    add_mechanisms(document, loaded.mechanisms, solved.line_tolerance_hz)
+    add_mechanisms(document, loaded.bands, solved.line_tolerance_hz)
     for pair, frequency in zip(document["gear_pairs"], machine.mesh_frequencies, strict=True):
         pair["mesh_frequency_hz"] = frequency
     return PointResult(document, motion)

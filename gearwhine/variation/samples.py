@@ -141,7 +141,7 @@ class VariedCase:
                 known = None if self.solved is None else with_modes_of(case, self.solved, "vary")
                 solved = known or solve_housing(case, command="vary")
                 radiated = radiated_power_of(acoustics_of(case), solved)[0] if self.wanted.has_sound else None
-                self.housings[key] = reduce_housing(case, solved), radiated
+                self.housings[key] = reduce_housing(case, solved, with_coarser=False), radiated
             housing = self.housings[key][0]
         return describe_machine(case, housing or reduced_component(case.reduced_housing, case.input_files))
 

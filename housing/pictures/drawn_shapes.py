@@ -6,9 +6,11 @@ drawn as a wireframe: lines between its points, and their motion from the measur
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy import sparse
 from scipy.spatial import KDTree
 
 from gearwhine.housing.errors import HousingError
@@ -49,18 +51,22 @@ class Skin:
 
     def normals(self, points: FloatArray) -> FloatArray:
         """Outward unit normals at places of the nodes of shape (n_points, 3): means of the triangles, by area."""
-        a, b, c = np.moveaxis(points[self.triangles], 1, 0)
+        a, b, c = points[self.triangles.T]
         doubled_areas = np.cross(b - a, c - a)
-        sums = np.stack(
-            [
-                np.bincount(self.triangles.ravel(), np.repeat(doubled_areas[:, axis], 3), len(points))
-                for axis in range(3)
-            ],
-            axis=1,
-        )
-        lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+        sums = self._triangles_at_points @ doubled_areas
+        lengths = np.sqrt(np.einsum("pk,pk->p", sums, sums))
         # Where two sheets cancel there is no outside; any unit vector will do.
-        return np.where(lengths > 0.0, sums / np.where(lengths > 0.0, lengths, 1.0), [0.0, 0.0, 1.0])
+        sums[lengths == 0.0] = 0.0, 0.0, 1.0
+        return np.asarray(sums / np.where(lengths > 0.0, lengths, 1.0)[:, None])
+
+    @cached_property
+    def _triangles_at_points(self) -> sparse.csr_array:
+        """Incidence of triangles at points, shape (n_points, n_triangles)."""
+        corners = self.triangles.ravel()
+        return sparse.csr_array(
+            (np.ones(corners.size), (corners, np.repeat(np.arange(len(self.triangles)), 3))),
+            shape=(len(self.nodes), len(self.triangles)),
+        )
 
 
 def outer_skin(mesh: Mesh) -> Skin:
@@ -160,13 +166,17 @@ class DrawnShape:
     @property
     def amplitude(self) -> FloatArray:
         """Largest displacement of each point over a period, as part of the largest of all, shape (n_points,)."""
-        swing = peak_displacement(self.motion)
-        return np.asarray(swing / swing.max())
+        return np.asarray(self._swing / self._swing.max())
+
+    @cached_property
+    def _swing(self) -> FloatArray:
+        """Largest displacement of each point over a period, to the scale of the motion, shape (n_points,)."""
+        return peak_displacement(self.motion)
 
     def at(self, angle: float) -> FloatArray:
         """Displacement at a phase angle [rad] after that of the widest, the largest amplitude being 1; zero at rest."""
         turned = self.motion * np.exp(1j * (angle - widest_angle(self.motion)))
-        largest = peak_displacement(self.motion).max()
+        largest = self._swing.max()
         return np.asarray(turned.real / largest if largest > 0.0 else turned.real)
 
 
@@ -176,12 +186,13 @@ def peak_displacement(motion: FloatArray | ComplexArray) -> FloatArray:
     With U = a + ib, |Re U e^{iθ}|² = ½ (|U|² + Re (U·U) e^{2iθ}): the largest is half the major axis of the ellipse
     that the point runs along, √(½ (|U|² + |U·U|)).
     """
-    return np.asarray(np.sqrt(0.5 * ((np.abs(motion) ** 2).sum(axis=1) + np.abs((motion**2).sum(axis=1)))))
+    size, dot = np.einsum("pk,pk->p", motion, motion.conj()).real, np.einsum("pk,pk->p", motion, motion)
+    return np.asarray(np.sqrt(0.5 * (size + np.abs(dot))))
 
 
 def widest_angle(motion: FloatArray | ComplexArray) -> float:
     """Return the θ of the largest Σ |Re U e^{−iθ}|² over all points [rad]; 0 where all move in phase with a real U."""
-    return 0.5 * float(np.angle((motion**2).sum()))
+    return 0.5 * float(np.angle(np.vdot(motion.conj(), motion)))
 
 
 def drawn_housing(mesh: Mesh, up: Sequence[float] = (0.0, 1.0, 0.0)) -> DrawnHousing:

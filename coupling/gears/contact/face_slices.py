@@ -259,8 +259,9 @@ def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
     """Lagrange polynomials over the stations (j,), evaluated at z (s,), shape (s, j)."""
     weights = np.ones((z.size, stations.size))
     for j, node in enumerate(stations):
-        for other in np.delete(stations, j):
-            weights[:, j] *= (z - other) / (node - other)
+        for i, other in enumerate(stations):
+            if i != j:
+                weights[:, j] *= (z - other) / (node - other)
     return weights
 
 

@@ -60,9 +60,10 @@ def _references(
 ) -> Iterator[tuple[Location, Reference, str]]:
     """Yield each name in a table, as it stands in the document, that refers to an entry of the case."""
     for key, references, tables in _keys_with_references(table):
-        value = entry.get(key)
+        if (value := entry.get(key)) is None:
+            continue
         listed = isinstance(value, (list, tuple))
-        for place, one in enumerate(value) if isinstance(value, (list, tuple)) else ((0, value),):
+        for place, one in enumerate(value) if listed else ((0, value),):
             location = (*at, key, place) if listed else (*at, key)
             if isinstance(one, str):
                 yield from ((location, reference, one) for reference in references)
