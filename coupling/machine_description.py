@@ -975,7 +975,7 @@ class Machine:
         for shaft in self.shafts:
             ratio = abs(self.speeds[shaft.name] / self.speed) if self.speed != 0.0 else 0.0
             for speed in np.ravel(speeds):
-                shaft.rotor.require_speed("speed", ratio * float(speed))
+                shaft.rotor.require_speed(ratio * float(speed))
         return system_campbell(self.assembled, speeds, frequency_limit=frequency_limit, progress=progress)
 
     def mesh_error_response(self, frequencies: FloatArray, *, mesh: int = 0) -> FrequencyResponse:

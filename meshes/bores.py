@@ -142,6 +142,7 @@ def plane_axes(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, np.cross(axis, first)
 
 
+LEAST_ROUND = 0.45  # part of the full circle that a bore covers, as in a housing split at the axis
 _LEAST_INWARD_COSINE = 0.5  # least cosine between a facet's normal and the direction to the axis
 _ARC_STEPS = 720
 _WHOLE_BORE_ROUNDNESS = 0.9  # part of the full circle above which a bore is whole
@@ -177,9 +178,7 @@ class CylindricalBore:
     facets: Facets
 
 
-def find_bores(
-    mesh: Mesh, *, axis: Sequence[float] | FloatArray = (0.0, 0.0, 1.0), least_round: float = 0.45
-) -> tuple[CylindricalBore, ...]:
+def find_bores(mesh: Mesh, *, axis: Sequence[float] | FloatArray = (0.0, 0.0, 1.0)) -> tuple[CylindricalBore, ...]:
     """All cylindrical bores along an axis, the widest first.
 
     Parameters
@@ -187,8 +186,6 @@ def find_bores(
     mesh : Mesh
     axis : sequence of float
         Direction of the axis, of any length.
-    least_round : float
-        Part of the full circle that a bore must cover; by default about a half, as in a housing split at the axis.
 
     Notes
     -----
@@ -206,7 +203,7 @@ def find_bores(
             continue
         for found in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
             bore = _without_walls(mesh, found, direction)
-            if bore.roundness < least_round or any(_same(bore, other, direction) for other in bores):
+            if bore.roundness < LEAST_ROUND or any(_same(bore, other, direction) for other in bores):
                 continue
             if _is_divided_as_a_circle(mesh, bore, direction) and not _runs_on(mesh, bore, direction):
                 bores.append(bore)

@@ -6,7 +6,15 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.meshes.bores import CylindricalBore, describe_bore, find_bores, fits_circle, joined_by_span, unit_vector
+from gearwhine.meshes.bores import (
+    LEAST_ROUND,
+    CylindricalBore,
+    describe_bore,
+    find_bores,
+    fits_circle,
+    joined_by_span,
+    unit_vector,
+)
 from gearwhine.meshes.elements import Facets, facet_centers, facet_corners, facet_normals, pick_facets
 from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.mesh import Mesh
@@ -15,7 +23,6 @@ from gearwhine.numerics.arrays import FloatArray
 _PLANE_SLACK = 1e-4  # part of the mesh's diagonal
 _LEAST_NORMAL_COSINE = 0.99  # least cosine between a facet's normal and that of the plane it lies on
 _CIRCLE_SLACK = 0.01  # part of the bore's diameter
-_LEAST_ROUND = 0.45  # part of the full circle: less than half a bore holds no bearing
 _MOST_LISTED_BORES = 5
 
 
@@ -168,7 +175,7 @@ def cylinder_facets(
         heights = (mesh.points - place) @ direction
         on &= _all_corners(mesh, np.abs(heights) <= length / 2 + _CIRCLE_SLACK * diameter)
     bores = joined_by_span(mesh, pick_facets(mesh.boundary, on), place, direction) if on.any() else ()
-    bores = tuple(bore for bore in bores if bore.roundness >= _LEAST_ROUND)
+    bores = tuple(bore for bore in bores if bore.roundness >= LEAST_ROUND)
     along = [abs(float(np.dot(np.subtract(bore.center, place), direction))) for bore in bores]
     # A centre far away on the axis is a mistake, and would give the seat a long lever arm.
     if bores and min(along) <= diameter + bores[int(np.argmin(along))].length / 2:
@@ -176,21 +183,14 @@ def cylinder_facets(
     raise GeometryError(_no_bore(mesh, place, diameter, direction))
 
 
-def with_bore(
-    mesh: Mesh,
-    name: str,
-    center: Sequence[float],
-    diameter: float,
-    *,
-    axis: Sequence[float] = (0.0, 0.0, 1.0),
-) -> Mesh:
-    """Return the mesh with a bore as a named surface; unchanged where it has a surface of that name already.
+def with_bore(mesh: Mesh, name: str, center: Sequence[float], diameter: float) -> Mesh:
+    """Return the mesh with a bore along z as a named surface; unchanged where it has a surface of that name already.
 
     Parameters and errors are those of :func:`cylinder_facets`.
     """
     if name in mesh.surfaces:
         return mesh
-    return replace(mesh, surfaces={**mesh.surfaces, name: cylinder_facets(mesh, center, diameter, axis=axis)})
+    return replace(mesh, surfaces={**mesh.surfaces, name: cylinder_facets(mesh, center, diameter)})
 
 
 def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) -> str:

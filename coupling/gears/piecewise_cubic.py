@@ -276,16 +276,16 @@ def tabulated(function: Callable[[FloatArray], FloatArray], length: float, toler
     )
 
 
-def through_points(position: FloatArray, values: FloatArray, intervals: int = 4096) -> PiecewiseCubic:
+def through_points(position: FloatArray, values: FloatArray) -> PiecewiseCubic:
     """Monotone cubic through given points (Fritsch & Carlson), on a uniform grid.
 
-    Points that are spaced uniformly are kept as they are; others are carried over to a grid of `intervals`.
+    Points that are spaced uniformly are kept as they are; others are carried over to a grid of 4096 intervals.
     """
     curve = PchipInterpolator(position, values)
     spacing = np.diff(position)
     if np.allclose(spacing, spacing.mean(), rtol=1e-9, atol=0.0):
         return _from_scipy(curve)
-    knots = np.linspace(position[0], position[-1], intervals + 1)
+    knots = np.linspace(position[0], position[-1], 4097)
     return _from_scipy(PchipInterpolator(knots, curve(knots)))
 
 

@@ -489,7 +489,6 @@ def housing_component(
     sensor_places: Mapping[str, SensorPlace] | None = None,
     seat_reach: Mapping[str, float] | None = None,
     ring_motions: Mapping[str, FloatArray] | None = None,
-    name: str = "housing",
 ) -> HousingComponent:
     """Assemble the housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
 
@@ -526,7 +525,7 @@ def housing_component(
         _check_damping(damping_matrix, n)
         damping = damping + damping_matrix
     return HousingComponent(
-        name=name,
+        name="housing",
         kinds=("housing",) * m + ("residual",) * (n - m),
         stiffness=np.diag(omega**2),
         damping=damping,
@@ -543,9 +542,7 @@ def housing_component(
     )
 
 
-def component_of_housing(
-    modes: HousingModes, *, participates: bool, with_coarser: bool = True, name: str = "housing"
-) -> HousingComponent:
+def component_of_housing(modes: HousingModes, *, participates: bool, with_coarser: bool = True) -> HousingComponent:
     """Make the housing's component from its natural modes.
 
     Parameters
@@ -556,16 +553,15 @@ def component_of_housing(
         Whether the base moves or there is weight, for which the housing's mass matrix is assembled.
     with_coarser : bool
         Whether it has the coarser one, with a response less of residual modes.
-    name : str
     """
     participation = modes.participation if participates else None
     coarser = None
     if with_coarser and modes.with_a_response_less is not None:
         fewer, transformation = modes.with_a_response_less
         moved = None if participation is None else transformation.T @ participation
-        coarser = _component_of_modes(fewer, moved, name)
+        coarser = _component_of_modes(fewer, moved)
     return replace(
-        _component_of_modes(modes, participation, name),
+        _component_of_modes(modes, participation),
         coarser=coarser,
         warnings=tuple(modes.warnings),
         displacement_field=modes.displacement_field,
@@ -573,7 +569,7 @@ def component_of_housing(
     )
 
 
-def _component_of_modes(modes: HousingModes, participation: FloatArray | None, name: str) -> HousingComponent:
+def _component_of_modes(modes: HousingModes, participation: FloatArray | None) -> HousingComponent:
     seats = {seat.name: seat.center for seat in modes.housing.seats}
     return housing_component(
         modes.modes,
@@ -587,7 +583,6 @@ def _component_of_modes(modes: HousingModes, participation: FloatArray | None, n
         damping_matrix=modes.damping_matrix,
         participation=participation,
         ring_motions=modes.ring_motions,
-        name=name,
     )
 
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse, table_findings
+from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse, table_findings
 from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 
 
@@ -104,14 +104,6 @@ class TorqueRipple:
     order: float | None = None
     frequency: float | None = None
 
-    def __post_init__(self) -> None:
-        """Require either an order or a frequency."""
-        if (self.order is None) == (self.frequency is None):
-            raise CouplingError(
-                f"a torque ripple on {self.rotor!r} of order {self.order} and frequency {self.frequency}; "
-                "expected one of the two"
-            )
-
 
 @dataclass(frozen=True)
 class TorqueOverTime:
@@ -163,11 +155,11 @@ class Ripple:
         """Require finite numbers, and either an order or a frequency."""
         positive = Number(above=0.0, optional=True)
         rules: dict[str, Rule] = {"amplitude": Number(unit="N m"), "phase": Number(unit="rad")}
-        refuse(attribute_findings(("ripple", ""), self, **rules, order=positive, frequency=positive), CouplingError)
+        part = ("ripple", "")
+        findings = list(attribute_findings(part, self, **rules, order=positive, frequency=positive))
         if (self.order is None) == (self.frequency is None):
-            raise CouplingError(
-                f"a torque ripple of order {self.order} and frequency {self.frequency}; expected one of the two"
-            )
+            findings.append(Finding(part, "order", None, "either an 'order' of the shaft's rotation or a 'frequency'"))
+        refuse(findings, CouplingError)
 
     def on(self, rotor: str, at: float, sense: float) -> TorqueRipple:
         """Return the ripple about z on a rotor at a station [m], positive in a sense of rotation."""

@@ -14,7 +14,7 @@ _DEPENDENT = 1e-10  # part of a motion below which it is one of others
 _ALONG = 1e-9  # distance of a direction's component from one, along an axis
 
 
-def component_of_reduced_housing(housing: ReducedHousing, *, name: str = "housing") -> HousingComponent:
+def component_of_reduced_housing(housing: ReducedHousing) -> HousingComponent:
     """Make the component of a reduced housing in its own modes, all of them kept.
 
     Modes above the frequency limit are of the kind ``residual``: their static response counts, their own frequencies
@@ -24,7 +24,7 @@ def component_of_reduced_housing(housing: ReducedHousing, *, name: str = "housin
     frequencies = modes.all_frequencies
     n, motions = len(frequencies), housing.participation_motions
     return HousingComponent(
-        name=name,
+        name="housing",
         kinds=("housing",) * modes.known + ("residual",) * (n - modes.known),
         stiffness=np.diag(frequencies**2),
         damping=housing.damping_matrix(),

@@ -7,7 +7,7 @@ are within the unit circle.
 segments.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Literal
 
@@ -332,20 +332,5 @@ class BranchMotion:
 def motion_summary(response: PeriodicResponse, segments: int) -> BranchMotion:
     """Summary of a response, with states at the starts of ``segments`` equal segments."""
     displacements, velocities = response.at_nodes(segments)
-    return BranchMotion(
-        period=response.period,
-        floquet=response.floquet,
-        residual=response.residual,
-        error=response.error,
-        elements=response.elements,
-        switches=response.switches,
-        level=response.level,
-        newton_steps=response.newton_steps,
-        displacements=displacements,
-        velocities=velocities,
-        mean_force=response.mean_force,
-        peak_force=response.peak_force,
-        mean_compression=response.mean_compression,
-        rms_compression=response.rms_compression,
-        contact_loss=response.contact_loss,
-    )
+    kept = {one.name: getattr(response, one.name) for one in fields(BranchMotion) if hasattr(response, one.name)}
+    return BranchMotion(**kept, displacements=displacements, velocities=velocities)

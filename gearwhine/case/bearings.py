@@ -327,6 +327,19 @@ _KINDS: dict[str, CatalogueType] = {
 }
 
 
+_BALLS: tuple[Element, ...] = ("ball", "four-point-ball", "self-aligning-ball")
+_ROLLERS: tuple[Element, ...] = ("roller", "tapered-roller", "spherical-roller")
+_WITHOUT: tuple[tuple[str, tuple[Element, ...], str], ...] = (
+    ("element_length", _BALLS, "balls have no length"),
+    ("inner_groove", _ROLLERS, "only balls run in grooves"),
+    ("outer_groove", _ROLLERS, "only balls run in grooves"),
+    ("outer_groove", ("self-aligning-ball",), "the outer raceway is a sphere about the bearing's centre"),
+    ("profile", (*_BALLS, "spherical-roller"), "only cylindrical and tapered rollers have such a profile"),
+    ("osculation", (*_BALLS, "roller", "tapered-roller"), "only spherical rollers have a contour"),
+)
+"""Keys that some elements do not have, and why."""
+
+
 class RollingGeometry(_Mounted):
     """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter."""
 
@@ -357,24 +370,16 @@ class RollingGeometry(_Mounted):
     def _fits(self) -> RollingGeometry:
         if self.element_diameter >= self.pitch_diameter:
             raise wrong("rolling elements smaller than their pitch circle", "element_diameter")
-        rollers, angled = self.element.endswith("roller"), self.contact_angle != 0.0
-        if rollers and self.element_length is None:
+        angled = self.contact_angle != 0.0
+        if self.element.endswith("roller") and self.element_length is None:
             raise wrong("the length of the rollers", "element_length")
-        if not rollers and self.element_length is not None:
-            raise wrong("nothing: balls have no length", "element_length")
         if self.element == "roller" and angled:
             raise wrong('nothing, or 0: rollers are cylindrical; element = "tapered-roller" has one', "contact_angle")
         if self.element in ("tapered-roller", "four-point-ball", "self-aligning-ball") and not angled:
             raise wrong(f"more than 0, the contact angle of a {self.element}", "contact_angle")
-        for key in ("inner_groove", "outer_groove"):
-            if getattr(self, key) is not None and rollers:
-                raise wrong("nothing: only balls run in grooves", key)
-        if self.outer_groove is not None and self.element == "self-aligning-ball":
-            raise wrong("nothing: the outer raceway is a sphere about the bearing's centre", "outer_groove")
-        if self.profile is not None and self.element not in ("roller", "tapered-roller"):
-            raise wrong("nothing: only cylindrical and tapered rollers have such a profile", "profile")
-        if self.osculation is not None and self.element != "spherical-roller":
-            raise wrong("nothing: only spherical rollers have a contour", "osculation")
+        for key, without, reason in _WITHOUT:
+            if getattr(self, key) is not None and self.element in without:
+                raise wrong(f"nothing: {reason}", key)
         if self.mounting is not None:
             for key in ("bore", "outer_diameter"):
                 if getattr(self.mounting, key) is None:
@@ -825,49 +830,41 @@ class Bearing(Table):
         return [value] if isinstance(value, dict) else value
 
     @model_validator(mode="after")
-    def _faulty(self) -> Bearing:
-        by_elements = isinstance(self.stiffness, RollingStiffness) and self.stiffness.rolling.law == "nonlinear"
-        for key in ("fault", "slip"):
-            if getattr(self, key) and not by_elements:
-                raise wrong('none, or rolling = { …, law = "nonlinear" }, which follows every element', key)
+    def _consistent(self) -> Bearing:
+        if self.rolling is None or self.rolling.law != "nonlinear":
+            for key in ("fault", "slip"):
+                if getattr(self, key):
+                    raise wrong('none, or rolling = { …, law = "nonlinear" }, which follows every element', key)
         for number, fault in enumerate(self.fault):
             if fault.planet is not None:
                 raise wrong(one_of_planets("bearing"), "fault", number, "planet")
-        return self
-
-    @property
-    def follows_own_law(self) -> bool:
-        """Whether its force in motion is no matrix times its deflection."""
-        if isinstance(self.stiffness, RollingStiffness):
-            return self.stiffness.rolling.law == "nonlinear"
-        return isinstance(self.stiffness, StopStiffness)
-
-    @model_validator(mode="after")
-    def _placed(self) -> Bearing:
         if self.follows_own_law and self.seat_error.build() is not None:
             raise wrong(
                 "none of a stop or of law = 'nonlinear', which take the seat in its nominal place", "seat_error"
             )
-        return self
-
-    @model_validator(mode="after")
-    def _loaded(self) -> Bearing:
-        depends = isinstance(self.stiffness, RollingStiffness | StopStiffness)
-        if self.load is not None and not depends:
+        if self.load is not None and not isinstance(self.stiffness, RollingStiffness | StopStiffness):
             raise wrong("nothing: only the stiffness of a rolling bearing or a stop depends on its load", "load")
+        if self.rolling is not None and self.rolling.floating:
+            if self.load is not None and self.load.z != 0.0:
+                raise wrong("0: a floating bearing takes no axial force", "load", "z")
+            rows = self.damping.matrix if isinstance(self.damping, MatrixDamping) else None
+            if rows is not None and (any(rows[2]) or any(row[2] for row in rows)):
+                raise wrong("zeros in the row and column of z: a floating bearing takes no axial force", "damping")
+        for place, (lower, upper) in enumerate(pairwise(self.speeds or ()), start=1):
+            if upper <= lower:
+                raise wrong("a speed above the one before it", "speeds", place)
         return self
 
-    @model_validator(mode="after")
-    def _floats(self) -> Bearing:
-        if not isinstance(self.stiffness, RollingStiffness) or not self.stiffness.rolling.floating:
-            return self
-        if self.load is not None and self.load.z != 0.0:
-            raise wrong("0: a floating bearing takes no axial force", "load", "z")
-        if isinstance(self.damping, MatrixDamping):
-            rows = self.damping.matrix
-            if any(rows[2]) or any(row[2] for row in rows):
-                raise wrong("zeros in the row and column of z: a floating bearing takes no axial force", "damping")
-        return self
+    @property
+    def rolling(self) -> RollingGeometry | RollingCatalogue | None:
+        """The rolling bearing, whose stiffness follows from its elements; None of another kind."""
+        return self.stiffness.rolling if isinstance(self.stiffness, RollingStiffness) else None
+
+    @property
+    def follows_own_law(self) -> bool:
+        """Whether its force in motion is no matrix times its deflection."""
+        by_elements = self.rolling is not None and self.rolling.law == "nonlinear"
+        return by_elements or isinstance(self.stiffness, StopStiffness)
 
     @property
     def damping_time(self) -> float:
@@ -876,25 +873,17 @@ class Bearing(Table):
 
         if isinstance(self.damping, StiffnessDamping):
             return self.damping.over_stiffness
-        by_elements = isinstance(self.stiffness, RollingStiffness)
-        return ROLLING_DAMPING_TIME if self.damping is None and by_elements else 0.0
+        return ROLLING_DAMPING_TIME if self.damping is None and self.rolling is not None else 0.0
 
     @property
     def lacks_load(self) -> bool:
         """Whether it is a rolling bearing whose load is not given."""
-        return isinstance(self.stiffness, RollingStiffness) and self.load is None
-
-    @model_validator(mode="after")
-    def _ascending(self) -> Bearing:
-        for place, (lower, upper) in enumerate(pairwise(self.speeds or ()), start=1):
-            if upper <= lower:
-                raise wrong("a speed above the one before it", "speeds", place)
-        return self
+        return self.rolling is not None and self.load is None
 
     @property
     def is_offset(self) -> bool:
         """Whether an axial offset of its inner ring presses it and other bearings of its rotor."""
-        return isinstance(self.stiffness, RollingStiffness) and self.stiffness.rolling.axial_offset != 0.0
+        return self.rolling is not None and self.rolling.axial_offset != 0.0
 
     @property
     def grounded(self) -> bool:

@@ -408,8 +408,6 @@ class Gear(Table):
         for number, fault in enumerate(self.fault):
             if fault.planet is not None:
                 raise wrong(one_of_planets("gear"), "fault", number, "planet")
-            if fault.tooth is not None and fault.tooth >= abs(self.teeth):
-                raise wrong(f"a tooth from 0 to {abs(self.teeth) - 1}", "fault", number, "tooth")
         is_given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
         if any(is_given) and not all(is_given):
             raise wrong("all of 'mass', 'polar_inertia' and 'diametral_inertia', or none of them")

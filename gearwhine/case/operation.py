@@ -84,7 +84,7 @@ class TorqueHistory(ObjectTable):
         return TorqueOverTime(self.time, self.torque)
 
 
-class TorqueRipple(Table):
+class TorqueRipple(ObjectTable):
     """Harmonic ripple of a torque: amplitude [N m], phase [rad], and an order of its shaft or a frequency [Hz]."""
 
     amplitude: SignedTorque
@@ -95,12 +95,6 @@ class TorqueRipple(Table):
     """Cycles per revolution of its shaft. One of this and `frequency`."""
     frequency: PositiveFrequency | None = None
     """Frequency. One of this and `order`."""
-
-    @model_validator(mode="after")
-    def _one_pace(self) -> TorqueRipple:
-        if (self.order is None) == (self.frequency is None):
-            raise wrong("either an 'order' of the shaft's rotation or a 'frequency'", "order")
-        return self
 
     def build(self) -> Ripple:
         """Build the ripple."""

@@ -278,11 +278,11 @@ class Parts:
     def _loaded(self, index: int) -> MountedBearing:
         """Return a bearing under the load that the case gives."""
         entry, mounted = self.bearing[index], self.unloaded_bearings[index]
-        if not isinstance(entry.stiffness, RollingStiffness) or mounted.rolling is None:
+        if entry.rolling is None or mounted.rolling is None:
             return mounted
         state = self.rolling_states.get(entry.name)
         law: BearingLaw | None = None
-        if entry.stiffness.rolling.law == "nonlinear":
+        if entry.rolling.law == "nonlinear":
             # A bearing whose load is left to the operating point is undeflected until then.
             undeflected = rolling.rolling_state(mounted.rolling, np.zeros(5))
             spalls = tuple(fault.build() for fault in entry.fault)
@@ -344,11 +344,8 @@ class Parts:
         operation = self.operation
         if operation is None or not self.rotor or not self.bearing:
             return False
-        rolling = [
-            bearing.stiffness.rolling for bearing in self.bearing if isinstance(bearing.stiffness, RollingStiffness)
-        ]
-        preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
-        preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
+        rolling = [entry.rolling for entry in self.bearing if entry.rolling is not None]
+        preloaded = any(one.pressed or one.mounting is not None or one.axial_offset != 0.0 for one in rolling)
         return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     @property

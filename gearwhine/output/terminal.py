@@ -173,7 +173,7 @@ def _wrapped(text: str, width: int) -> str:
     lines = list[str]()
     for line in text.split("\n"):
         is_broken = any(_width(word) > width for word in _words(line))
-        lines += wrap(_held(line), max(width, 1), break_on_hyphens=is_broken) or [""]
+        lines += wrap(_held(line), width, break_on_hyphens=is_broken) or [""]
     return "\n".join(lines).replace("\u00a0", " ")
 
 

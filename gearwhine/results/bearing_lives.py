@@ -14,13 +14,11 @@ def life_in_words(hours: float | None) -> str:
     return significant(hours) if hours <= LONGEST_LIFE else f"> {LONGEST_LIFE:.0e}".replace("e+0", "e")
 
 
-def life_quantities(rated: str, name: str, headings: tuple[str, str]) -> tuple[Quantity, ...]:
-    """Rating and lives of a bearing.
+def life_quantities(name: str, headings: tuple[str, str]) -> tuple[Quantity, ...]:
+    """Rating and lives of a bearing, of a row that has them as its ``rated``.
 
     Parameters
     ----------
-    rated : str
-        Attribute of a row that has the lives, a :class:`gearwhine.rotors.rolling_bearings.rated_life.BearingLife`.
     name : str
         Name of the bearings in the NetCDF file, such as ``bearing``.
     headings : tuple of str
@@ -31,11 +29,11 @@ def life_quantities(rated: str, name: str, headings: tuple[str, str]) -> tuple[Q
         def words(row: Document) -> str:
             return life_in_words(row.get(key))
 
-        return Quantity(key, f"{rated}.{attribute}", f"{name}_{attribute}", heading=heading, shown=words)
+        return Quantity(key, f"rated.{attribute}", f"{name}_{attribute}", heading=heading, shown=words)
 
     return (
-        Quantity("dynamic_rating_n", f"{rated}.rating"),
-        Quantity("dynamic_rating_from", f"{rated}.rating_from"),
+        Quantity("dynamic_rating_n", "rated.rating"),
+        Quantity("dynamic_rating_from", "rated.rating_from"),
         life("life_h", "life", headings[0]),
         life("reference_life_h", "reference_life", headings[1]),
     )

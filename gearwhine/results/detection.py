@@ -15,7 +15,6 @@ from gearwhine.results.many_solutions import ending, failed_sentences, failed_so
 if TYPE_CHECKING:
     from gearwhine.detection.detectability import DetectionResult
 
-_MOST_FAILURES = 5  # told one by one
 _MOST_NAMED = 3
 
 DETECTABILITY = (
@@ -211,7 +210,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     for reason in dict.fromkeys(row["undefined"] for row in document["detectability"] if "undefined" in row):
         where = _where([row for row in document["detectability"] if row.get("undefined") == reason])
         yield f"Undefined: {where}: {reason}."
-    yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
+    yield from failed_sentences(document, "gearbox")
     noise = document["sensor_noise_m_per_s2"]
     alike = "" if document["is_varied"] else "; no key varies: healthy records of the one gearbox differ by noise alone"
     against = "; indicators over those of an earlier record of the same gearbox" if document["has_own_baseline"] else ""

@@ -9,6 +9,8 @@ from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import Quantity, Rows, in_file
 from gearwhine.output.sections import Document
 
+_MOST_FAILURES = 5  # told one by one
+
 
 def failed_solutions(first: int = 0) -> Rows:
     """Declare the solutions that failed by their number in the study, which counts from ``first``."""
@@ -47,12 +49,12 @@ def failed_warnings(study: Any, total: int, name: str, nouns: str) -> Iterator[R
         yield warning(name, message, failed=failed)
 
 
-def failed_sentences(document: Document, noun: str, most: int) -> Iterator[str]:
+def failed_sentences(document: Document, noun: str) -> Iterator[str]:
     """Yield a sentence on each of the first solutions that failed, and the number of the others."""
-    for failure in document["failed"][:most]:
+    for failure in document["failed"][:_MOST_FAILURES]:
         yield f"{noun.capitalize()} {failure['number']} failed: {failure['message']}"
-    if len(document["failed"]) > most:
-        yield f"and {len(document['failed']) - most} more"
+    if len(document["failed"]) > _MOST_FAILURES:
+        yield f"and {len(document['failed']) - _MOST_FAILURES} more"
 
 
 def ending(document: Document) -> str:

@@ -90,7 +90,7 @@ BEARING = (
     Quantity("most_loaded_element", "most_loaded"),
     in_file("bearing_element_load", "rolling_element", "element_loads", unit="N"),
     Quantity("equivalent_load_n", "rated.equivalent_load"),
-    *life_quantities("rated", "bearing", ("L10\n[h]", "L10r\n[h]")),
+    *life_quantities("bearing", ("L10\n[h]", "L10r\n[h]")),
 )
 """Quantities of a bearing at the operating point; a row is a :class:`LoadedBearing`."""
 

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from gearwhine.optimisation.verification import Motion, Verification
     from gearwhine.solutions import Failure
 
-_MOST_FAILURES = 3  # told one by one
 _MOST_FRONT = 12  # rows of the front on the page
 _RPM = 30.0 / np.pi
 _ENDED = {
@@ -413,7 +412,7 @@ def _sentences(document: Document) -> Iterator[str]:
                 yield f"{row['key']} is at its {row['at_bound']} value: a wider range may be better."
     for row in document.get("missed", ()):
         yield f"Missed: {row['text']}."
-    yield from failed_sentences(document, "design", _MOST_FAILURES)
+    yield from failed_sentences(document, "design")
     about = document["gearboxes_about_each"]
     yield from _proven_yield(document, about)
     scatter = f", {about} gearboxes about each" if about > 1 else ""

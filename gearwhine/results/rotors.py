@@ -217,7 +217,7 @@ ROLLING = (
         heading="stiffness [N/m]",
         shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
     ),
-    *life_quantities("rated", "rolling_bearing", ("rated life L10 [h]", "L10r [h]")),
+    *life_quantities("rolling_bearing", ("rated life L10 [h]", "L10r [h]")),
     Quantity("estimated", "loaded.bearing.estimated"),
     Quantity("characteristic_frequencies_hz", "characteristic_frequencies_hz"),
     Quantity("displacement_m", lambda row: row.loaded.displacement[:3]),

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 _MOST_INPUTS = 3  # of a quantity in the table of what matters
 _MOST_RANKS, _MOST_RANKED = 3, 4  # worst gearboxes of a quantity, and quantities up to which they are told
-_MOST_FAILURES = 5  # told one by one
 _MANY_AT_END = 0.05  # part of the gearboxes that are the loudest at an end of the speeds above which it is warned of
 _WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
 
@@ -333,7 +332,7 @@ def _content(document: Document) -> Iterator[str | Table]:
             "do: --indices counts all of them, and --widen tells what their class costs."
         )
     yield from _what_wider_ones_cost(document)
-    yield from failed_sentences(document, "gearbox", _MOST_FAILURES)
+    yield from failed_sentences(document, "gearbox")
     standing = ""
     if document["representative"] < document["samples"]:
         standing = f", {document['representative']} of which stand for the production in the table of distributions"

@@ -7,7 +7,7 @@ from the other, so that one of them is a slip of the pen or stands for a sleeve 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from gearwhine.case import Bearing, Gear, GearPair, Housing, RollingStiffness, Seat
+from gearwhine.case import Bearing, Gear, GearPair, Housing, Seat
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.parts import Parts
@@ -90,9 +90,9 @@ def _in_seat(bearing: Bearing, z: float, seat: Seat, span: tuple[float, float] |
 
 def _rings(bearing: Bearing) -> tuple[float | None, float | None, float | None]:
     """Bore, outside diameter and width of a rolling bearing [m], as far as the case gives them."""
-    if not isinstance(bearing.stiffness, RollingStiffness):
+    rolling = bearing.rolling
+    if rolling is None:
         return None, None, None
-    rolling = bearing.stiffness.rolling
     if isinstance(rolling, RollingCatalogue):
         size = rolling.catalogue
         rows = rolling.spacing or 0.0

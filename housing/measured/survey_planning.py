@@ -122,6 +122,7 @@ def _middles(count: int) -> FloatArray:
 
 
 _PLACES = 3  # places for the hammer
+_NEIGHBOURS = 3  # points that trace lines join a point with
 _DEPENDENT = 1e-8  # smallest singular value of the shapes as a part of the largest, below which two are one
 
 
@@ -271,7 +272,7 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     return MeasuredGeometry(labels, np.array([point.position for point in surface_points]), np.arange(count), normals)
 
 
-def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbours: int = 3) -> MeasuredGeometry:
+def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray) -> MeasuredGeometry:
     """Return the chosen degrees of freedom as a survey of their own, neighbouring points joined by trace lines.
 
     Points are numbered from 1 in the order given.
@@ -281,7 +282,7 @@ def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbo
     points = candidates.points[sensors]
     positions = candidates.positions[points]
     count = len(sensors)
-    near = cKDTree(positions).query(positions, k=min(neighbours + 1, count))[1].reshape(count, -1)
+    near = cKDTree(positions).query(positions, k=min(_NEIGHBOURS + 1, count))[1].reshape(count, -1)
     joined = {
         (min(index, other), max(index, other))
         for index, row in enumerate(near.tolist())

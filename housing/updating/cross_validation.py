@@ -171,7 +171,6 @@ def null_fits(
     procedure: Procedure[AnyDesign],
     target: Target,
     count: int,
-    seed: int = 0,
     each: Each = serial_map,
     progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[NullFit, list[NullFit]]:
@@ -183,8 +182,6 @@ def null_fits(
     target : Target
     count : int
         Number of random sets.
-    seed : int
-        Seed of their frequencies.
     each, progress
         See :func:`leave_one_out`.
 
@@ -193,7 +190,7 @@ def null_fits(
     measured : NullFit
     random : list of NullFit
     """
-    generator = np.random.default_rng(seed)
+    generator = np.random.default_rng(0)
     drawn = [random_frequencies(target.frequencies, generator) for _ in range(count)]
     sets = [target, *(replace(target, frequencies=frequencies) for frequencies in drawn)]
     fits = []

@@ -7,6 +7,7 @@ from typing import Literal
 
 from gearwhine.meshes.box.parts import FACES, Bolt, Bore, Box, Cover, Face, Point, Rib, plane_axes
 
+_SLACK = 1e-9  # depth to which blocks that only touch may overlap by rounding [m]
 RIB_DEPTH_IN_WALL = 0.5
 """Ribs reach into the walls they meet by this part of the thickness, so that rounded edges leave no gap below."""
 
@@ -24,10 +25,10 @@ class Block:
         x, y, z = (a + length for a, length in zip(self.low, self.size, strict=True))
         return x, y, z
 
-    def overlaps(self, other: Block, slack: float = 1e-9) -> bool:
+    def overlaps(self, other: Block) -> bool:
         """Whether the two have volume in common."""
         return all(
-            a + slack < d and c + slack < b
+            a + _SLACK < d and c + _SLACK < b
             for a, b, c, d in zip(self.low, self.high, other.low, other.high, strict=True)
         )
 

@@ -420,7 +420,7 @@ def campbell(
         A proof fails.
     """
     turning = finite_values("speeds", speeds)
-    rotor.require_speed("speed", float(turning[np.abs(turning).argmax()]))
+    rotor.require_speed(float(turning[np.abs(turning).argmax()]))
     require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
     shared = WhirlSolver(rotor, bearings) if solver is None else solver
     same = shared.rotor is rotor and shared.bearings == tuple(bearings)

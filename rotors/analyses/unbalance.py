@@ -146,7 +146,7 @@ def unbalance_response(
         A place off the shaft, a speed beyond a table or zero where nothing holds the rotor.
     """
     turning = finite_values("speeds", speeds)
-    rotor.require_speed("speed", float(turning[np.abs(turning).argmax()]))
+    rotor.require_speed(float(turning[np.abs(turning).argmax()]))
     places = [unbalance.at for unbalance in unbalances]
     loads = np.zeros((turning.size, len(places), 5), dtype=np.complex128)
     for k, unbalance in enumerate(unbalances):

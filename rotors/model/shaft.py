@@ -189,11 +189,11 @@ class Rotor:
         ]
         return min(speeds, default=math.inf)
 
-    def require_speed(self, label: str, speed: float) -> None:
+    def require_speed(self, speed: float) -> None:
         """Raise `RotorError` unless ``speed`` [rad/s] is finite and one that a shaft can turn at."""
-        require_finite(label, speed)
+        require_finite("speed", speed)
         possible = abs(speed) <= self.highest_speed
-        require(possible, label, speed, f"at most {self.highest_speed:.3g} rad/s, where rotor {self.name!r} is torn")
+        require(possible, "speed", speed, f"at most {self.highest_speed:.3g} rad/s, where rotor {self.name!r} is torn")
 
     @cached_property
     def joints(self) -> FloatArray:

@@ -209,16 +209,12 @@ def slopes_at(equations: WhirlEquations, eigenvalues: ComplexArray, speed: Speed
     return np.asarray((ahead - behind) / (2.0 * step[:, None]))
 
 
-def refine_each(
-    equations: WhirlEquations, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
-) -> ExactRoots:
+def refine_each(equations: WhirlEquations, starts: ComplexArray, speeds: FloatArray) -> ExactRoots:
     """Exact roots from starting values, each alone and at its own speed, (w,) both; none is dropped.
 
-    Starting ``vectors`` (w, order) save the first steps. A root that does not converge has a residual above
-    `ACCEPTED`.
+    A root that does not converge has a residual above `ACCEPTED`.
     """
-    if vectors is None:
-        vectors = random_vectors(starts.size, equations.pattern.order)
+    vectors = random_vectors(starts.size, equations.pattern.order)
     return refine_alone(equations, starts, vectors, Speed(speeds.astype(np.complex128)))
 
 

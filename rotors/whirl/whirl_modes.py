@@ -199,7 +199,7 @@ class WhirlSolver:
 
     def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
         """Complex modes at a speed of rotation [rad/s], certified complete; arguments and errors of `solve_whirl`."""
-        self.rotor.require_speed("speed", speed)
+        self.rotor.require_speed(speed)
         basis = self.planar_basis(frequency_limit, count)
         constant = tuple(bearing.at_speed(speed) for bearing in self.bearings)
         turning = np.array([speed])

@@ -72,7 +72,7 @@ def test_what_is_no_number_is_refused_with_its_name(call: str, argument: str) ->
 
 
 def test_the_library_names_part_attribute_value_and_expectation() -> None:
-    with pytest.raises(gw.GearError, match=r"gear 'x': module must be a finite number, got '2.5 mm'"):
+    with pytest.raises(gw.GearError, match=r"gear 'x': module is '2.5 mm'; expected a finite number above 0"):
         gw.Gear("x", 21, "2.5 mm", 0.35, 0.03)  # type: ignore[arg-type]
     with pytest.raises(gw.RotorError, match=r"bearing 'x': stiffness is '1e8 N/m'; expected a finite number"):
         gw.Bearing.isotropic("x", 0.1, "1e8 N/m")  # type: ignore[arg-type]

@@ -7,14 +7,16 @@ planet, touches its next mate with the other flank of the same tooth.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
-from gearwhine.coupling.gears.geometry.gear import Flank, Gear
+from gearwhine.coupling.gears.geometry.gear import Fault, Flank, Gear
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.findings import Finding
 
 NO_CONTACT_GAP = 1.0
 """Gap of a missing tooth [m], wider than any load closes."""
@@ -23,7 +25,7 @@ _EDGE = 0.1
 
 
 @dataclass(frozen=True)
-class Wear:
+class Wear(Fault):
     """Material worn off the flank.
 
     Parameters
@@ -48,19 +50,6 @@ class Wear:
         if self.shape not in ("sliding", "uniform"):
             raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
 
-    @property
-    def flank(self) -> None:
-        """Both flanks: None."""
-        return None
-
-    def require_fit(self, gear: Gear) -> None:
-        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
-        require_tooth(gear, self.tooth)
-
-    def findings(self, gear: Gear, attribute: str) -> tuple[()]:
-        """None."""
-        return ()
-
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         if self.shape == "uniform":
@@ -69,21 +58,13 @@ class Wear:
         farthest = max(abs(end - pitch_roll_angle) for end in ends)
         return np.asarray(self.depth * np.abs(roll_angle - pitch_roll_angle) / farthest, dtype=np.float64)
 
-    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """Zero: the worn depth is small compared with the tooth."""
-        return np.zeros_like(roll_angle)
-
-    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
-        """Zero: all of the face carries."""
-        return np.zeros_like(roll_angle)
-
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """Return the roll angle of the pitch point [rad], where wear in proportion to the sliding has a corner."""
         return () if self.shape == "uniform" else (pitch_roll_angle,)
 
 
 @dataclass(frozen=True)
-class Spall:
+class Spall(Fault):
     """A pit in the flank of one tooth, across all of the face or a part of it.
 
     Across all of the pair's common face the contact drops into it by `depth`. Across a part, the rest carries: the
@@ -125,30 +106,23 @@ class Spall:
         if self.width is not None:
             require_finite("spall width", self.width, minimum=0.0)
 
-    def require_fit(self, gear: Gear) -> None:
-        """Require that the spall lies on the flank; see `gearwhine.coupling.gears.geometry.gear.Fault`."""
-        require_tooth(gear, self.tooth)
-        tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
-        low, high = (tip, form) if gear.is_internal else (form, tip)
-        if not (self.start_roll_angle < high and self.end_roll_angle > low):
+    def findings(self, gear: Gear, attribute: str) -> Iterator[Finding]:
+        """Yield a tooth that the gear does not have, and an end off the flank."""
+        yield from super().findings(gear, attribute)
+        low, high = sorted((gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)))
+        off = "start" if self.start_roll_angle >= high else "end" if self.end_roll_angle <= low else ""
+        if off:
             ends = "the tip and the form circle" if gear.is_internal else "the form circle and the tip"
-            raise GearError(
-                f"gear {gear.name!r}: a spall must lie on the flank, between the roll angles of {ends}, "
-                f"{math.degrees(low):.4g} and {math.degrees(high):.4g} degrees, got "
-                f"{math.degrees(self.start_roll_angle):.4g} to {math.degrees(self.end_roll_angle):.4g} degrees"
+            value = getattr(self, f"{off}_roll_angle")
+            expected = (
+                f"a spall on the flank, between the roll angles of {ends}, {math.degrees(low):.4g} and "
+                f"{math.degrees(high):.4g} degrees; it {off}s at {math.degrees(value):.4g} degrees"
             )
-
-    def findings(self, gear: Gear, attribute: str) -> tuple[()]:
-        """None."""
-        return ()
+            yield Finding(("gear", gear.name), f"{attribute}.{off}_roll_angle", value, expected)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         return self.depth * self._inside(roll_angle) if self.across_face(face_width) else np.zeros_like(roll_angle)
-
-    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """Zero: the depth is small compared with the tooth."""
-        return np.zeros_like(roll_angle)
 
     def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
         """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
@@ -178,7 +152,7 @@ class Spall:
 
 
 @dataclass(frozen=True)
-class MissingTooth:
+class MissingTooth(Fault):
     """A broken-off tooth, whose pairs carry no load."""
 
     tooth: int
@@ -187,34 +161,9 @@ class MissingTooth:
         """Check the tooth number."""
         check_tooth_number("missing tooth", self.tooth)
 
-    @property
-    def flank(self) -> None:
-        """Both flanks: None."""
-        return None
-
-    def require_fit(self, gear: Gear) -> None:
-        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
-        require_tooth(gear, self.tooth)
-
-    def findings(self, gear: Gear, attribute: str) -> tuple[()]:
-        """None."""
-        return ()
-
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """Gap wider than any load closes."""
         return np.full_like(roll_angle, NO_CONTACT_GAP)
-
-    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """Zero: such a pair carries nothing."""
-        return np.zeros_like(roll_angle)
-
-    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
-        """Zero: such a pair carries nothing."""
-        return np.zeros_like(roll_angle)
-
-    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
-        """None."""
-        return ()
 
 
 def check_tooth_number(name: str, tooth: int | None) -> None:
@@ -227,11 +176,3 @@ def check_flank(name: str, flank: str) -> None:
     """Raise `GearError` unless a fault is on one of the two flanks of its tooth."""
     if flank not in ("working", "back"):
         raise GearError(f"{name}: flank must be 'working' or 'back', got {flank!r}")
-
-
-def require_tooth(gear: Gear, tooth: int | None) -> None:
-    """Raise `GearError` where a gear has no tooth of this number."""
-    if tooth is not None and tooth >= gear.tooth_count:
-        raise GearError(
-            f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.tooth_count - 1}"
-        )

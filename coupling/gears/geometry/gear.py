@@ -34,14 +34,14 @@ bore reaches down to the axis; on a shaft its core is part of the shaft
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from gearwhine.coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError, require_finite
+from gearwhine.coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError
 from gearwhine.coupling.gears.geometry.involute import involute
 from gearwhine.coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
@@ -49,7 +49,18 @@ from gearwhine.coupling.gears.geometry.ring_support import RingSupport
 from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.findings import Finding, Instance, Text, attribute_findings, in_mm, refuse
+from gearwhine.numerics.findings import (
+    FINITE,
+    Finding,
+    Instance,
+    Number,
+    Rule,
+    Text,
+    attribute_findings,
+    in_mm,
+    kind_findings,
+    refuse,
+)
 from gearwhine.numerics.materials import material_findings
 from gearwhine.numerics.own_copies import keep_tuples, unchecked
 
@@ -85,48 +96,41 @@ Flank = Literal["working", "back"]
 """Side of a tooth: the flank that works in the first pair that its gear belongs to, or the one behind it."""
 
 
-class Fault(Protocol):
-    """Damage of one tooth, or of all teeth of a gear."""
+class Fault:
+    """Damage of one tooth, or of all teeth of a gear; each kind replaces what it changes of a sound tooth."""
 
-    @property
-    def tooth(self) -> int | None:
-        """Number of the tooth; None for all of them."""
-        ...
+    tooth: int | None
+    """Number of the tooth; None for all of them."""
+    flank: Flank | None = None
+    """Flank of the tooth, the one that works in the gear's first pair or its back; None for both."""
 
-    @property
-    def flank(self) -> Flank | None:
-        """Flank of the tooth, the one that works in the gear's first pair or its back; None for both."""
-        ...
-
-    def require_fit(self, gear: Gear) -> None:
-        """Raise `GearError` where no tooth of this gear can have it."""
-        ...
-
-    def findings(self, gear: Gear, attribute: str) -> Iterable[Finding]:
-        """Find sizes that no tooth has, or hardly one, at an attribute of the gear such as ``faults.0``."""
-        ...
+    def findings(self, gear: Gear, attribute: str) -> Iterator[Finding]:
+        """Yield what no tooth of this gear has, or hardly one, at an attribute of the gear such as ``faults.0``."""
+        if self.tooth is not None and self.tooth >= gear.tooth_count:
+            expected = f"a tooth from 0 to {gear.tooth_count - 1}"
+            yield Finding(("gear", gear.name), f"{attribute}.tooth", self.tooth, expected)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """Material off the flank [m] at roll angles [rad].
 
         `pitch_roll_angle` is the working pitch point's, `face_width` that of the pair's common face [m].
         """
-        ...
+        return np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
         """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]; without the contact."""
-        ...
+        return np.zeros_like(roll_angle)
 
     def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
         """Growth of the flattening of the pair's contact at roll angles [rad], over that of sound flanks.
 
         `face_width` is that of the pair's common face [m].
         """
-        ...
+        return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """Roll angles at which gap or compliance has a corner [rad]."""
-        ...
+        return ()
 
 
 @dataclass(frozen=True)
@@ -245,7 +249,7 @@ class Gear:
         keep_tuples(self, "pitch_deviations", "faults")
         if isinstance(self.teeth, np.integer):
             object.__setattr__(self, "teeth", int(self.teeth))
-        _check_numbers(self)
+        refuse(_attribute_findings(self), GearError)
         refuse(_body_findings(self), GearError)
         _check_rack(self)
         _check_flank(self)
@@ -544,41 +548,36 @@ def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
         )
 
 
-def _check_numbers(gear: Gear) -> None:
-    """Raise `GearError` for a single number outside its range."""
-    label = f"gear {gear.name!r}: "
-    refuse(attribute_findings(("gear", str(gear.name)), gear, name=Text()), GearError)
+_RULES: dict[str, Rule] = {
+    "name": Text(),
+    **dict.fromkeys(("module", "face_width", "addendum", "dedendum", "youngs_modulus", "density"), Number(above=0.0)),
+    **dict.fromkeys(("bore", "eccentricity", "tooth_thinning"), Number(at_least=0.0)),
+    **dict.fromkeys(("rim_thickness", "web_thickness", "hub_diameter", "hub_width"), Number(above=0.0, optional=True)),
+    **dict.fromkeys(("profile_shift", "eccentricity_phase"), FINITE),
+    "root_radius": Number(at_least=0.0, optional=True),
+    "poisson_ratio": Number(at_least=0.0, below=0.5),
+    "pressure_angle": Number(at_least=math.radians(5.0), at_most=math.radians(45.0), unit="rad"),
+    "helix_angle": Number(at_least=-_STEEPEST_HELIX, at_most=_STEEPEST_HELIX, unit="rad"),
+    "pitch_deviations": Instance(tuple, "numbers, one for each tooth"),
+    "tip_relief": Instance(TipRelief, "a TipRelief, or None", optional=True),
+    "root_relief": Instance(RootRelief, "a RootRelief, or None", optional=True),
+}
+
+
+def _attribute_findings(gear: Gear) -> Iterator[Finding]:
+    """Yield attributes outside their ranges, each by itself."""
+    part = ("gear", str(gear.name))
+    yield from attribute_findings(part, gear, **_RULES)
+    yield from kind_findings(part, gear, faults=Fault)
+    deviations: object = gear.pitch_deviations
+    numbers = deviations if isinstance(deviations, tuple) else ()
     if type(gear.teeth) is not int or abs(gear.teeth) < 5:
-        raise GearError(f"{label}teeth must be a whole number of at least 5, got {gear.teeth!r}")
-    for quantity in ("module", "face_width", "addendum", "dedendum", "youngs_modulus", "density"):
-        require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
-    for quantity in ("bore", "eccentricity", "tooth_thinning"):
-        require_finite(label + quantity, getattr(gear, quantity), minimum=0.0)
-    for quantity in ("profile_shift", "eccentricity_phase", "helix_angle", "poisson_ratio", "pressure_angle"):
-        require_finite(label + quantity, getattr(gear, quantity))
-    for quantity in ("rim_thickness", "web_thickness", "hub_diameter", "hub_width"):
-        if getattr(gear, quantity) is not None:
-            require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
-    if gear.root_radius is not None:
-        require_finite(f"{label}root_radius", gear.root_radius, minimum=0.0)
-    kinds = {
-        "pitch_deviations": Instance(tuple, "numbers, one for each tooth"),
-        "tip_relief": Instance(TipRelief, "a TipRelief, or None", optional=True),
-        "root_relief": Instance(RootRelief, "a RootRelief, or None", optional=True),
-    }
-    refuse(attribute_findings(("gear", gear.name), gear, **kinds), GearError)
-    if gear.pitch_deviations and len(gear.pitch_deviations) != gear.tooth_count:
-        expected = f"one deviation for each of {gear.tooth_count} teeth, or none"
-        refuse([Finding(("gear", gear.name), "pitch_deviations", gear.pitch_deviations, expected)], GearError)
-    for tooth, deviation in enumerate(gear.pitch_deviations):
-        if type(deviation) is not float or not math.isfinite(deviation):
-            require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
-    if not 0.0 <= gear.poisson_ratio < 0.5:
-        raise GearError(f"{label}poisson_ratio must be in 0 ... 0.5, got {gear.poisson_ratio!r}")
-    if not math.radians(5.0) <= gear.pressure_angle <= math.radians(45.0):
-        raise GearError(f"{label}pressure_angle must be 5 to 45 degrees in rad, got {gear.pressure_angle!r} rad")
-    if abs(gear.helix_angle) > _STEEPEST_HELIX:
-        raise GearError(f"{label}helix_angle must be -60 to 60 degrees in rad, got {gear.helix_angle!r} rad")
+        yield Finding(part, "teeth", gear.teeth, "a whole number of at least 5, negative of an internal gear")
+    elif len(numbers) not in (0, gear.tooth_count):
+        yield Finding(part, "pitch_deviations", numbers, f"one deviation for each of {gear.tooth_count} teeth, or none")
+    for tooth, deviation in enumerate(numbers):
+        if not FINITE.accepts(deviation):
+            yield Finding(part, f"pitch_deviations.{tooth}", deviation, FINITE.expected)
 
 
 def _body_findings(gear: Gear) -> Iterator[Finding]:
@@ -615,104 +614,105 @@ def _body_findings(gear: Gear) -> Iterator[Finding]:
         yield Finding(part, "hub_width", gear.hub_width, expected)
 
 
+def _refuse(gear: Gear, attribute: str, value: object, expected: str, error: type[GearError] = GearError) -> None:
+    """Refuse a gear for an attribute that does not fit the others."""
+    refuse([Finding(("gear", gear.name), attribute, value, expected)], error)
+
+
 def _check_rack(gear: Gear) -> None:
     """Raise `GearError` or `PointedToothError` where no rack has the proportions."""
-    label = f"gear {gear.name!r}: "
     if gear.is_internal:
-        _check_ring(gear, label)
+        _check_ring(gear)
         return
     full = gear.full_rack_tip_radius
     if full < 0.0:
-        raise PointedToothError(
-            f"{label}the rack's own teeth are pointed: dedendum {gear.dedendum:g} is too much for "
-            f"{math.degrees(gear.pressure_angle):.4g} degrees"
-        )
+        angle = math.degrees(gear.pressure_angle)
+        expected = f"less: the rack's own teeth are pointed with a pressure angle of {angle:.4g} degrees"
+        _refuse(gear, "dedendum", gear.dedendum, expected, PointedToothError)
     if gear.root_radius is not None and gear.root_radius > full * (1.0 + 1e-12):
-        raise GearError(
-            f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the rack's tip; "
-            f"at most {full * 1e3:.4g} mm"
-        )
+        _refuse(gear, "root_radius", gear.root_radius, f"at most {full * 1e3:.4g} mm, which fits the rack's tip")
     if gear.generating_shift > gear.dedendum:
-        raise GearError(
-            f"{label}profile_shift {gear.profile_shift:g} withdraws the rack's teeth beyond the pitch line on which "
-            f"they roll; at most {gear.dedendum + gear.profile_shift - gear.generating_shift:.4g} here"
-        )
+        most = gear.dedendum + gear.profile_shift - gear.generating_shift
+        expected = f"at most {most:.4g}, with which the rack's teeth reach the pitch line on which they roll"
+        _refuse(gear, "profile_shift", gear.profile_shift, expected)
 
 
-def _check_ring(gear: Gear, label: str) -> None:
+def _check_ring(gear: Gear) -> None:
     """Raise `GearError` or `PointedToothError` where an internal gear has no involute from root to tip."""
     if gear.tip_radius > gear.base_radius:
         most = (gear.base_radius - gear.pitch_radius) / gear.module - gear.profile_shift
         per_tooth = (gear.pitch_radius - gear.base_radius) / gear.teeth
         least = math.ceil((gear.addendum + gear.profile_shift) * gear.module / per_tooth)
-        raise GearError(
-            f"{label}the tip circle of {-2e3 * gear.tip_radius:.6g} mm lies inside the base circle of "
-            f"{-2e3 * gear.base_radius:.6g} mm, where an internal gear has no involute; an addendum of at most "
-            f"{most:.4g}, a smaller profile_shift ({gear.profile_shift:g}), or {least} teeth or more"
+        expected = (
+            f"at most {most:.4g}, a smaller profile_shift ({gear.profile_shift:g}), or {least} teeth or more: the tip "
+            f"circle of {-2e3 * gear.tip_radius:.6g} mm lies inside the base circle of "
+            f"{-2e3 * gear.base_radius:.6g} mm, where an internal gear has no involute"
         )
+        _refuse(gear, "addendum", gear.addendum, expected)
     full = gear.full_rack_tip_radius if gear.root_circle_radius < gear.base_radius else -1.0
     if full < 0.0:
-        raise PointedToothError(
-            f"{label}the flanks of a space meet before the root circle of {-2e3 * gear.root_circle_radius:.6g} mm; "
-            f"reduce dedendum ({gear.dedendum:g}) or raise profile_shift ({gear.profile_shift:g})"
+        expected = (
+            f"less, or a larger profile_shift ({gear.profile_shift:g}): the flanks of a space meet before the root "
+            f"circle of {-2e3 * gear.root_circle_radius:.6g} mm"
         )
+        _refuse(gear, "dedendum", gear.dedendum, expected, PointedToothError)
     if gear.root_radius is not None and gear.root_radius > full * (1.0 + 1e-12):
-        raise GearError(
-            f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the root of a space; "
-            f"at most {full * 1e3:.4g} mm"
-        )
+        _refuse(gear, "root_radius", gear.root_radius, f"at most {full * 1e3:.4g} mm, which fits the root of a space")
 
 
 def _check_flank(gear: Gear) -> None:
     """Raise `GearError`, `UndercutError` or `PointedToothError` where the teeth have no flank from foot to tip."""
-    label = f"gear {gear.name!r}: "
     if gear.is_undercut and not gear.allow_undercut:
         least = gear.least_generating_shift + gear.profile_shift - gear.generating_shift
-        raise UndercutError(
-            f"{label}{gear.teeth} teeth at profile_shift {gear.profile_shift:g} are undercut; "
-            f"a profile_shift of {least:.4g} or more avoids it, allow_undercut takes the teeth as they are"
+        expected = (
+            f"{least:.4g} or more, with which {gear.teeth} teeth are not undercut; "
+            "allow_undercut takes the teeth as they are"
         )
+        _refuse(gear, "profile_shift", gear.profile_shift, expected, UndercutError)
     if gear.is_undercut:
         gamma = np.linspace(gear.fillet_end, math.pi / 2.0, 65)
         neck = 2.0 * float(np.min(gear.rack_corner_arc.trochoid(gear.pitch_radius, gamma).half_thickness))
         if neck <= 0.0:
-            raise UndercutError(f"{label}the rack cuts the teeth off at their feet; raise profile_shift")
+            expected = "more: the rack cuts the teeth off at their feet"
+            _refuse(gear, "profile_shift", gear.profile_shift, expected, UndercutError)
     if gear.tip_radius <= gear.form_radius:
-        raise GearError(f"{label}the tip circle lies below the start of the involute; raise the addendum")
+        _refuse(gear, "addendum", gear.addendum, "more: the tip circle lies below the start of the involute")
     if gear.sign * gear.tip_half_angle <= 0.0:
-        raise PointedToothError(
-            f"{label}the teeth are pointed below the tip circle; reduce profile_shift "
-            f"({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
+        expected = (
+            f"less, or a smaller profile_shift ({gear.profile_shift:g}): the teeth are pointed below the tip circle"
         )
+        _refuse(gear, "addendum", gear.addendum, expected, PointedToothError)
 
 
 def _check_modifications(gear: Gear) -> None:
-    """Raise `GearError` for modifications that begin off the flank, and faults on missing tooth numbers."""
-    label = f"gear {gear.name!r}: "
+    """Raise `GearError` for modifications that begin off the flank, and for deviations and faults that no tooth has."""
     tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
     if gear.tip_relief is not None:
         start = gear.tip_relief.start(tip, gear.base_radius)
         if gear.is_internal and not tip < start <= form:
-            raise GearError(
-                f"{label}tip relief must start between the roll angles of the tip and the form circle, "
-                f"{math.degrees(tip):.4g} and {math.degrees(form):.4g} degrees, got {math.degrees(start):.4g} degrees"
-            )
+            expected = f"a start between the roll angles of the tip and the form circle, {_degrees(tip, form)}"
+            _refuse_start(gear, "tip_relief", start, expected)
         if not gear.is_internal and not 0.0 <= start < tip:
-            raise GearError(
-                f"{label}tip relief must start below the tip's roll angle of {math.degrees(tip):.4g} degrees "
-                f"and on the involute, got {math.degrees(start):.4g} degrees"
-            )
+            expected = f"a start on the involute, below the tip's roll angle of {math.degrees(tip):.4g} degrees"
+            _refuse_start(gear, "tip_relief", start, expected)
     if gear.root_relief is not None:
         start = gear.root_relief.start(form, gear.base_radius)
         if not gear.sign * form < gear.sign * start <= gear.sign * tip:
-            raise GearError(
-                f"{label}root relief must start between the roll angles of the form circle and the tip, "
-                f"{math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, "
-                f"got {math.degrees(start):.4g} degrees"
-            )
-    for fault in gear.faults:
-        fault.require_fit(gear)
+            expected = f"a start between the roll angles of the form circle and the tip, {_degrees(form, tip)}"
+            _refuse_start(gear, "root_relief", start, expected)
     refuse(gear.findings, GearError)
+
+
+def _degrees(low: float, high: float) -> str:
+    return f"{math.degrees(low):.4g} and {math.degrees(high):.4g} degrees"
+
+
+def _refuse_start(gear: Gear, name: Literal["tip_relief", "root_relief"], start: float, expected: str) -> None:
+    """Refuse a gear for a relief that does not begin on the flank, by the attribute that gives its start."""
+    relief = getattr(gear, name)
+    attribute = "start_roll_angle" if relief.length is None else "length"
+    expected += f"; it is {math.degrees(start):.4g} degrees"
+    _refuse(gear, f"{name}.{attribute}", getattr(relief, attribute), expected)
 
 
 _LARGEST_DEVIATION = 0.25

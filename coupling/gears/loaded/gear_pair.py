@@ -183,12 +183,8 @@ class GearPair:
     @property
     def has_corner_contact(self) -> bool:
         """Whether teeth touch beyond their path of contact."""
-        return self.has_single_teeth if self.corner_contact is None else self.corner_contact
-
-    @property
-    def has_single_teeth(self) -> bool:
-        """Whether the stiffness model describes pairs of teeth, not the mesh as one spring."""
-        return not isinstance(self.stiffness, GIVEN_SPRINGS)
+        # A stiffness of the whole mesh, as one spring, has no single pairs of teeth.
+        return not isinstance(self.stiffness, GIVEN_SPRINGS) if self.corner_contact is None else self.corner_contact
 
     def backlash_of(self, geometry: GearPairGeometry) -> float | None:
         """Gap of the back flanks along the line of action [m]; None where they never touch.

@@ -24,8 +24,8 @@ from functools import partial
 import numpy as np
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
-from gearwhine.coupling.gears.geometry.faults import check_flank, check_tooth_number, require_tooth
-from gearwhine.coupling.gears.geometry.gear import Flank, Gear
+from gearwhine.coupling.gears.geometry.faults import check_flank, check_tooth_number
+from gearwhine.coupling.gears.geometry.gear import Fault, Flank, Gear
 from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
 from gearwhine.coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
 from gearwhine.coupling.gears.stiffness.normal_section import normal_section_gears, transverse_compliance
@@ -39,7 +39,7 @@ _PANELS = 24
 
 
 @dataclass(frozen=True)
-class ToothCrack:
+class ToothCrack(Fault):
     """A crack at the foot of one tooth.
 
     Parameters
@@ -68,15 +68,14 @@ class ToothCrack:
         if not 0.0 < self.angle <= math.pi / 2.0:
             raise GearError(f"crack angle must be above 0 and at most 90 degrees in rad, got {self.angle!r} rad")
 
-    def require_fit(self, gear: Gear) -> None:
-        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
-        require_tooth(gear, self.tooth)
-
     def findings(self, gear: Gear, attribute: str) -> Iterator[Finding]:
-        """Yield a depth that leaves less than a tenth of any section, or passes the middle of the tooth's foot.
+        """Yield a tooth that the gear does not have, and a depth that leaves too little of the tooth's foot.
+
+        That is less than a tenth of any section, or with a warning less than half of the foot.
 
         What is left of half the foot bends under more than four times the stress: a section t has a modulus b t² / 6.
         """
+        yield from super().findings(gear, attribute)
         for spur, _ in normal_section_gears(gear) if gear.helix_angle else ((gear, 1.0),):
             root = float(fillet_points(spur, np.array(ROOT_CIRCLE)).half_thickness)
             middle, deepest = (float(depth / math.sin(self.angle)) for depth in (root, root - _least_left(spur)))
@@ -92,10 +91,6 @@ class ToothCrack:
                 )
                 yield Finding(part, key, self.depth, expected, "warning")
                 return
-
-    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
-        """Zero: an unloaded flank does not move."""
-        return np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
         """Additional compliance of the tooth [m/N] for loads at roll angles [rad].
@@ -133,14 +128,6 @@ class ToothCrack:
             stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / remaining - 1.0 / whole)
             total = total + np.sum(climb * (bending + stretching), axis=-1)
         return np.asarray(total, dtype=np.float64)
-
-    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
-        """Zero: the flanks are whole."""
-        return np.zeros_like(roll_angle)
-
-    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
-        """None."""
-        return ()
 
 
 def _least_left(gear: Gear) -> float:

@@ -242,19 +242,19 @@ class _Elements:
 def _section_elements(section: WheelSection) -> _Elements:
     import skfem
 
-    def cuts(start: float, end: float, count: int) -> FloatArray:
-        return np.linspace(start, end, count + 1)
+    def cuts(start: float, end: float) -> FloatArray:
+        return np.linspace(start, end, _THROUGH + 1)
 
     # Narrower towards the hub and the rim, where the web bends most.
     web = 0.5 * (1.0 - np.cos(np.pi * np.arange(_ALONG + 1) / _ALONG))
     inside = max(section.hub, section.boss)
     r, z = inside + (section.rim - inside) * web, np.zeros(1)
     if section.rim < section.root:
-        r = np.append(r, cuts(section.rim, section.root, _THROUGH)[1:])
+        r = np.append(r, cuts(section.rim, section.root)[1:])
     if section.hub < inside:
-        r = np.append(cuts(section.hub, inside, _THROUGH)[:-1], r)
+        r = np.append(cuts(section.hub, inside)[:-1], r)
     for width in sorted({section.web, section.face, section.boss_width} - {0.0}):
-        z = np.append(z, cuts(z[-1], 0.5 * width, _THROUGH)[1:])
+        z = np.append(z, cuts(z[-1], 0.5 * width)[1:])
     mesh = skfem.MeshQuad.init_tensor(r, z)
     at_r, at_z = mesh.p[:, mesh.t].mean(axis=1)
     widths = np.select([at_r > section.rim, at_r < inside], [section.face, section.boss_width], section.web)

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
+from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, operation_loads
 from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.gears import Gear, GearPair, distance_of_axes, shaft_of, train_of_pairs
@@ -176,9 +176,8 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
             yield from _check_reach(draft, index, bearing, bearing.speeds, abs(float(ratios[bearing.rotor])))
-        rolling = bearing.stiffness.rolling if isinstance(bearing.stiffness, RollingStiffness) else None
         loaded = _operation_loads(draft, bearing, bearings)
-        if rolling is not None and bearing.lacks_load and not rolling.pressed and not loaded:
+        if bearing.rolling is not None and bearing.lacks_load and not bearing.rolling.pressed and not loaded:
             expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
             yield Finding(("bearing", index, "load"), expected, NOTHING)
 

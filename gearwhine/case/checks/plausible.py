@@ -15,7 +15,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.case.bearings import Bearing, RollingStiffness
+from gearwhine.case.bearings import Bearing
 from gearwhine.case.box import Box
 from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
 from gearwhine.case.errors import LOOK_UP, UNSAID, Finding, Location, key_of, label_of, look_up, show_value
@@ -315,10 +315,10 @@ def _of_elements(index: int, entry: Bearing) -> Iterator[Finding]:
     from gearwhine.rotors.errors import RotorError
     from gearwhine.rotors.rolling_bearings import require_possible
 
-    if not isinstance(entry.stiffness, RollingStiffness):
+    if entry.rolling is None:
         return
     try:
-        rolling = entry.stiffness.rolling.build(entry.name)
+        rolling = entry.rolling.build(entry.name)
     except RotorError as error:
         expected = f"a bearing that can be built; {error}"
         yield Finding(("bearing", index, "stiffness", "rolling"), expected, UNSAID)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from gearwhine.case.bearings import Bearing, RollingStiffness
+from gearwhine.case.bearings import Bearing
 from gearwhine.case.checks.acoustics import check_acoustics
 from gearwhine.case.checks.housing import check_box, check_housing_form
 from gearwhine.case.checks.machine import check_bearings, check_gears, check_running, check_shafts
@@ -136,7 +136,7 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         ]
     document = case_document(case)
     warnings += names_by_case(document)
-    if any(isinstance(bearing.stiffness, RollingStiffness) for bearing in case.bearing):
+    if any(bearing.rolling is not None for bearing in case.bearing):
         warnings += [text for location in case.parts.axial_locations for text in location.warnings]
     warnings += case_warnings(case.unusual, library_findings(case), document)
     return tuple(warnings)

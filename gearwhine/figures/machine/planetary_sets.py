@@ -61,11 +61,11 @@ def draw_planetary_set(title: str, placed: PlacedSet, load: PlanetaryLoad, solve
     )
     for name in (placed.of.sun, placed.of.ring):
         if name is not None:
-            _circle(axes, center, radii[name], INK, filled=name == placed.of.sun)
+            _circle(axes, center, radii[name], filled=name == placed.of.sun)
     for name in placed.of.planets:
         middle = center + placed.places[placed.shafts[name]]
         axes.plot(*_MM * np.column_stack([center, middle]), color=GREY, lw=3.0, alpha=0.5, zorder=1)
-        _circle(axes, middle, radii[name], INK, filled=True)
+        _circle(axes, middle, radii[name], filled=True)
     forces = [*_mesh_forces(placed, solved), *_pin_forces(placed, solved, center)]
     largest = max((float(np.hypot(*force)) for _, force, _ in forces), default=0.0)
     for at, force, color in forces:
@@ -92,9 +92,9 @@ def draw_planetary_set(title: str, placed: PlacedSet, load: PlanetaryLoad, solve
     return figure
 
 
-def _circle(axes: Axes, center: FloatArray, radius: float, color: str, *, filled: bool) -> None:
+def _circle(axes: Axes, center: FloatArray, radius: float, *, filled: bool) -> None:
     face = PALE if filled else "none"
-    axes.add_patch(Circle(tuple(_MM * center), _MM * radius, fc=face, ec=color, lw=0.9, zorder=2))
+    axes.add_patch(Circle(tuple(_MM * center), _MM * radius, fc=face, ec=INK, lw=0.9, zorder=2))
 
 
 def _arrow(axes: Axes, at: FloatArray, arrow: FloatArray, color: str) -> None:

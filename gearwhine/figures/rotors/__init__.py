@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from gearwhine.case import Case, RollingStiffness, Segment
+from gearwhine.case import Case, Segment
 from gearwhine.coupling import Machine, ShaftGear
 from gearwhine.coupling.description.parts import gear_disc
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
@@ -77,7 +77,7 @@ def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> Rot
         bearings=bearings,
         gears=_drawn_gears(case.parts.gears_on(name), rotor),
         unbalances=[DrawnUnbalance(mass.at, mass.moment, mass.phase) for mass in entry.unbalance],
-        rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
+        rolling={bearing.name for bearing in on_it if bearing.rolling is not None},
         seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
         materials={
             part.material: segment.material or entry.material or ""

@@ -46,8 +46,8 @@ def add_bearings(case: Case, shafts: Shafts) -> dict[str, int]:
             attributes |= {"u_coordinate_on_shaft_outer_side": quantity(there, "m")}
         elif bearing.seat != "ground":
             sheet.notes.changed(about, "its seat in the housing is the casing")
-        if isinstance(bearing.stiffness, RollingStiffness):
-            number = _add_rolling(bearing.name, bearing.stiffness.rolling, attributes, shafts, about)
+        if bearing.rolling is not None:
+            number = _add_rolling(bearing.name, bearing.rolling, attributes, shafts, about)
         else:
             springs = _springs(bearing, speed, sheet, about)
             number = sheet.add("concept_bearing", bearing.name, attributes | springs)
