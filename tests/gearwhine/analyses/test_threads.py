@@ -12,7 +12,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 import gearwhine as gw
 
-COARSE = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "2 kHz"}
+COARSE = {"housing.box.mesh_size": "80 mm", "housing.frequency_limit": "", "housing.modes": 3}
 
 def first_modes(wall):
     study = gw.load("steel-box", COARSE | {"housing.box.wall": wall})
