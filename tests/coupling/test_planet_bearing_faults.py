@@ -14,7 +14,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import gearwhine as gw
-from gearwhine.analyses import machine_results
 from gearwhine.coupling import Machine, RollingLaw, TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.connector_forces.bearing_kernels import bearing_force
 from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
@@ -264,13 +263,10 @@ def test_a_sensor_has_the_strikes_beside_the_turns_of_spall_and_carrier(on: str,
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("mechanisms_left_out")
 @pytest.mark.parametrize(("on", "tone"), [("outer", "outer raceway"), ("inner", "inner raceway")])
-def test_the_envelope_of_a_sensor_has_the_rate_of_the_damaged_part(
-    on: str, tone: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_envelope_of_a_sensor_has_the_rate_of_the_damaged_part(on: str, tone: str) -> None:
     """Its line stands out of those of the sound parts; of a pin, all high lines are a turn of the carrier beside it."""
-    # What each mechanism gives of a line takes half of the time and is not looked at.
-    monkeypatch.setattr(machine_results, "add_mechanisms", lambda *_: None)
     machine = in_a_housing(on)
     run = gw.Study(machine, gw.Settings("spalled planet bearing")).simulate(revolutions=16, discard=4)
     found = {one.tone: one for one in run.solved.indicators(["envelope"]).tones}

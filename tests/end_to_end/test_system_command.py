@@ -23,6 +23,11 @@ HELICAL = (
 """The small gearbox with helical gears out of the middle of their shafts, whose back bearings carry the thrust."""
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _less_effort(few_points: None) -> None:
+    """Find each mechanism's part of a line, which stand in table and document."""
+
+
 @pytest.mark.slow
 def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Path) -> None:
     """Helical gears out of the middle: shuttling leads at the mesh frequency, which the transmissibility does not have.
