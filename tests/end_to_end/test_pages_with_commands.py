@@ -11,10 +11,9 @@ from typing import Any
 
 import pytest
 from chromium import Browser, find_chromium
-from lopsided_case import FEW_WHIRLS
 from looked_at import HOSTILE, look_at, look_at_shapes, with_hostile_names
+from lopsided_case import FEW_WHIRLS
 
-from gearwhine.analyses import machine_results
 from gearwhine.analyses.result import Result
 from gearwhine.case import bundled_case
 from gearwhine.cli.command_line import app
@@ -116,7 +115,7 @@ def _look_at_report(gearwhine: Any, folder: Path, place: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("linear_drawings", "swept_here", "few_reliefs_tried")
+@pytest.mark.usefixtures("linear_drawings", "swept_here", "few_reliefs_tried", "few_slices")
 @pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
 def test_a_page_runs_from_its_first_line_to_its_last(
     gearwhine: Any, tmp_path: Path, page: Path, monkeypatch: pytest.MonkeyPatch
@@ -126,9 +125,8 @@ def test_a_page_runs_from_its_first_line_to_its_last(
     mesh_box = mesh.mesh_box
     monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, COARSE), **how))
     if page.stem != REPORTED and ".png" not in page.read_text(encoding="utf-8"):
-        # Figures and mechanisms of these commands have tests of their own.
+        # Figures of these commands have tests of their own.
         monkeypatch.setattr(Result, "_draw_figures", lambda *_: None)
-        monkeypatch.setattr(machine_results, "add_mechanisms", lambda *_: None)
 
     names: dict[str, Any] = {"__name__": "__main__"}
     done = 0
