@@ -33,7 +33,7 @@ def test_check_tells_the_turns_of_the_carrier_in_a_record_and_the_outside_of_the
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("linear_drawings")
+@pytest.mark.usefixtures("linear_drawings", "few_slices")
 def test_planets_share_the_load_on_the_housing(gearwhine: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(planetary_load, "ANGLES", 4)
     out = tmp_path / "out"
