@@ -258,6 +258,45 @@ def unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="module")
+def mechanisms_left_out() -> Iterator[None]:
+    """Do not find each mechanism's part of a line, a fifth of a run and more where carriers turn.
+
+    What is told of them is in `tests/gearwhine/solve/test_line_mechanisms_told.py`.
+    """
+    from gearwhine.analyses import machine_results
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(machine_results, "add_mechanisms", lambda *_: None)
+        yield
+
+
+@pytest.fixture(scope="module")
+def few_points() -> Iterator[None]:
+    """Solve responses at a quarter of the points between resonances, and those to unbalance at as few speeds."""
+    from gearwhine.coupling.analyses import modes_and_responses
+    from gearwhine.coupling.linear import frequency_response
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(frequency_response, "_EVEN_POINTS", 150)
+        patch.setattr(modes_and_responses, "_UNBALANCE_STEPS", 50)
+        yield
+
+
+@pytest.fixture(scope="module")
+def few_slices() -> Iterator[None]:
+    """Cut faces of gears into 15 slices, a quarter of what is usual: for machines with many pairs, of whole teeth."""
+    from gearwhine.coupling.gears.contact import contact_law, face_slices
+    from gearwhine.coupling.gears.loaded import gear_pair
+    from gearwhine.coupling.machine import face_compliance
+
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (contact_law, face_slices, gear_pair):
+            patch.setattr(module, "DEFAULT_SLICES", 15)
+        patch.setattr(face_compliance, "_EVEN_FACE_PLACES", 2.0 * (np.arange(15) + 0.5) / 15.0 - 1.0)
+        yield
+
+
 _RUNNING = {"slow": False}
 
 

@@ -6,6 +6,7 @@ from functools import cache, partial
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.linalg import lstsq
 
 from gearwhine.coupling import CoupledMachine, CouplingError
 from gearwhine.coupling.linear.carriers import turning_stiffness
@@ -165,7 +166,7 @@ def _as_by_hills_equations(machine: CoupledMachine, highest: int = 7) -> dict[tu
             load[row] -= pushed * contact.direction
     # The train turns freely as a whole.
     flat = whole.reshape(len(orders) * size, -1)
-    y = np.linalg.lstsq(flat, load.ravel(), rcond=1e-14)[0].reshape(len(orders), size)
+    y = lstsq(flat, load.ravel(), cond=1e-14, lapack_driver="gelsy")[0].reshape(len(orders), size)
     return {
         (harmonic, turns): 2.0 * motion
         for harmonic in range(1, highest + 1)
@@ -275,11 +276,11 @@ def test_parts_and_bands_of_sidebands_are_those_of_lines_and_of_a_machine_with_o
     turned = partial(turning_machine, ANISOTROPIC, angles_deg=UNEQUAL, ripple=STRONG_RIPPLE)
     machine = turned()
     mechanisms = LineMechanisms(machine)
-    every = MeshHarmonicModel(machine).parts(HIGHER)
+    every = MeshHarmonicModel(machine).parts(LIMIT)
     size = [line.frequency**2 * np.linalg.norm(line.motion) for line in every]
     found = [line for line, own in zip(every, size, strict=True) if own > 2e-2 * max(size)]
     bands = DampingBand(mechanisms).at([line.frequency for line in found])
-    changed = {scale: MeshHarmonicModel(turned(damping=scale)).parts(HIGHER) for scale in (0.5, 2.0)}
+    changed = {scale: MeshHarmonicModel(turned(damping=scale)).parts(LIMIT) for scale in (0.5, 2.0)}
     for place, line in enumerate(found):
         parts = mechanisms.parts(line.frequency)
         for sensor, row in machine.sensor_rows.items():
@@ -294,7 +295,7 @@ def test_parts_and_bands_of_sidebands_are_those_of_lines_and_of_a_machine_with_o
                 levels.append(20.0 * np.log10(same.frequency**2 * abs(row @ same.motion) / amplitude))
             # A dashpot of standing parts is a stiffness too, seen from the carrier: the band leaves that as it is.
             assert bands[sensor][place] == pytest.approx([min(levels), max(levels)], abs=0.03)
-    assert len(found) == 10
+    assert len(found) == 4
 
 
 @pytest.mark.slow
@@ -411,7 +412,7 @@ def test_level_has_the_power_of_what_differs_between_teeth() -> None:
     rng, contacts = np.random.default_rng(0), []
     for contact in even.system.contacts:
         rate = 2.0 * np.pi * abs(contact.mesh_frequency)
-        turns = [k * rate / teeth for teeth in TEETH for k in (3, 11, 17, 22, 24, 28, 33, 40)]
+        turns = [k * rate / teeth for teeth in TEETH for k in (3, 11, 17, 24, 33)]
         amplitudes, angles = rng.uniform(3e-7, 1e-6, len(turns)), rng.uniform(0.0, 2.0 * np.pi, len(turns))
         contacts.append(replace(contact, errors=np.column_stack([amplitudes, turns, angles])))
     machine = replace(even, system=replace(even.system, contacts=tuple(contacts)))

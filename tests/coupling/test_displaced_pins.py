@@ -21,7 +21,9 @@ ROLLERS = RollingBearing((RollerRow(14, 4e-3, 12e-3, 30e-3, clearance=8e-6),))
 @cache
 def machine(law: str, pin: Any = None, error: float = ERROR) -> Machine:
     """A set with a planet whose pin is displaced, on rollers and, at the other end, on springs."""
-    parts = plane_set(equal_angles(3), pressure_angle=math.radians(20.0), with_ring=True, material=STEEL, diameter=0.05)
+    parts = plane_set(
+        equal_angles(3), pressure_angle=math.radians(20.0), with_ring=True, material=STEEL, diameter=0.05, mode_count=1
+    )
     parts["shafts"] = [
         replace(one, pin_error=(0.0, error) if one.name == "planet 1" else (0.0, 0.0), pin=pin) if one.carrier else one
         for one in parts["shafts"]

@@ -53,6 +53,7 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("mechanisms_left_out")
 @pytest.mark.parametrize(("speed", "harmonics", "tolerance"), [(1500, 4, 0.01), (2500, 2, 0.015)])
 def test_lines_of_the_machine_are_those_of_its_motion(speed: int, harmonics: int, tolerance: float) -> None:
     """Far below the resonance of the mesh, whose high harmonics come back through the stiffness that varies.

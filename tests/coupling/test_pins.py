@@ -137,7 +137,7 @@ def test_thin_pins_raise_the_face_load_of_the_planets() -> None:
 
 def plane_set_of_steel(pin: Any = None, *, bearings: float = 1.0) -> Machine:
     """Planets on pins; ``bearings`` is the stiffness of theirs across the axis over that of the plane set."""
-    parts = plane_set(equal_angles(3), pressure_angle=0.4, with_ring=True, material=STEEL, diameter=0.05)
+    parts = plane_set(equal_angles(3), pressure_angle=0.4, with_ring=True, material=STEEL, diameter=0.05, mode_count=1)
     # A carrier that does not bend has the pins' walls where the bearings are.
     stiff = Rotor("carrier", [Segment(0.1, 0.05, 0.0, ShaftMaterial(2e13, 8e12, 7810.0))], [])
     rotors = [replace(stiff, discs=one.rotor.discs) if one.name == "carrier" else one.rotor for one in parts["shafts"]]

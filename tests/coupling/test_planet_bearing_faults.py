@@ -263,6 +263,7 @@ def test_a_sensor_has_the_strikes_beside_the_turns_of_spall_and_carrier(on: str,
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("mechanisms_left_out")
 @pytest.mark.parametrize(("on", "tone"), [("outer", "outer raceway"), ("inner", "inner raceway")])
 def test_the_envelope_of_a_sensor_has_the_rate_of_the_damaged_part(on: str, tone: str) -> None:
     """Its line stands out of those of the sound parts; of a pin, all high lines are a turn of the carrier beside it."""

@@ -88,7 +88,13 @@ def _ring_housing() -> HousingComponent:
 def _described(speed: float = 300.0, planets: int = 3) -> Machine:
     angle = np.radians(20.0)
     parts = plane_set(
-        equal_angles(planets), pressure_angle=angle, with_ring=True, damping=1e-5, material=STEEL, diameter=0.05
+        equal_angles(planets),
+        pressure_angle=angle,
+        with_ring=True,
+        damping=1e-5,
+        material=STEEL,
+        diameter=0.05,
+        mode_count=1,
     )
     parts["shafts"] = [replace(shaft, rim_seat="bore") if shaft.name == "ring" else shaft for shaft in parts["shafts"]]
     return Machine(**parts, housing=_ring_housing(), speed=speed, torque=200.0)

@@ -5,6 +5,8 @@ import pytest
 
 import gearwhine as gw
 
+pytestmark = pytest.mark.usefixtures("mechanisms_left_out")
+
 SETTINGS = {
     "housing.box.mesh_size": "60 mm",
     "transient.revolutions": 4,

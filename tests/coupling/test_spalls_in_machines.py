@@ -7,6 +7,7 @@ of its shaft, which have nothing to do with spalls.
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -105,12 +106,18 @@ def machine(
     )
 
 
+@cache
+def deviations(slip: CageSlip) -> FloatArray:
+    """Those of the left bearing's cage, drawn once."""
+    return slip.deviations("left", 0) if slip.scatter else np.zeros(2)
+
+
 def rolled(row: BallRow | RollerRow, slip: CageSlip, time: float) -> float:
     """Time in which a cage without slip would turn as far."""
     passing = (
         4.0 * math.pi / (row.count * SPEED * (1.0 - row.element_diameter / row.pitch_diameter) * (1.0 - slip.mean))
     )
-    walk = slip.deviations("left", 0) if slip.scatter else np.zeros(2)
+    walk = deviations(slip)
     return (1.0 - slip.mean) * (time + passing * float(np.interp(time / passing, np.arange(len(walk)), walk)))
 
 

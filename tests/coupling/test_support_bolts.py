@@ -29,7 +29,13 @@ UNEQUAL = tuple(
 def bolted(bolts: tuple[SupportBolt, ...]) -> Machine:
     """A set whose ring has no bearing: the bolts alone hold it."""
     parts = plane_set(
-        equal_angles(3), pressure_angle=np.radians(20.0), with_ring=True, damping=1e-5, material=STEEL, diameter=0.05
+        equal_angles(3),
+        pressure_angle=np.radians(20.0),
+        with_ring=True,
+        damping=1e-5,
+        material=STEEL,
+        diameter=0.05,
+        mode_count=1,
     )
     parts["bearings"] = [one for one in parts["bearings"] if one.rotor != "ring"]
     parts["torque_supports"] = [TorqueSupport("ring", MIDDLE, bolts=bolts)]

@@ -266,8 +266,8 @@ class Solid:
 
 @cache
 def solid_wheel(count: int, teeth: bool = True) -> Solid:
-    """Solid of revolution by hexahedra of second order, 36 round the axis, with the bore's face at rest."""
-    gear, sectors = wheel(), 36
+    """Solid of revolution by hexahedra of second order, 28 round the axis, with the bore's face at rest."""
+    gear, sectors = wheel(), 28
     hub, rim, root = 0.5 * gear.bore, gear.rim_inner_radius or 0.0, gear.root_circle_radius
     web, face = 0.5 * (gear.web_thickness or 0.0), 0.5 * gear.face_width
     r = np.concatenate([np.linspace(hub, rim, 6), [0.5 * (rim + root), root]])

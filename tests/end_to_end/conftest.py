@@ -27,6 +27,14 @@ def _figures_unrendered(unrendered: None) -> None:
 
 
 @pytest.fixture(scope="module", autouse=True)
+def _less_effort(request: pytest.FixtureRequest) -> None:
+    """Find no mechanism's part of a line, and few points of responses, but in a module marked ``rendered``."""
+    if not request.node.get_closest_marker("rendered"):
+        request.getfixturevalue("mechanisms_left_out")
+        request.getfixturevalue("few_points")
+
+
+@pytest.fixture(scope="module", autouse=True)
 def _texts_read_back(texts_read_back: None) -> None:
     """Hold the numbers in the texts of every result against its document."""
 

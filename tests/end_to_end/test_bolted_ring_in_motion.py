@@ -7,8 +7,9 @@ import pytest
 from planetary_case import stage
 
 import gearwhine as gw
-from gearwhine.analyses import machine_results
 from gearwhine.case import dump_case, parse_case
+
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("few_slices")]
 
 RADIUS, TORQUE = 0.1125, 50.0
 ANGLES = np.radians(60.0 * np.arange(6))
@@ -62,7 +63,6 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> gw.CaseStudy:
     return gw.load(path)
 
 
-@pytest.mark.slow
 def test_bolts_balance_the_planets(study: gw.CaseStudy) -> None:
     document = study.operating_point().document
     radial, tangential = (
@@ -79,13 +79,8 @@ def test_bolts_balance_the_planets(study: gw.CaseStudy) -> None:
     assert np.ptp(tangential) > 0.3 * np.abs(tangential).max()
 
 
-@pytest.mark.slow
-def test_planets_that_pass_the_bolts_are_heard_beside_the_mesh_harmonics(
-    study: gw.CaseStudy, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_planets_that_pass_the_bolts_are_heard_beside_the_mesh_harmonics(study: gw.CaseStudy) -> None:
     """The motion, whose mesh stiffness varies, against the linear response about the mean load."""
-    # What each mechanism gives of a line, and its band by damping, take half of the time and are not looked at.
-    monkeypatch.setattr(machine_results, "add_mechanisms", lambda *_: None)
     run = study.run()
     lines = {
         round(line["frequency_hz"] / CARRIER_HZ): line["sensor_acceleration_m_per_s2"]["together"]["top"]

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parent.parent.parent
 OPTIMISATION = """
 [optimisation]
-evaluations = 10
+evaluations = 7
 verify = false
 [optimisation.design]
 "gear.*.tip_relief.amount" = { range = ["5 um", "40 um"] }
@@ -46,7 +46,7 @@ def test_an_interrupted_search_goes_on_by_workers_to_the_designs_of_one_go(tmp_p
         return [line for record in out.glob("samples/*.jsonl") for line in record.read_bytes().splitlines()]
 
     until = time.monotonic() + 240.0
-    while len(kept()) < 4:
+    while len(kept()) < 3:
         assert time.monotonic() < until
         assert process.poll() is None, process.communicate()
         time.sleep(0.02)
@@ -55,12 +55,12 @@ def test_an_interrupted_search_goes_on_by_workers_to_the_designs_of_one_go(tmp_p
     assert process.returncode == 130
     assert "Traceback" not in error
     before = kept()
-    assert 4 <= len(before) < 11
+    assert 3 <= len(before) < 8
     assert not (out / "summary.json").exists()
     assert run_command(["optimise", str(case), "-o", str(out), "-q", "--workers", "2"]) == 0
     document = json.loads((out / "summary.json").read_text())
     assert document["resumed"] >= len(before) - 1
-    assert document["designs"] == 10
+    assert document["designs"] == 7
     assert kept()[: len(before) - 1] == before[: len(before) - 1]
     assert run_command(["optimise", str(case), "-o", str(whole), "-q", "--workers", "1"]) == 0
     with xr.open_dataset(out / "optimise.nc") as resumed, xr.open_dataset(whole / "optimise.nc") as alone:

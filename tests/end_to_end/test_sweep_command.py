@@ -23,14 +23,14 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parent.parent.parent
 TEETH, BASE_RADIUS, TORQUE = 28, 0.5 * 28 * 3.175e-3 * math.cos(math.radians(20.0)), 71.77
-SPEEDS = (3000.0, 3600.0, 4200.0)
+SPEEDS = (3000.0, 3600.0)
 # A bearing that pushes its shaft around: the motion grows without bound.
 UNSTABLE = "bearing.input-back.stiffness.xy=0,1e10 N/m"
 # Teeth may be pressed flat before or after the motion itself is out of bounds.
 DIVERGED = "pressed together by|motion diverged"
 ROTORS = (
     *("sweep", "spur-pair", "-o", "out", "--json", "--no-pictures"),
-    *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
+    *("--over", "operation.speed=3000 rpm,3600 rpm", "--over", UNSTABLE),
     # Points that take half a second or so, so that there is something to interrupt.
     *("--set", "transient.revolutions=6", "--set", "transient.discard=5", "--set", "transient.tolerance=2e-4"),
 )
@@ -105,7 +105,7 @@ def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     workers_of(process)[0].send_signal(signal.SIGKILL)
     out, errors = said(process, 240.0)
     assert process.returncode == 1, errors
-    assert "3 of 6 points failed" in errors
+    assert "2 of 4 points failed" in errors
     assert "Traceback" not in errors
     after = {path.name: path.stat().st_mtime_ns for path in points.iterdir()}
     assert {name: after[name] for name in kept} == kept
@@ -129,7 +129,7 @@ def test_ctrl_c_while_workers_start_is_quiet_and_leaves_none(tmp_path: Path) -> 
 
 def test_every_point_is_there_and_the_failed_ones_say_why(interrupted_and_hurt: tuple[Path, dict]) -> None:
     folder, document = interrupted_and_hurt
-    assert (document["done"], document["failed"]) == (3, 3)
+    assert (document["done"], document["failed"]) == (2, 2)
     for point in document["points"]:
         stable = point["settings"]["bearing.input-back.stiffness.xy"] == "0"
         assert point["status"] == ("done" if stable else "failed")
@@ -149,7 +149,7 @@ def test_the_gathered_file_is_labelled_and_holds_the_closed_forms(interrupted_an
         stable = data.isel(bearing_input_back_stiffness_xy=0, contact=0)
         assert stable.done.all()
         # The mean mesh force is the torque over the base radius, at any speed.
-        assert stable.mesh_force_mean.values == pytest.approx(np.full(3, TORQUE / BASE_RADIUS), rel=5e-3)
+        assert stable.mesh_force_mean.values == pytest.approx(np.full(2, TORQUE / BASE_RADIUS), rel=5e-3)
         assert stable.mesh_frequency.values == pytest.approx(TEETH * np.array(SPEEDS) / 60.0)
         assert stable.frequency.sel(speed=3600.0, order=TEETH) == pytest.approx(TEETH * 60.0)
         # The mesh leads its own force: the highest line is at a multiple of the number of teeth.

@@ -1,5 +1,6 @@
 """The linear analyses through the command: shares, stability, diagram over speed, transmissibility, files."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -22,16 +23,23 @@ HELICAL = (
 """The small gearbox with helical gears out of the middle of their shafts, whose back bearings carry the thrust."""
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _less_effort(few_points: None) -> None:
+    """Find each mechanism's part of a line, which stand in table and document."""
+
+
 @pytest.mark.slow
 def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Path) -> None:
     """Helical gears out of the middle: shuttling leads at the mesh frequency, which the transmissibility does not have.
 
     The lines are those of `load --sensitivity`, which has more modes at the sensors.
     """
-    outcome = gearwhine("system", "small-gearbox", *HELICAL, "-o", "out", "-q", "--json")
+    outcome = gearwhine("system", "small-gearbox", *HELICAL, "-o", "out", "-q")
     assert outcome.code == 0, outcome.err
-    lines = outcome.document["mesh_lines"]
-    assert outcome.document["conventions"].keys() <= lines[0].keys() | lines[0]["sensor_acceleration_m_per_s2"].keys()
+    _says_what_excites_beside_transmission_error(outcome.out)
+    document = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    lines = document["mesh_lines"]
+    assert document["conventions"].keys() <= lines[0].keys() | lines[0]["sensor_acceleration_m_per_s2"].keys()
     first = 28 * 1500.0 / 60.0
     assert [line["frequency_hz"] for line in lines] == pytest.approx([first, 2.0 * first])
     assert [line["cause"] for line in lines] == ["1× pinion -> wheel", "2× pinion -> wheel"]
@@ -55,9 +63,7 @@ def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Pa
             assert together == pytest.approx(by_load[sensor, round(line["frequency_hz"])], rel=0.05)
 
 
-@pytest.mark.slow
-def test_the_terminal_says_what_excites_beside_transmission_error(gearwhine: Any) -> None:
-    told = gearwhine("system", "small-gearbox", *HELICAL, "-q").out
+def _says_what_excites_beside_transmission_error(told: str) -> None:
     assert "by transmission error alone" in told
     assert "by shuttling" in told
     assert "load --sensitivity" in told
@@ -66,9 +72,6 @@ def test_the_terminal_says_what_excites_beside_transmission_error(gearwhine: Any
         together = [float(row[-3]) for row in rows if row[0] == sensor]
         assert len(together) == 2
         assert together == sorted(together, reverse=True)
-    at_an_instant = gearwhine("system", "spur-pair", "--mesh-phase", "0.2", "-q").out
-    assert "by transmission error alone" in at_an_instant
-    assert "Highest lines" not in at_an_instant
 
 
 def test_contact_of_an_instant(gearwhine: Any) -> None:
@@ -80,6 +83,9 @@ def test_contact_of_an_instant(gearwhine: Any) -> None:
         shares = [mode["energy"]["mesh"] for mode in document["modes"]]
         meshes.append(document["modes"][int(np.argmax(shares))]["frequency_hz"])
     assert meshes[0] > 1.05 * meshes[1]
+    told = gearwhine("system", "spur-pair", "--mesh-phase", "0.2", "-q").out
+    assert "by transmission error alone" in told
+    assert "Highest lines" not in told
 
 
 def test_what_cannot_be_asked(gearwhine: Any) -> None:

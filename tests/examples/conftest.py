@@ -17,8 +17,8 @@ Example = Callable[..., dict[str, Any]]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _solved_once(solved_once: None) -> None:
-    """Solve nothing again that another test has solved."""
+def _less_effort(solved_once: None, mechanisms_left_out: None, few_points: None) -> None:
+    """Solve nothing again that another test has solved, and nothing that no example looks at."""
 
 
 @pytest.fixture

@@ -28,7 +28,7 @@ from gearwhine.numerics.arrays import FloatArray
 
 Blocks = Callable[..., Mesh]
 
-RUNS = 15  # of either shape
+RUNS = 10  # of either shape
 SPREAD = 1e-9  # of the frequencies of one multiple mode, as a part of them
 SPLIT = 1e-6  # frequencies farther apart, as a part of them, are different modes
 DISTINCT = 1e-3  # part of the highest eigenvalue found: a gap this wide always ends a search by number

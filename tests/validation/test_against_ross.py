@@ -413,7 +413,7 @@ def test_sleeves_bend_with_their_shaft_as_ross_approaches(ross: Any, tmp_path: P
     the element is shorter than their diameters.
     """
 
-    def saved(per_part: int) -> tuple[Any, Path]:
+    def model(per_part: int) -> Any:
         steel = ross.Material("Steel", rho=7810.0, E=211e9, G_s=81.2e9)
         bronze = ross.Material("Bronze", rho=8800.0, E=110e9, G_s=41e9)
         shaft, node = [], 0
@@ -436,18 +436,17 @@ def test_sleeves_bend_with_their_shaft_as_ross_approaches(ross: Any, tmp_path: P
             ross.BearingElement(node, kxx=2e7, cxx=200.0, tag="right"),
         ]
         disk = ross.DiskElement.from_geometry(2 * per_part, steel, 0.07, 0.05, 0.28)
-        model = ross.Rotor(shaft, [disk], supports)
-        model.save(tmp_path / f"sleeves-{per_part}.toml")
-        return model, tmp_path / f"sleeves-{per_part}.toml"
+        return ross.Rotor(shaft, [disk], supports)
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = [saved(count) for count in (8, 16, 32)]
-    rotor, bearings, remarks = read_ross(found[0][1])
-    assert rotor.mass == pytest.approx(found[0][0].m, rel=1e-12)
-    assert rotor.polar_inertia == pytest.approx(found[0][0].Ip, rel=1e-12)
+        found = [model(count) for count in (8, 16, 32)]
+        found[0].save(tmp_path / "sleeves.toml")
+    rotor, bearings, remarks = read_ross(tmp_path / "sleeves.toml")
+    assert rotor.mass == pytest.approx(found[0].m, rel=1e-12)
+    assert rotor.polar_inertia == pytest.approx(found[0].Ip, rel=1e-12)
     ours = solve_whirl(rotor, bearings, 300.0, count=COUNT).eigenvalues
-    theirs = [matrices(model, 300.0, LATERAL).eigenvalues[:COUNT] for model, _ in found]
+    theirs = [matrices(one, 300.0, LATERAL).eigenvalues[:COUNT] for one in found]
     away = [np.abs(one / ours - 1.0).max() for one in theirs]
     assert away[0] > 3.3 * away[1] > 3.3**2 * away[2]
     assert np.abs((64.0 * theirs[2] - 20.0 * theirs[1] + theirs[0]) / (45.0 * ours) - 1.0).max() < 0.25 * away[2]

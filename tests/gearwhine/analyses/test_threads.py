@@ -12,7 +12,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 import gearwhine as gw
 
-COARSE = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "2 kHz"}
+COARSE = {"housing.box.mesh_size": "80 mm", "housing.frequency_limit": "", "housing.modes": 3}
 
 def first_modes(wall):
     study = gw.load("steel-box", COARSE | {"housing.box.wall": wall})
@@ -89,31 +89,6 @@ try:
 except MesherUnavailableError as error:
     assert "gmsh.finalize()" in str(error), error
 assert "mine" in gmsh.model.list()
-"""
-    )
-    assert done.returncode == 0, done.stderr[-500:]
-
-
-@pytest.mark.slow
-def test_the_sparse_solver_outlives_the_thread_that_needed_it_first() -> None:
-    done = _python(
-        """
-import threading
-import numpy as np
-from scipy import sparse
-from gearwhine.housing.fem.factorization import Factorizer
-
-def solve(found):
-    matrix = sparse.diags_array([-1.0, 4.0, -1.0], offsets=[-1, 0, 1], shape=(300, 300), format="csr")
-    found.append(Factorizer(backend="rslab").factor(matrix).solve(matrix @ np.arange(300.0)))
-
-for _ in range(3):
-    found = []
-    thread = threading.Thread(target=solve, args=(found,))
-    thread.start()
-    thread.join()
-    assert np.allclose(found[0], np.arange(300.0))
-solve(found)
 """
     )
     assert done.returncode == 0, done.stderr[-500:]

@@ -53,6 +53,7 @@ def test_a_campbell_diagram_over_frozen_carriers_warns_of_it() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_points")
 def test_system_tells_sidebands_exponents_and_the_error_of_frozen_carriers(tmp_path: Path) -> None:
     machine = turning_set(NATURAL)
     result = gw.Study(machine).system()

@@ -15,6 +15,8 @@ from gearwhine.output.export import _microphone_places
 from gearwhine.output.manifest import MANIFEST
 from gearwhine.results_folder import export_results
 
+pytestmark = pytest.mark.usefixtures("mechanisms_left_out")
+
 
 def sensors(x: str) -> dict[str, Any]:
     """One sensor half a millimetre above the top at y = 160 mm, one along the normal of the right wall."""

@@ -16,7 +16,7 @@ from gearwhine.cli.command_line import run_command
 from gearwhine.output.export import write_sounds
 from gearwhine.results_folder import export_results, export_sections
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("mechanisms_left_out")]
 
 Exported = tuple[Path, dict[str, Any]]
 

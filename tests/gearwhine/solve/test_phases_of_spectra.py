@@ -9,6 +9,8 @@ import xarray as xr
 
 import gearwhine as gw
 
+pytestmark = pytest.mark.usefixtures("mechanisms_left_out")
+
 TURN = 60.0 / 3000.0  # of the bundled pair's shafts [s]
 TEETH = 28
 BEGIN = 4.37  # turns before the record: 122.36 mesh periods

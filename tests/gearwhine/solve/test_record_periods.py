@@ -13,6 +13,8 @@ from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.solve.machine import plan_of
 from tests.machines.turning_set import turning_machine
 
+pytestmark = pytest.mark.usefixtures("mechanisms_left_out")
+
 SHAFT = 5500.0 / 60.0  # both shafts of the pair [Hz]
 # 9 balls of 9 mm on a pitch circle of 46 mm pass 9/2 (1 - 9/46) = 333/92 times in a revolution.
 BALLS = '{rolling={count=9, element_diameter="9 mm", pitch_diameter="46 mm", clearance="6 um", law="nonlinear"}}'

@@ -21,7 +21,7 @@ from gearwhine.output.checkpoints import BlockFiles, stored_record
 from gearwhine.output.files import held_lock
 from gearwhine.solve.machine import plan_of
 
-KILLS = 10
+KILLS = 6
 BLOCK = 1024  # samples: some eighty checkpoints
 FORK = multiprocessing.get_context("fork")
 Solve = Callable[..., SolvedTransient]
@@ -63,7 +63,7 @@ def wait_for(met: Callable[[], bool]) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("record_bytes", [1 << 30, 1 << 20], ids=["whole", "decimated"])
-def test_ten_kills_leave_no_trace(solve: Solve, tmp_path: Path, record_bytes: int) -> None:
+def test_six_kills_leave_no_trace(solve: Solve, tmp_path: Path, record_bytes: int) -> None:
     expected = solve(record_bytes=record_bytes)
     assert expected.record.sampling.is_long == (record_bytes < 1 << 30)
     total = len(expected.record.blocks)

@@ -35,6 +35,7 @@ from gearwhine.numerics.arrays import FloatArray
 
 MODES, MISSING = 10, (3, 6)
 FREQUENCY_NOISE, SHAPE_NOISE = 0.01, 0.05
+SEEDS = 50
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
 
 
@@ -156,13 +157,13 @@ def spread_of(found: SearchResult, target: Target) -> Posterior:
 
 @pytest.mark.slow
 def test_secrets_are_recovered_within_the_reported_uncertainty(designs: ParametricHousing, reduced: Surrogate) -> None:
-    """At least 95 of 100, on the reduced model; and every mode is paired with its own.
+    """At least 47 of 50, on the reduced model; and every mode is paired with its own.
 
     The part in smaller regions has to be what each says within three standard deviations of such a count.
     """
     levels = np.array([0.5, 0.68, 0.9, 0.95])
     inside, right, within, counts = 0, 0, 0, np.zeros(len(levels))
-    for seed in range(100):
+    for seed in range(SEEDS):
         generator = np.random.default_rng(seed)
         secret = secret_coordinates(designs, generator)
         target, own = measured(reduced.at(secret).state, generator)
@@ -176,10 +177,10 @@ def test_secrets_are_recovered_within_the_reported_uncertainty(designs: Parametr
         pairs = found.misfit.pairs
         assert pairs.tolist() == own or (pairs == UNPAIRED).any()  # where one is wrong, it is not hidden
         right += pairs.tolist() == own
-    assert inside >= 95
-    assert (np.abs(counts - 100.0 * levels) < 3.0 * np.sqrt(100.0 * levels * (1.0 - levels))).all()
-    assert within >= 0.9 * 100 * len(designs.parameters)
-    assert right >= 98
+    assert inside >= 47
+    assert (np.abs(counts - SEEDS * levels) < 3.0 * np.sqrt(SEEDS * levels * (1.0 - levels))).all()
+    assert within >= 0.9 * SEEDS * len(designs.parameters)
+    assert right >= 49
 
 
 def test_a_solved_housing_is_recovered(designs: ParametricHousing, start: HousingAtParameters) -> None:

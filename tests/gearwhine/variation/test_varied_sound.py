@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from gearwhine.solve.housing_modes import solve_housing, with_modes_of
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.variation.quantities import Wanted
 from gearwhine.variation.samples import VariedCase
+from gearwhine.variation.statistics import VariedResult
 
 RPM = 30.0 / np.pi
 SPEEDS = (2500.0, 4000.0)
@@ -66,33 +68,39 @@ def _own(study: gw.CaseStudy, changes: dict[str, Any]) -> tuple[list[float], lis
     return plain, weighted
 
 
+@cache
+def _varied() -> VariedResult:
+    """The study of one gearbox whose sound is that of the quick estimate."""
+    with TemporaryDirectory() as folder:
+        return _coarse().changed(ESTIMATE | STUDY).vary(1, folder=folder, workers=1).solved
+
+
 @pytest.mark.parametrize("acoustics", [ESTIMATE, pytest.param(TOP, marks=pytest.mark.slow)])
 def test_each_gearbox_has_the_power_of_its_lines(tmp_path: Path, acoustics: dict[str, Any]) -> None:
     study = _coarse().changed(acoustics)
-    found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1)
-    assert not found.document["failed"]
-    torque = float(found.solved.values[0, 0])
+    found = _varied()
+    if acoustics is not ESTIMATE:
+        found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1).solved
+    torque = float(found.values[0, 0])
     plain, weighted = _own(study, {"operation.torque": f"{torque!r} N*m"})
-    values = {one.name: float(one.values[0]) for one in found.solved.quantities}
+    values = {one.name: float(one.values[0]) for one in found.quantities}
     # A table over frequency is good to a tenth of a decibel.
-    assert found.solved.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
-    assert found.solved.outcomes[0].curves["housing.sound_power_db_a"] == pytest.approx(weighted, abs=0.15)
+    assert found.outcomes[0].curves["housing.sound_power_db"] == pytest.approx(plain, abs=0.1)
+    assert found.outcomes[0].curves["housing.sound_power_db_a"] == pytest.approx(weighted, abs=0.15)
     assert values["housing.sound_power_db"] == pytest.approx(max(plain), abs=0.1)
     assert values["housing.sound_power_db_a_speed_rpm"] == pytest.approx(SPEEDS[int(np.argmax(weighted))])
 
 
 def test_the_quieter_of_two_torques_is_the_best_design(tmp_path: Path) -> None:
     design = {
-        "optimisation.design": {"operation.torque": {"values": ["50 N*m", "71.77 N*m", "90 N*m"]}},
+        "optimisation.design": {"operation.torque": {"values": ["50 N*m", "90 N*m"]}},
         "optimisation.aim": {"housing.sound_power_db_a": {"sense": "least"}},
         "optimisation.speed": STUDY["variation.speed"],
         "optimisation.verify": False,
     }
     study = _coarse().changed(ESTIMATE)
     found = study.changed(design).optimise(folder=tmp_path / "out", workers=1)
-    loudest = {
-        torque: max(_own(study, {"operation.torque": torque})[1]) for torque in ("50 N*m", "71.77 N*m", "90 N*m")
-    }
+    loudest = {torque: max(_own(study, {"operation.torque": torque})[1]) for torque in ("50 N*m", "90 N*m")}
     (key,) = found.document["keys"]
     assert key["designs"] == [min(loudest, key=lambda torque: loudest[torque])]
     assert found.document["aims"][0]["designs"][0] == pytest.approx(min(loudest.values()), abs=0.1)
@@ -122,9 +130,8 @@ def test_sound_of_thinner_air_is_as_much_lower(tmp_path: Path) -> None:
     assert lower == pytest.approx(10.0 * np.log10(found.values[0, 0] / 1.204))
 
 
-def test_machines_of_python_sound_as_those_of_a_case(tmp_path: Path) -> None:
-    study = _coarse().changed(ESTIMATE)
-    found = study.changed(STUDY).vary(1, folder=tmp_path / "out", workers=1).solved
+def test_machines_of_python_sound_as_those_of_a_case() -> None:
+    study, found = _coarse().changed(ESTIMATE), _varied()
     machine, acoustics = study.machine, study.settings.acoustics
     speeds = [speed / RPM for speed in SPEEDS]
     law = {"torque": Discrete([float(found.values[0, 0])])}

@@ -201,20 +201,20 @@ def plate_efficiency(m: int, n: int, length: float, width: float, k: float) -> f
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mode", [(1, 1), (1, 2), (2, 2), (1, 3), (3, 3)])
 @pytest.mark.parametrize("k", [1.0, 4.0, 9.0])
-def test_simply_supported_plate(mode, k):
+def test_simply_supported_plate(k):
+    modes = [(1, 1), (1, 2), (2, 2), (1, 3), (3, 3)]
     length, width = 1.0, 0.8
     plate = rectangle(length, width, 30, 24)
 
     def shape(points, normals):
         x, y = points[:, 0], points[:, 1]
-        return (np.sin(mode[0] * np.pi * x / length) * np.sin(mode[1] * np.pi * y / width))[:, None]
+        return np.column_stack([np.sin(m * np.pi * x / length) * np.sin(n * np.pi * y / width) for m, n in modes])
 
     baffle = HardPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     field = at_wavenumber(BoundaryElements(plate, UNIT, baffle), k, at_corners(plate, shape))
-    found = field.resistance[0, 0] / field.velocity_products[0, 0].real
-    assert found == pytest.approx(plate_efficiency(*mode, length, width, k), rel=5e-3)
+    found = np.diag(field.resistance) / np.diag(field.velocity_products).real
+    assert found == pytest.approx([plate_efficiency(*mode, length, width, k) for mode in modes], rel=5e-3)
 
 
 @settings(max_examples=5)

@@ -11,6 +11,8 @@ from gearwhine.cli.command_line import run_command
 from gearwhine.results.run import sections
 from gearwhine.solve.acoustics import check_before_modes
 
+pytestmark = pytest.mark.usefixtures("mechanisms_left_out")
+
 INSIDE = {"name": "in", "position": ["0 mm", "80 mm", "0 mm"]}
 UNDER = {"name": "under", "position": ["1 m", "-30 mm", "0 m"]}
 AT_THE_WALL = {"name": "wall", "position": ["110.01 mm", "80 mm", "0 mm"]}

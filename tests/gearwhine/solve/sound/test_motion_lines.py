@@ -23,6 +23,8 @@ from gearwhine.sweep import SweptPoint, sweep_points
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 
+pytestmark = pytest.mark.usefixtures("mechanisms_left_out")
+
 
 def motion(period: float, harmonics: dict[int, complex], weight: int = 1) -> Any:
     """One period of a bearing's force along x, of harmonics of the period."""

@@ -24,7 +24,7 @@ from gearwhine.solve.kept_radiation import kept_radiation
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("mechanisms_left_out")]
 
 COARSE = {"acoustics.mesh_size": "35 mm", "acoustics.highest_frequency": "2.8 kHz", "acoustics.lines": 8}
 BOXED = COARSE | {"acoustics.floor": "-21 mm", "acoustics.microphone_box": "1 m"}
