@@ -23,8 +23,6 @@ from gearwhine.results.sweep import PEAK, sections
 from gearwhine.sweep.resolution import missed_peaks, over_with, peak_warnings
 from gearwhine.sweep.solution import PointResult
 
-pytestmark = pytest.mark.slow
-
 ORDER, NATURAL, RATIO = 28.0, 700.0, 0.01
 TEETH = "pinion -> wheel"
 
@@ -279,6 +277,7 @@ def sweeps(swept_here: None, tmp_path_factory: pytest.TempPathFactory) -> tuple[
     return first, study.sweep([over], folder=folder, workers=1).document
 
 
+@pytest.mark.slow
 def test_the_speeds_that_a_gearbox_passes_by_are_as_loud_as_told(sweeps: tuple[dict[str, Any], dict[str, Any]]) -> None:
     first, second = sweeps
     peak = max(first["missed_peaks"], key=lambda one: one["level_db"])
@@ -293,6 +292,7 @@ def test_the_speeds_that_a_gearbox_passes_by_are_as_loud_as_told(sweeps: tuple[d
     assert second["missed_peaks"] == []
 
 
+@pytest.mark.slow
 def test_terminal_tells_the_loudest_line_its_mode_and_the_speeds_to_add(
     sweeps: tuple[dict[str, Any], dict[str, Any]],
 ) -> None:
@@ -349,6 +349,7 @@ def split_torque() -> dict[str, Any]:
     return document
 
 
+@pytest.mark.slow
 def test_a_peak_by_load_shuttling_in_two_meshes_is_that_of_the_coupled_system_there(tmp_path: Path) -> None:
     """`system` solves the machine at the speed of the peak directly; the sweep has its points alone.
 
