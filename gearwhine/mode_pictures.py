@@ -97,6 +97,7 @@ def draw_modes(
     progress: Progress,
     besides: Iterable[int] = (),
     *,
+    with_sheet: bool = True,
     drawn: Collection[str] = (),
 ) -> list[str]:
     """Draw modes into a folder and name the files.
@@ -116,6 +117,8 @@ def draw_modes(
     progress : callable
     besides : iterable of int
         Numbers of further modes.
+    with_sheet : bool
+        Whether pictures of several modes have a sheet of all.
     drawn : collection of str
         Names of pictures that are drawn already, without ending.
     """
@@ -143,7 +146,7 @@ def draw_modes(
 
     surface = drawn_housing(housing.mesh, housing.up)
     shapes = drawn_modes(surface, housing.modes, numbers, notes)
-    sheet = "modes.png" if len(numbers) > 1 and mode_format == "png" else None
+    sheet = "modes.png" if with_sheet and len(numbers) > 1 and mode_format == "png" else None
     return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet, drawn=drawn)
 
 
