@@ -183,7 +183,10 @@ class _StaticModel:
         for _, mode, indices in self.plates:
             self.stiffness[indices, indices] = mode.frequency**2 * np.eye(mode.size)
         self.load = self._loads(torques, forces)
-        self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
+        self.directions = [
+            np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
+            for mounted in (bearing.mounted for bearing in bearings)
+        ]
         approaches = [self._pair_directions(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
@@ -294,9 +297,6 @@ class _StaticModel:
             own = slice(self.housing_first, self.housing_first + self.housing.size)
             rows[:, own] -= self.housing.section_motions(support.seat, z)
         return np.asarray(rows[support.held_motions].T)
-
-    def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
-        return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
 
     def _pair_directions(self, pair: StaticPair) -> tuple[FloatArray, FloatArray]:
         """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1).
