@@ -1,6 +1,6 @@
 """Errors of the coupled machine and its analyses."""
 
-from gearwhine.numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError, WorkFailedError
 
 
 class CouplingError(RefusedPartError):
@@ -15,17 +15,17 @@ class DeflectionError(CouplingError):
     """A motion beyond the deflection that the parts can follow: teeth compressed too far."""
 
 
-class TransientError(RuntimeError):
+class TransientError(WorkFailedError):
     """A time integration that diverged, stalled, or whose energies do not balance."""
 
 
-class ModesError(RuntimeError):
+class ModesError(WorkFailedError):
     """Coupled modes, or a response made of them, that fail their own proof."""
 
 
-class PeriodicError(RuntimeError):
+class PeriodicError(WorkFailedError):
     """A periodic motion that was not found, or fails its proof; the message says what to try."""
 
 
-class EquilibriumNotFoundError(RuntimeError):
+class EquilibriumNotFoundError(WorkFailedError):
     """A static equilibrium of the machine that was not found, or whose forces do not balance."""

@@ -1,7 +1,9 @@
 """Failures of a command: exit codes and messages of wrong input, failed proofs and missing libraries."""
 
+from gearwhine.numerics.findings import RefusedPartError, WorkFailedError
 
-class PartlyFailedError(RuntimeError):
+
+class PartlyFailedError(WorkFailedError):
     """Some of the work failed; finished parts are on file, and the message gives the number of missing ones."""
 
 
@@ -13,11 +15,11 @@ class ForeignFileError(ValueError):
     """A file that no run made, or that the case reads, would be replaced; the message names it."""
 
 
-class WorkersError(RuntimeError):
+class WorkersError(WorkFailedError):
     """The workers of a sweep did not start, or are gone for good."""
 
 
-class MissingExtraError(RuntimeError):
+class MissingExtraError(WorkFailedError):
     """A package of an extra is not installed; the message names both."""
 
 
@@ -27,26 +29,6 @@ def explain(error: Exception) -> tuple[int, str | None]:
     Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
     """
     from gearwhine.case import CaseError
-    from gearwhine.coupling.errors import (
-        CouplingError,
-        EquilibriumNotFoundError,
-        ModesError,
-        PeriodicError,
-        TransientError,
-    )
-    from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
-    from gearwhine.housing.errors import (
-        EncoderUnavailableError,
-        FactorizationError,
-        HealthError,
-        HousingError,
-        IncompleteModesError,
-        ReductionError,
-        RendererUnavailableError,
-    )
-    from gearwhine.meshes.errors import GeometryError, MesherUnavailableError
-    from gearwhine.rotors.errors import EquilibriumError, RotorError
-    from gearwhine.rotors.errors import IncompleteModesError as IncompleteRotorModesError
 
     if isinstance(error, CaseError):
         count = len(error.problems)
@@ -54,30 +36,9 @@ def explain(error: Exception) -> tuple[int, str | None]:
         subject = "what is asked for" if by_option else "the case"
         head = f"{subject} cannot be used as it stands" if count == 1 else f"{count} problems in {subject}"
         return 2, head + ":\n" + "\n".join(f"  {problem}" for problem in error.problems)
-    if isinstance(error, CouplingError | DamagedResultsError | GearError | HousingError | GeometryError | RotorError):
+    if isinstance(error, RefusedPartError | DamagedResultsError | ForeignFileError):
         return 2, str(error)
-    if isinstance(error, ForeignFileError):
-        return 2, str(error)
-    proofs = (
-        ContactAccuracyError,
-        EncoderUnavailableError,
-        EquilibriumError,
-        EquilibriumNotFoundError,
-        FactorizationError,
-        HealthError,
-        IncompleteModesError,
-        IncompleteRotorModesError,
-        MesherUnavailableError,
-        MissingExtraError,
-        PartlyFailedError,
-        ModesError,
-        PeriodicError,
-        ReductionError,
-        RendererUnavailableError,
-        TransientError,
-        WorkersError,
-    )
-    if isinstance(error, proofs):
+    if isinstance(error, WorkFailedError):
         return 1, str(error)
     if isinstance(error, MemoryError):
         advice = "a larger mesh_size or a lower frequency_limit needs less"

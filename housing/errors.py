@@ -1,6 +1,6 @@
 """Errors of the housing's model, its modes and its measured data."""
 
-from gearwhine.numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError, WorkFailedError
 
 
 class HousingError(RefusedPartError):
@@ -11,19 +11,19 @@ class TriangleSizeError(HousingError):
     """The triangles of a radiating surface are too large or too many; the message says what edge to take."""
 
 
-class IncompleteModesError(RuntimeError):
+class IncompleteModesError(WorkFailedError):
     """The modes found are incomplete or not accurate enough: an incomplete set is never returned."""
 
 
-class FactorizationError(RuntimeError):
+class FactorizationError(WorkFailedError):
     """A matrix could not be factored, or its factor does not solve; the message says what to try."""
 
 
-class ReductionError(RuntimeError):
+class ReductionError(WorkFailedError):
     """A reduced housing fails its own proof; the message gives the error and what to try."""
 
 
-class HealthError(RuntimeError):
+class HealthError(WorkFailedError):
     """The housing's model contradicts its geometry or itself; the message names every check that failed."""
 
 
@@ -35,9 +35,9 @@ class MeasuredDataError(HousingError):
     """A file of measured data cannot be used, or does not belong to the model; the message says what was expected."""
 
 
-class RendererUnavailableError(RuntimeError):
+class RendererUnavailableError(WorkFailedError):
     """No library that draws without a screen is installed, or it fails; the message says what to do."""
 
 
-class EncoderUnavailableError(RuntimeError):
+class EncoderUnavailableError(WorkFailedError):
     """No program that encodes films is installed, or it fails; the message says what to do."""

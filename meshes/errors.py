@@ -1,6 +1,6 @@
 """Errors of geometries and meshes."""
 
-from gearwhine.numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError, WorkFailedError
 
 
 class GeometryError(RefusedPartError):
@@ -11,5 +11,5 @@ class MeshSizeError(GeometryError):
     """Elements of the size asked for would be too many to solve, or larger than the part."""
 
 
-class MesherUnavailableError(RuntimeError):
+class MesherUnavailableError(WorkFailedError):
     """gmsh is installed but cannot be loaded; the message says which system packages it lacks."""

@@ -78,6 +78,10 @@ class RefusedPartError(ValueError):
     findings: tuple[Finding, ...] = ()
 
 
+class WorkFailedError(RuntimeError):
+    """A result that fails its own proof, or something that the computer lacks; the message says what helps."""
+
+
 def refuse(findings: Iterable[Finding], error: type[RefusedPartError]) -> None:
     """Raise an error with all findings that are errors, if there are any."""
     forbidding = tuple(finding for finding in findings if finding.severity == "error")

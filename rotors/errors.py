@@ -2,18 +2,18 @@
 
 import numbers
 
-from gearwhine.numerics.findings import FINITE, RefusedPartError
+from gearwhine.numerics.findings import FINITE, RefusedPartError, WorkFailedError
 
 
 class RotorError(RefusedPartError):
     """An invalid shaft, disc, bearing or request: the message names it, its value and the expected value."""
 
 
-class IncompleteModesError(RuntimeError):
+class IncompleteModesError(WorkFailedError):
     """The modes found do not agree with the root count, or a mode fails its energy check."""
 
 
-class EquilibriumError(RuntimeError):
+class EquilibriumError(WorkFailedError):
     """A rolling bearing's equilibrium fails its proof or exceeds its theory; the message says why and what helps."""
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from gearwhine.numerics.findings import FINITE, RefusedPartError
+from gearwhine.numerics.findings import FINITE, RefusedPartError, WorkFailedError
 
 
 class GearError(RefusedPartError):
@@ -37,7 +37,7 @@ class StiffnessModelError(GearError):
     """A stiffness model is unknown, or used outside its range."""
 
 
-class ContactAccuracyError(RuntimeError):
+class ContactAccuracyError(WorkFailedError):
     """A table or an equilibrium fails its own accuracy check."""
 
 

@@ -114,7 +114,7 @@ class PinSprings:
         stations = tuple(dict.fromkeys(bearings))
         springs = np.diag([self.radial, self.radial, _RIGID * self.radial, self.tilt, self.tilt])
         # The body's motion is that of its middle: all stations follow it by rigid arms.
-        arms = np.vstack([_arm(at - self.at) for at in stations])
+        arms = np.vstack([rigid_motion(at - self.at) for at in stations])
         whole = np.block([[springs, -springs], [-springs, springs]])
         return MountedPin(stations, (self.at,), whole, arms)
 
@@ -179,7 +179,7 @@ class MountedPin:
     def rigid_motions(self) -> FloatArray:
         """Coordinates of the motions of the pin as one body by x, y, z and rotations about x and y, (n, 5)."""
         places = self.stations if self.arms is None else self.walls
-        return np.vstack([_arm(at - self.middle) for at in places])
+        return np.vstack([rigid_motion(at - self.middle) for at in places])
 
     @property
     def scale(self) -> FloatArray:
@@ -187,8 +187,8 @@ class MountedPin:
         return np.asarray(np.sqrt(np.tile(_INERTIA, self.size // 5)))
 
 
-def _arm(along: float) -> FloatArray:
-    """Motion of a place on a rigid pin by that of its middle, (5, 5)."""
+def rigid_motion(along: float) -> FloatArray:
+    """Motion x, y, z and rotations about x and y of a rigid shaft at a distance from a place by that there, (5, 5)."""
     rows = np.eye(5)
     rows[0, 4], rows[1, 3] = along, -along
     return rows

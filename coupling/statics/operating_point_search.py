@@ -18,7 +18,7 @@ from gearwhine.coupling.machine.components import HousingComponent, seat_in_sect
 from gearwhine.coupling.machine.gear_bodies import GearBody
 from gearwhine.coupling.machine.loads import ShaftForce, Torque
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
-from gearwhine.coupling.machine.pins import MountedPin
+from gearwhine.coupling.machine.pins import MountedPin, rigid_motion
 from gearwhine.coupling.statics.connector_equilibrium import ConnectedStructure
 from gearwhine.coupling.statics.operating_point import (
     CAUSES,
@@ -183,7 +183,10 @@ class _StaticModel:
         for _, mode, indices in self.plates:
             self.stiffness[indices, indices] = mode.frequency**2 * np.eye(mode.size)
         self.load = self._loads(torques, forces)
-        self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
+        self.directions = [
+            np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
+            for mounted in (bearing.mounted for bearing in bearings)
+        ]
         approaches = [self._pair_directions(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
@@ -294,9 +297,6 @@ class _StaticModel:
             own = slice(self.housing_first, self.housing_first + self.housing.size)
             rows[:, own] -= self.housing.section_motions(support.seat, z)
         return np.asarray(rows[support.held_motions].T)
-
-    def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
-        return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
 
     def _pair_directions(self, pair: StaticPair) -> tuple[FloatArray, FloatArray]:
         """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1).
@@ -576,7 +576,7 @@ class _StaticModel:
             rigid_by = {"bearings": np.zeros(5), of_seats: np.zeros(5), "seats": np.zeros(5)}
             matrix = np.zeros((5, 5))
             for bearing in bearings_of_shaft:
-                moved = _rigid_rows(bearing.mounted.bearing.at)
+                moved = rigid_motion(bearing.mounted.bearing.at)
                 metric = 0.5 * (bearing.stiffness + bearing.stiffness.T)
                 matrix += moved.T @ metric @ moved
                 rigid_by["bearings"] += moved.T @ metric @ bearing.deflection
@@ -585,7 +585,7 @@ class _StaticModel:
                 rigid_by["seats"] += moved.T @ metric @ of_error
             rigid = np.linalg.lstsq(matrix, np.column_stack([*rigid_by.values()]), rcond=1e-12)[0]
             whole = np.zeros((places.size, 6, len(rigid_by)))
-            whole[:, :5] = np.array([_rigid_rows(at) for at in places.tolist()]) @ rigid
+            whole[:, :5] = np.array([rigid_motion(at) for at in places.tolist()]) @ rigid
             for number, cause in enumerate(rigid_by):
                 parts[cause][columns] = whole[:, :, number].ravel()
             parts["shafts"][columns] = x[columns] - whole.sum(axis=2).ravel()
@@ -626,13 +626,6 @@ def _rolling_state(bearing: StaticBearing, deflection: FloatArray) -> RollingSta
     # Messages name the bearing by its place in the machine.
     named = unchecked(elements.bearing, name=f"bearing {bearing.mounted.bearing.name!r}")
     return state_of_elements(unchecked(elements, {"contacts"}, bearing=named), deflection)
-
-
-def _rigid_rows(at: float) -> FloatArray:
-    """Motion x, y, z and rotations about x and y at a place by the rigid motion of the left end, (5, 5)."""
-    rows = np.eye(5)
-    rows[0, 4], rows[1, 3] = at, -at
-    return rows
 
 
 def _uniform_stiffness(pair: StaticPair) -> FloatArray:

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from gearwhine.numerics.arrays import FloatArray
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
 
 _MOST_QUANTITIES = 6

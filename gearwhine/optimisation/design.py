@@ -9,7 +9,7 @@ from functools import cached_property
 
 from gearwhine.case import CaseError, CaseSource, Problem, case_document
 from gearwhine.case.errors import NOTHING, UNSAID, Refusal, key_of, look_up
-from gearwhine.case.optimisation import DesignKey, Optimisation
+from gearwhine.case.optimisation import Optimisation
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import si_amount, unit_ratio
 from gearwhine.case.variation import Variation, Varied
@@ -91,7 +91,10 @@ def design_inputs(
     inputs, refused = list[DesignInput](), Refusal() if refusal is None else refusal
     for key, designed in optimisation.design.items():
         try:
-            found = inputs_of(source, {key: _as_varied(designed)}, _TABLE)
+            varied = Varied(
+                uniform=designed.range, values=designed.values, factor=designed.factor, independent=designed.independent
+            )
+            found = inputs_of(source, {key: varied}, _TABLE)
             along = [
                 one
                 for path, values in designed.along.items()
@@ -117,12 +120,6 @@ def design_inputs(
     if refusal is None:
         refused.require_none()
     return tuple(inputs)
-
-
-def _as_varied(designed: DesignKey) -> Varied:
-    return Varied(
-        uniform=designed.range, values=designed.values, factor=designed.factor, independent=designed.independent
-    )
 
 
 def _as_written(key: str) -> str:

@@ -224,11 +224,8 @@ def listed_files(folder: Path, place: Path) -> list[Path]:
     names = (read_summary(folder / place) or {}).get("files", ())
     texts = {name for name in names if isinstance(name, str) and name} if isinstance(names, list) else set()
     paths = (Path(text) for text in sorted(texts))
-    return [path for path in paths if path == place / path.name and _is_plain_file(folder / path)]
-
-
-def _is_plain_file(path: Path) -> bool:
-    return path.is_file() and not path.is_symlink()
+    own = ((path, folder / path) for path in paths if path == place / path.name)
+    return [path for path, file in own if file.is_file() and not file.is_symlink()]
 
 
 def _move_out(place: Path, folder: Path) -> None:

@@ -189,14 +189,6 @@ def _aims(optimised: "Optimised") -> Any:
     return np.array([one.aims for one in optimised.designs]).reshape(-1, len(optimised.goals.aims))
 
 
-def _excesses(optimised: "Optimised") -> list[float]:
-    return [one.excess for one in optimised.designs]
-
-
-def _on_front(optimised: "Optimised") -> Any:
-    return np.isin(np.arange(len(optimised.designs)), optimised.front)
-
-
 OPTIMISED = (
     *numbered("design", lambda found: len(found.designs), "number of the design, in the order of trial", first=1),
     in_file("input", "input", lambda found: [one.name for one in found.inputs], "designed key of the case"),
@@ -214,9 +206,20 @@ OPTIMISED = (
         "see input_unit",
     ),
     in_file("aim_value", "design aim", _aims, "value of the aim", "see aim_unit"),
-    in_file("excess", "design", _excesses, "sum of the excesses over the limits, each over its limit", "1"),
+    in_file(
+        "excess",
+        "design",
+        lambda optimised: [one.excess for one in optimised.designs],
+        "sum of the excesses over the limits, each over its limit",
+        "1",
+    ),
     in_file("value", "design quantity side", _sides, "value, low and high side of its scatter", "see quantity_unit"),
-    in_file("on_front", "design", _on_front, "whether on the front"),
+    in_file(
+        "on_front",
+        "design",
+        lambda optimised: np.isin(np.arange(len(optimised.designs)), optimised.front),
+        "whether on the front",
+    ),
 )
 """Quantities of every design, for the file; the object is a :class:`gearwhine.optimisation.optimised.Optimised`."""
 

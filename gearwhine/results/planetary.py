@@ -188,15 +188,12 @@ def _fault_words(fault: Document, planets: Sequence[str]) -> str:
     words = f"{fault['role']} {fault['working_flank_hz']:.5g} Hz"
     if fault["role"] != "planet" or not fault["back_flank_mates"]:
         return words
-    mates = {name: _NUMBER_OF_COPY.sub("", name) if name in planets else name for name in _mates(fault)}
+    names = [*fault["working_flank_mates"], *fault["back_flank_mates"]]
+    mates = {name: _NUMBER_OF_COPY.sub("", name) if name in planets else name for name in names}
     sides = (
         f"{', '.join(mates[name] for name in fault[f'{flank}_flank_mates'])} ({flank})" for flank in ("working", "back")
     )
     return f"{words} on the flank at {' or '.join(sides)}, {fault['tooth_hz']:.5g} Hz on both"
-
-
-def _mates(fault: Document) -> list[str]:
-    return [*fault["working_flank_mates"], *fault["back_flank_mates"]]
 
 
 def _bearing_words(bearing: Document) -> str:

@@ -298,11 +298,6 @@ OTHER_FLANKS = (
 """Quantities of the flanks that the mean load does not press; a row is an :class:`_OtherFlanks`."""
 
 
-def _friction(row: _Pair) -> Any:
-    """Friction of a mesh over the record: its force and its power."""
-    return row.transient.histories.mesh_friction.get(_contact(row))
-
-
 def _contact(row: _Pair) -> str:
     """Return the name of the contact that the mean load presses."""
     return str(row.transient.machine.system.contacts[row.contact].name)
@@ -327,7 +322,8 @@ PAIR = (
     Quantity("flanks", lambda row: "drive" if row.contact == row.number else "back"),
     Part(
         "friction",
-        _friction,
+        # Force and power over the record.
+        lambda row: row.transient.histories.mesh_friction.get(_contact(row)),
         (
             Quantity("mean_power_w", lambda friction: friction[:, 1].mean()),
             Quantity("peak_power_w", lambda friction: friction[:, 1].max()),

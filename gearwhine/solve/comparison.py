@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -132,20 +131,16 @@ def require_comparable(measured: Measured | None, housing: Housing | None) -> No
             text = f"at least {count}, as many as are measured: the first of the model is paired with the first of them"
             raise CaseError([Problem("housing.modes", housing.modes, text)])
     elif housing.frequency_limit is not None and housing.frequency_limit < ABOVE_HIGHEST_MEASURED * expected:
-        low = _low_limit(housing.frequency_limit, ABOVE_HIGHEST_MEASURED * expected)
+        text = needed_limit(ABOVE_HIGHEST_MEASURED * expected)
         if ABOVE_HIGHEST_MEASURED * expected < _TWO_PI * housing.frequency_limit:
-            low = replace(low, expected=f"{low.expected}; or measured frequencies in Hz, if these are in rad/s")
-        raise CaseError([low])
+            text += "; or measured frequencies in Hz, if these are in rad/s"
+        raise CaseError([Problem("housing.frequency_limit", f"{housing.frequency_limit:.5g} Hz", text)])
 
 
 def _highest_measured_hz(measured: Measured) -> tuple[int, float] | None:
     """Return the number of measured modes and the highest frequency [Hz]; None where they are yet to be identified."""
     frequencies = measured.frequencies_hz
     return (len(frequencies), frequencies[-1]) if frequencies else None
-
-
-def _low_limit(limit: float, highest: float) -> Problem:
-    return Problem("housing.frequency_limit", f"{limit:.5g} Hz", needed_limit(highest))
 
 
 def write_plan(place: Path, planned: PlannedSurvey) -> None:

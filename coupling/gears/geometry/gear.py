@@ -588,7 +588,7 @@ def _body_findings(gear: Gear) -> Iterator[Finding]:
             if value := getattr(gear, attribute):
                 yield Finding(part, attribute, value, "none of an internal gear, a ring outside its teeth, with a rim")
         if gear.ring_support is not None:
-            gear.ring_support.require_fit(gear.name, gear.outer_radius)
+            yield from gear.ring_support.fit_findings(gear.name, gear.outer_radius)
         return
     if gear.ring_support is not None:
         expected = f"none of an external gear; a ring has a negative number of teeth, teeth = {-gear.teeth}"

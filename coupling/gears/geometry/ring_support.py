@@ -72,12 +72,13 @@ class RingSupport:
         """Whether the ring is held at single places, so that its compliance varies around it."""
         return self.kind in ("bolts", "pins")
 
-    def require_fit(self, name: str, outer_radius: float) -> None:
-        """Raise `GearError` where the seats do not fit on the outside of a ring of this radius [m]."""
+    def fit_findings(self, gear: str, outer_radius: float) -> Iterator[Finding]:
+        """Yield seats that do not fit on the outside of a gear's ring of this radius [m]."""
         if self.count is not None and self.seat_width is not None:
             most = 2.0 * math.pi * outer_radius / self.count
             if self.seat_width >= most:
-                raise GearError(
-                    f"gear {name!r}: {self.count} seats of {1e3 * self.seat_width:.4g} mm do not fit around the ring's "
-                    f"outside of {2e3 * outer_radius:.6g} mm; below {1e3 * most:.4g} mm each, or springs all around"
+                expected = (
+                    f"below {1e3 * most:.4g} mm, as {self.count} seats stand around the ring's outside of "
+                    f"{2e3 * outer_radius:.6g} mm, or springs all around"
                 )
+                yield Finding(("gear", gear), "ring_support.seat_width", self.seat_width, expected)

@@ -173,7 +173,10 @@ def support_compliance(gear: Gear, state: PlaneState = "plane-stress", place: fl
         Angle of the loaded tooth from a bolt or pin, in the sense of the load [rad]; None for the mean over all places.
     """
     if gear.ring_support is None or gear.ring_support.kind in ("clamped", "housing"):
-        return SupportCompliance(lambda radius: np.zeros(np.shape(radius)), _no_cross)
+        return SupportCompliance(
+            lambda radius: np.zeros(np.shape(radius)),
+            lambda behind, ahead: np.zeros(np.broadcast_shapes(np.shape(behind), np.shape(ahead))),
+        )
     held, clamped = (ring_flexibility(ring_section(gear, state, supported=there)) for there in (True, False))
     bolts = gear.ring_support.count
     own, beside = (
@@ -181,10 +184,6 @@ def support_compliance(gear: Gear, state: PlaneState = "plane-stress", place: fl
         for matrices, still in ((held.own, clamped.own), (held.beside, clamped.beside))
     )
     return SupportCompliance(_alone(work_of_loads(gear, own)), work_of_loads(gear, beside))
-
-
-def _no_cross(behind: FloatArray, ahead: FloatArray) -> FloatArray:
-    return np.zeros(np.broadcast_shapes(np.shape(behind), np.shape(ahead)))
 
 
 def _at_place(matrices: FloatArray, place: float | None, bolts: int | None) -> FloatArray:

@@ -343,7 +343,7 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
     static = component.positive(("radial_static_load_rating", "static_capacity"), "N")
     if dynamic is not None:
         table["dynamic_rating"] = of(dynamic / 1e3, "kN")
-    if static is not None and not _geometry_is_given(unit, component, kind, rows):
+    if static is not None and _geometry(unit, component, kind, rows) is None:
         table["static_rating"] = of(static / 1e3, "kN")
     sense = _sense(component, rows)
     is_pair = kind == "deep-groove" and _row_count(component, rows) == 2
@@ -369,10 +369,6 @@ def _mounting(unit: GearUnit, mounted: Mounted, kind: str, rows: list[Component]
         if abs(component.number_of(name, "m") or 0.0) > _NO_VALUE:
             notes.left_out(f"{component.label}: {name}", "seats of a case on the ground have no offset")
     return table
-
-
-def _geometry_is_given(unit: GearUnit, component: Component, kind: str, rows: list[Component]) -> bool:
-    return _geometry(unit, component, kind, rows) is not None
 
 
 def _thrust(unit: GearUnit, mounted: Mounted, sense: str, rows: list[Component], place: int) -> dict[str, Any]:

@@ -67,7 +67,8 @@ class Train:
             )
             for mesh in self.meshes
         ]
-        planets = [name for mesh in self.meshes for name in self._planet_names(mesh)]
+        gears = [gear for mesh in self.meshes for gear in (mesh.first, mesh.second)]
+        planets = [gear.body.name for gear in gears if gear.body in self.carriers]
         return gear_train(
             pairs, held=[body.name for body in self.held], planets=list(dict.fromkeys(planets)), first=first
         )
@@ -79,9 +80,6 @@ class Train:
     def _carrier_name(self, mesh: Mesh) -> str | None:
         carrier = self.carriers.get(mesh.first.body) or self.carriers.get(mesh.second.body)
         return None if carrier is None else carrier.name
-
-    def _planet_names(self, mesh: Mesh) -> list[str]:
-        return [gear.body.name for gear in (mesh.first, mesh.second) if gear.body in self.carriers]
 
 
 def find_train(unit: GearUnit, bodies: Bodies, meshes: list[Mesh], teeth: dict[int, Teeth]) -> Train:

@@ -96,7 +96,8 @@ def draw_sensor_spectra(
     }
     # A line stands at the same frequency for all sensors: its name stands once, above them all.
     once = {_text(line): line for sensor_lines in named.values() for line in sensor_lines}
-    labels = [Label(text, line.frequency, 1.0, _color(line)) for text, line in once.items()]
+    colors = {"mesh": RED}
+    labels = [Label(text, line.frequency, 1.0, colors.get(line.named.kind, INK)) for text, line in once.items()]
     row = arrange(labels, [label.x / limit * width for label in labels], width)
     count = len(solved.sensor_spectra)
     height = HEAD + FOOT + row.height + count * _HEIGHT + (count - 1) * _BETWEEN + _ABOVE
@@ -146,10 +147,6 @@ def draw_sensor_spectra(
 def _text(line: TracedLine) -> str:
     name = line.named.name.replace(" mode of ", " ").replace(" -> ", "→").replace("planets' meshes", "planets")
     return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
-
-
-def _color(line: TracedLine) -> str:
-    return RED if line.named.kind == "mesh" else INK
 
 
 _LINES, _MOST_LINES = 3, 8  # lines of each sensor, and of all on a sheet

@@ -132,13 +132,11 @@ class Writer:
                 parts.append(f"<p>{worded(item.strip())}</p>\n")
         pictures = self._pictures.get(id(section), ())
         for small, row in ((False, "figures"), (True, "figures small")):
-            if figures := [self._figure(item) for item in pictures if item.small is small]:
+            shown = [item for item in pictures if item.small is small]
+            if figures := [figure(item, self._places.identifier(self._result, item.place)) for item in shown]:
                 parts.append(f'<div class="{row}">\n{"".join(figures)}</div>\n')
         parts.append(self._live.get(id(section), ""))
         return "".join(parts)
-
-    def _figure(self, picture: Shown) -> str:
-        return figure(picture, self._places.identifier(self._result, picture.place))
 
     def _note(self, section: Section) -> str:
         note = section.note.strip()

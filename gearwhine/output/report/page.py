@@ -102,7 +102,11 @@ def report_page(
     results = [_result(folder / place, document, present, contents) for place, document in stored]
     title = str(results[0].document.get("title") or (present or {}).get("title") or folder.name)
     places = Places()
-    first = () if contents.first_page is None else contents.first_page(case, _documents(results), _stale(results))
+    first = (
+        ()
+        if contents.first_page is None
+        else contents.first_page(case, [one.document for one in results], _stale(results))
+    )
     titled = [section for section in first if section.title]
     places.add(_SUMMARY, _SUMMARY)
     places.add_sections(_SUMMARY, titled, {})
@@ -126,17 +130,14 @@ def report_page(
     policy = _POLICY if scripts is None else scripts.policy()
     at_the_end = "" if scripts is None else scripts.written()
     folded = f'<nav class="contents" aria-label="Contents"><details><summary>Contents</summary>{listed}</details></nav>'
+    style = (files(__package__) / "style.css").read_text(encoding="utf-8")
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}"><style>\n{_style()}</style></head><body>\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}"><style>\n{style}</style></head><body>\n'
         f'<nav class="side" aria-label="Contents">{listed}</nav>\n<main>{folded}\n{body}</main>\n'
         f"{at_the_end}</body></html>\n"
     )
-
-
-def _style() -> str:
-    return (files(__package__) / "style.css").read_text(encoding="utf-8")
 
 
 def _stored(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
@@ -191,10 +192,6 @@ def _same_results(section: Section, other: Section) -> bool:
     """Whether all that a chapter shows stands in another one."""
     mine, theirs = section.shows, other.shows
     return mine is not None and theirs is not None and all(theirs.get(key) == value for key, value in mine.items())
-
-
-def _documents(results: Sequence[_Result]) -> list[Mapping[str, Any]]:
-    return [result.document for result in results]
 
 
 def _stale(results: Sequence[_Result]) -> list[str]:
