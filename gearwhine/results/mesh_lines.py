@@ -46,7 +46,10 @@ def _meshes(solved: "SolvedSystem") -> list[dict[str, Any]]:
 
 
 def _carriers(solved: "SolvedSystem") -> list[dict[str, Any]] | object:
-    """Return each carrier whose turns lines are off, how many are followed, and what the outermost lines still have."""
+    """Return each carrier whose turns lines are off, how many are followed, and what the outermost lines still have.
+
+    The outermost are those that are not zero by symmetry: alike supports leave odd numbers of turns alone.
+    """
     from gearwhine.coupling.linear.carriers.carrier_sidebands import farthest_turns, forced_sidebands
     from gearwhine.coupling.linear.carriers.planet_phasing import PlanetPhasing
 
@@ -55,18 +58,17 @@ def _carriers(solved: "SolvedSystem") -> list[dict[str, Any]] | object:
     heights = [max((line.frequency**2 * abs(row @ line.motion) for row in rows), default=0.0) for line in solved.lines]
     found = []
     for name, turns in farthest_turns(forced_sidebands(machine)).items():
-        outermost = [
-            height
-            for line, height in zip(solved.lines, heights, strict=True)
-            if any(carrier == name and abs(number) >= turns for one in line.sidebands for carrier, number in one.turns)
-        ]
+        off = [farthest_turns(line.sidebands).get(name, 0.0) for line in solved.lines]
+        reached = max(off, default=0.0)
+        outermost = max((height for height, number in zip(heights, off, strict=True) if number == reached), default=0.0)
         planets = carried.get(name)
         found.append(
             {
                 "name": name,
                 "frequency_hz": abs(machine.speeds[name]) / HERTZ,
                 "turns": turns,
-                "outermost_share": max(outermost, default=0.0) / max([*heights, 1e-300]),
+                "outermost_turns": reached,
+                "outermost_share": float(outermost / max([*heights, 1e-300])) if reached else 0.0,
                 "planets": None if planets is None else len(planets.groups),
                 "symmetry": None if planets is None else planets.symmetry,
             }
@@ -103,8 +105,8 @@ def _limit_sentences(limits: Document) -> Iterator[str]:
         left = "less than 0.01 %" if share < 1e-4 else percent(share)
         yield (
             f"Sidebands by {carrier['name']}, {carrier['frequency_hz']:.5g} Hz, are followed up to k = "
-            f"±{carrier['turns']:g} turns, which its bores and frames force; the outermost have {left} of the highest "
-            "line."
+            f"±{carrier['turns']:g} turns, which its bores and frames force; the outermost, at "
+            f"±{carrier['outermost_turns']:g}, have {left} of the highest line."
         )
 
 

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from functools import cache, partial
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -9,6 +11,7 @@ import pytest
 from scipy.linalg import lstsq
 
 from gearwhine.coupling import CoupledMachine, CouplingError
+from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.linear.carriers import turning_stiffness
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import unbalance_responses
@@ -25,6 +28,7 @@ from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, find_resonanc
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import simulate
+from gearwhine.results.mesh_lines import _carriers
 from tests.machines.plane_planetary_set import MESH_STIFFNESS
 from tests.machines.turning_set import RIPPLE, STRONG_RIPPLE, TEETH, turning_machine, turning_set, wave
 
@@ -59,6 +63,20 @@ def test_equal_planets_keep_every_third_line_by_their_phases() -> None:
         assert line.is_suppressed == (order % 3 != 0)
         assert line.phasing == pytest.approx(0.0 if line.is_suppressed else 1.0, abs=1e-10)
         assert line.kind == ("sideband" if line.is_suppressed else "planet pass")
+
+
+def test_outermost_sidebands_fall_with_the_difference_of_the_supports() -> None:
+    """Supports alike in x and y turn no line by more than ±1; a small difference hands parts of them on to ±3."""
+    (alike,), *apart = (
+        _carriers(cast("SolvedSystem", SimpleNamespace(machine=machine, lines=MeshHarmonicModel(machine).parts(LIMIT))))
+        for by in (0.0, 5.0, 2.5)
+        for machine in [turning_machine((1000.0 - by, 1000.0 + by), angles_deg=UNEQUAL)]
+    )
+    (more,), (less,) = apart
+    assert alike["outermost_turns"] == 1.0
+    assert more["outermost_turns"] == less["outermost_turns"] == 3.0 < more["turns"]
+    assert 0.0 < less["outermost_share"] < 0.1
+    assert more["outermost_share"] / less["outermost_share"] == pytest.approx(2.0, rel=0.05)
 
 
 def test_planets_at_unequal_angles_suppress_no_line() -> None:

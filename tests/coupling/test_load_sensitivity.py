@@ -400,12 +400,13 @@ def test_teeth_that_share_a_torque(made: Callable[[], Machine], monkeypatch: pyt
 
     last = len(machine.bearings) - 1
     name = machine.bearings[last].bearing.name
+    # Over longer steps a slice of a face comes into touch at one of the phases.
     parameters: list[tuple[Callable[..., OperatingPoint], int, float, FloatArray]] = [
-        (scaled, last, 1e-3, np.array([state.by_bearing_stiffness(name) for state in states])),
-        (moved, last, 2.5e-5, np.array([state.by_bearing_position(name) for state in states])),
+        (scaled, last, 2e-4, np.array([state.by_bearing_stiffness(name) for state in states])),
+        (moved, last, 5e-6, np.array([state.by_bearing_position(name) for state in states])),
     ]
     if machine.housing is not None:
-        parameters.append((softer_box, 0, 1e-3, np.array([by_mode(state, 0) for state in states])))
+        parameters.append((softer_box, 0, 2e-4, np.array([by_mode(state, 0) for state in states])))
     for change, number, step, own in parameters:
         more, less = (
             np.array([one for pair in change(machine, number, size).pairs for one in of_pair(pair)])
