@@ -265,3 +265,18 @@ def test_mesh_that_a_contact_keeps_is_that_of_its_force_and_points() -> None:
         assert found.force == force
         np.testing.assert_array_equal(found.transmission_error, anew.transmission_error)
     assert hunting_period_mesh(contact, 1500.0 * (1.0 + 1e-12), 20) is found
+
+
+def test_modes_answer_as_the_machine_with_pairs_and_with_overdamped_modes() -> None:
+    """Unsymmetric matrices, of which two motions decay without swinging."""
+    rng = np.random.default_rng(5)
+    size, w = 6, np.linspace(3.0, 400.0, 60)
+    stiffness = np.diag(np.linspace(20.0, 300.0, size) ** 2) + rng.normal(0.0, 90.0, (size, size))
+    damping = np.diag([90.0, 3.0, 900.0, 4.0, 5.0, 6.0]) + rng.normal(0.0, 1.0, (size, size))
+    machine, outputs, direction = DampedMachine(stiffness, damping), rng.normal(size=(2, size)), rng.normal(size=size)
+    values, _ = machine._modes
+    assert 0 < np.count_nonzero(values.imag == 0.0) < values.size
+    dynamic = stiffness + 1j * w[:, None, None] * damping - w[:, None, None] ** 2 * np.eye(size)
+    expected = outputs @ np.linalg.solve(dynamic, direction[:, None])[:, :, 0].T
+    np.testing.assert_allclose(machine._by_modes(outputs, direction, w), expected, rtol=1e-10)
+    np.testing.assert_allclose(machine.answers(outputs, direction, w), expected, rtol=1e-10)
