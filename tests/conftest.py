@@ -462,13 +462,15 @@ def reliefs_found_once(kept: Kept) -> Iterator[None]:
         yield
 
 
-@pytest.fixture
-def few_reliefs_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module")
+def few_reliefs_tried() -> Iterator[None]:
     """Try so few reliefs that the best of them says nothing: for tests that only have it searched."""
     from gearwhine.coupling.gears.loaded import optimal_relief
 
-    monkeypatch.setattr(optimal_relief, "_GRID", 3)
-    monkeypatch.setattr(optimal_relief, "_MOST_REFINED", 10)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(optimal_relief, "_GRID", 3)
+        patch.setattr(optimal_relief, "_MOST_REFINED", 10)
+        yield
 
 
 @pytest.fixture(scope="module")

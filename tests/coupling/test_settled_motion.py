@@ -12,7 +12,7 @@ from gearwhine.coupling.analyses.steady_state import solve_steady
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import LinearConnector, TurningPart
-from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response
+from gearwhine.coupling.periodic import SettledMotion, common_period, periodic_response, settled_response, settling
 from gearwhine.coupling.periodic.leading_multipliers import leading_multipliers
 from gearwhine.coupling.periodic.response import FloquetMultipliers
 from gearwhine.coupling.periodic.settled_curve import settled_curve
@@ -69,7 +69,15 @@ def test_mass_on_springs_that_turn_has_the_motion_of_its_rotating_frame() -> Non
     assert settled.residual <= 1e-6
 
 
+@pytest.fixture
+def stability_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Do not find multipliers, which take half of the time."""
+    known = FloquetMultipliers(np.array([0.5 + 0.0j]), 1.0, np.array([0.01]))
+    monkeypatch.setattr(settling, "_multipliers", lambda *_, **__: known)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("stability_left_out")
 def test_lines_of_the_settled_motion_are_the_linear_ones() -> None:
     """Of planets at unequal angles, which cancel no line."""
     machine = turning_machine(ANISOTROPIC, angles_deg=UNEQUAL)
@@ -229,6 +237,7 @@ def test_a_motion_of_long_period_is_refused_with_what_to_leave_out() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("stability_left_out")
 def test_machine_and_analysis_take_the_motion_that_settles() -> None:
     """Planets in a housing and planets on the ground, whose coordinates all stand in the carrier's frame."""
     described = turning_set(ANISOTROPIC)
@@ -274,6 +283,7 @@ def test_a_curve_through_the_critical_speeds_of_an_unsymmetric_shaft() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("stability_left_out")
 def test_sensors_over_speed_are_those_of_the_linear_lines() -> None:
     described = turning_set(ANISOTROPIC)
     steady = solve_steady(described.assembled, over_speed=(290.0, 310.0), points=2)

@@ -11,7 +11,7 @@ from PIL import Image
 
 from gearwhine.cli import run_command
 
-pytestmark = [pytest.mark.rendered, pytest.mark.slow]
+pytestmark = [pytest.mark.rendered, pytest.mark.slow, pytest.mark.usefixtures("few_reliefs_tried")]
 
 COARSE = ("--set", "housing.box.mesh_size=45 mm")
 

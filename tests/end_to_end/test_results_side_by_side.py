@@ -10,6 +10,8 @@ import xarray as xr
 
 from gearwhine.output.manifest import opened_dataset
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
+
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2")
 QUICK = (*FEW, "rotor.input.unbalance=", "gear_pair.0.backlash='80 um'", "sweep.speed=['5400 rpm', '5600 rpm']")
 FEW_WHIRLS = "rotor_analysis={ modes = 2, speed = ['3000 rpm'] }"

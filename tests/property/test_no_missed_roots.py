@@ -47,7 +47,7 @@ CLOSE = 1e-10
 # shaft's own inertia. Then eight digits are kept, as they are of any frequency below `SLOW` of the limit; and the modes
 # may be refused, never miscounted.
 HAIR, HEAVY, SLOW, CLOSE_IF_EXTREME = 1e-2, 1e8, 1e-6, 1e-7
-EXAMPLES = int(os.environ.get("NO_MISSED_ROOTS_EXAMPLES", "40"))
+EXAMPLES = int(os.environ.get("NO_MISSED_ROOTS_EXAMPLES", "24"))
 # The suite draws the same rotors each time; a search for new ones is asked for by its number.
 MANY = settings(
     max_examples=EXAMPLES,

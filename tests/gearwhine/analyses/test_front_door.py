@@ -19,6 +19,8 @@ from gearwhine.failures import explain
 from gearwhine.output.manifest import MANIFEST
 from gearwhine.rotors.rolling_bearings import catalogue_bearing
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
+
 COARSE = {"housing.box.mesh_size": "45 mm", "housing.frequency_limit": "2.5 kHz"}
 BOX = {"housing.box.mesh_size": "60 mm"}
 SHORT = {"transient.revolutions": 6, "transient.discard": 4, "transient.tolerance": 5e-3}

@@ -12,6 +12,8 @@ from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
 from gearwhine.results.gears import sections
 from gearwhine.solve import gear_pairs
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
+
 RELIEVED = "gear.pinion.tip_relief={amount='10 um', length='2 mm'}"
 
 

@@ -15,6 +15,8 @@ from gearwhine.coupling.sound import Acoustics
 from gearwhine.results_folder import write_report
 from gearwhine.solve.machine import plan_of
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
+
 SHORT = {"transient.revolutions": 6, "transient.discard": 3}
 
 

@@ -35,7 +35,7 @@ from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mes
 from gearwhine.from_case.machine import solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs
 
-pytestmark = pytest.mark.rendered
+pytestmark = [pytest.mark.rendered, pytest.mark.usefixtures("few_reliefs_tried")]
 
 ANGLE = math.radians(20.0)
 FORCE = 1700.0
