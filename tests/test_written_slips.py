@@ -33,7 +33,7 @@ WORDS |= dict.fromkeys(("exciting", "held", "rate", "slowest", "modulating"), "H
 CONVERTED = {
     (ast.Mult, "RPM"): "converted_rpm",
     (ast.Div, "HERTZ"): "converted_hz",
-    (ast.Div, "(2.0 * np.pi)"): "converted_hz",
+    (ast.Div, "2.0 * np.pi"): "converted_hz",
     (ast.Div, "_TWO_PI"): "converted_hz",
     (ast.Div, "TWO_PI"): "converted_hz",
 }
@@ -373,9 +373,9 @@ def texts(source: Source) -> Iterator[tuple[int, str]]:
 
 
 def wrong_headings(source: Source) -> Slips:
-    """Units in brackets behind words that have others, as above columns; parts in per cent, torques in N·m."""
+    """Units in brackets behind words that have others; parts not in per cent, torques not in N·m, places not in mm."""
     for line, text in texts(source):
-        if "‰" in text or re.search(r"[\d}[] ?N m\b", text):
+        if "‰" in text or re.search(r"[\d}[] ?N m\b|\) (µm|nm)\b", text):
             yield line, text
         for before, unit in _HEADING.findall(text):
             words = [word for word in re.findall(r"[A-Za-z_0-9]+", before) if word in _WORDS_OF_HEADINGS]
@@ -413,7 +413,7 @@ def assigned(source: Source) -> dict[str, list[tuple[int, ast.expr]]]:
 
 
 _CONSTANTS = {"MM": 1e3, "MILLI": 1e3, "MICRO": 1e6, "MEGA": 1e-6}
-_TURN = {"TWO_PI", "HERTZ", "(2.0 * np.pi)", "(2 * np.pi)", "(2.0 * math.pi)"}
+_TURN = {"TWO_PI", "HERTZ", "2.0 * np.pi", "2 * np.pi", "2.0 * math.pi"}
 _TWICE = {"radius": 2.0, "strip": 2.0, "cell": 2.0, "face_width": 0.5, "lengths": 0.5, "modulus": 0.5}
 """What is shown by its double, as diameters are, or by its half."""
 
@@ -463,7 +463,8 @@ def unscaled(source: Source) -> Slips:
             if (said := dimension_of(name)) in _INSIDE and (said != dimension or not isclose(factor * size, 1.0)):
                 yield line, f"{factor:g} {name} in {shown}"
         size *= 1e-2 if dimension == "%" else 1.0
-        if dimension not in _INSIDE or dimension_of(name) is not None or name in _SHOWN_AS.split():
+        shown_so = factor == 1.0 and name in _SHOWN_AS.split()
+        if dimension not in _INSIDE or dimension_of(name) is not None or shown_so:
             continue
         known = [
             1.0,
