@@ -30,14 +30,6 @@ WORDS |= dict.fromkeys(("rpm", "speeds", "onset", "widest", "undamped"), "rpm")
 WORDS |= dict.fromkeys(("hz", "hertz", "frequencies", "mesh_frequency", "limit", "trusted_limit", "spacing"), "Hz")
 WORDS |= dict.fromkeys(("exciting", "held", "rate", "slowest", "modulating"), "Hz")
 """Names without a unit of values in the unit of the document."""
-CONVERTED = {
-    (ast.Mult, "RPM"): "converted_rpm",
-    (ast.Div, "HERTZ"): "converted_hz",
-    (ast.Div, "2.0 * np.pi"): "converted_hz",
-    (ast.Div, "_TWO_PI"): "converted_hz",
-    (ast.Div, "TWO_PI"): "converted_hz",
-}
-"""What rad/s become by an operator and a constant, as a key says it."""
 PARTS = {"share", "part", "covered", "axial_share", "damping_ratio", "load_share", "contact_loss_fraction", "margin"}
 """Names of parts of 1."""
 
@@ -88,10 +80,37 @@ def constants(tree: ast.Module) -> dict[str, float]:
     }
 
 
+_CONSTANTS = {"MM": 1e3, "MILLI": 1e3, "MICRO": 1e6, "MEGA": 1e-6}
+_TURN = {"TWO_PI", "HERTZ", "2.0 * np.pi", "2 * np.pi", "2.0 * math.pi"}
+_TWICE = {"radius": 2.0, "strip": 2.0, "cell": 2.0, "face_width": 0.5, "lengths": 0.5, "modulus": 0.5}
+"""What is shown by its double, as diameters are, or by its half."""
+
+
+def scale_of(node: ast.expr) -> tuple[float, str]:
+    """Product of the numbers of an expression, and what it is converted to from rad/s."""
+    match node:
+        case ast.Constant(value=int(number) | float(number)):
+            return number, ""
+        case ast.Name(id=name) if name.lstrip("_") in ("RPM", *_CONSTANTS):
+            return _CONSTANTS.get(name.lstrip("_"), 1.0), "rpm" if name.endswith("RPM") else ""
+        case ast.Call(func=func, args=[inner, *_]) if re.fullmatch("abs|float|_?round(ed)?|np.ceil", ast.unparse(func)):
+            return scale_of(inner)
+        case ast.Call(func=ast.Attribute(attr="degrees")):
+            return 180.0 / pi, ""
+        case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as op, right=right):
+            (first, to), (second, other) = scale_of(left), scale_of(right)
+            if isinstance(op, ast.Div) and ast.unparse(right).lstrip("_") in _TURN:
+                return (1.0, "rpm") if first == 60.0 else (first, "Hz")
+            return first * second if isinstance(op, ast.Mult) else first / second, to or other
+        case ast.UnaryOp(operand=inner):
+            return scale_of(inner)
+    return 1.0, ""
+
+
 def factor_and_name(node: ast.expr, numbers: dict[str, float]) -> tuple[float, str] | None:
     """A number times a key, an attribute or a name; None of another expression."""
-    if isinstance(node, ast.BinOp) and (unit := CONVERTED.get((type(node.op), ast.unparse(node.right)))):
-        return 1.0, unit
+    if isinstance(node, ast.BinOp) and (scale := scale_of(node))[1]:
+        return scale[0], f"converted_{scale[1].lower()}"
     match node:
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             for one, other in ((left, right), (right, left)):
@@ -412,43 +431,16 @@ def assigned(source: Source) -> dict[str, list[tuple[int, ast.expr]]]:
     return found
 
 
-_CONSTANTS = {"MM": 1e3, "MILLI": 1e3, "MICRO": 1e6, "MEGA": 1e-6}
-_TURN = {"TWO_PI", "HERTZ", "2.0 * np.pi", "2 * np.pi", "2.0 * math.pi"}
-_TWICE = {"radius": 2.0, "strip": 2.0, "cell": 2.0, "face_width": 0.5, "lengths": 0.5, "modulus": 0.5}
-"""What is shown by its double, as diameters are, or by its half."""
-
-
-def scale_of(node: ast.expr) -> tuple[float, str]:
-    """Product of the numbers of an expression, and what it is converted to from rad/s."""
-    match node:
-        case ast.Constant(value=int(number) | float(number)):
-            return number, ""
-        case ast.Name(id=name) if name.lstrip("_") in ("RPM", *_CONSTANTS):
-            return _CONSTANTS.get(name.lstrip("_"), 1.0), "rpm" if name.endswith("RPM") else ""
-        case ast.Call(func=func, args=[inner, *_]) if re.fullmatch("abs|float|_?round(ed)?|np.ceil", ast.unparse(func)):
-            return scale_of(inner)
-        case ast.Call(func=ast.Attribute(attr="degrees")):
-            return 180.0 / pi, ""
-        case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as op, right=right):
-            (first, to), (second, other) = scale_of(left), scale_of(right)
-            if isinstance(op, ast.Div) and ast.unparse(right).lstrip("_") in _TURN:
-                return (1.0, "rpm") if first == 60.0 else (first, "Hz")
-            return first * second if isinstance(op, ast.Mult) else first / second, to or other
-        case ast.UnaryOp(operand=inner):
-            return scale_of(inner)
-    return 1.0, ""
-
-
 def unnamed(source: Source) -> Slips:
-    """Values of expressions without a name whose factor or conversion is not that of the unit behind them."""
+    """Values of expressions without a name whose factor is not that of the unit behind them."""
     numbers = constants(source.tree)
     for part, shown in units_behind(source):
-        (factor, to), (dimension, size) = scale_of(part.value), UNITS[shown]
-        if factor_and_name(part.value, numbers) or (factor == 1.0 and not to):
+        factor, (dimension, size) = scale_of(part.value)[0], UNITS[shown]
+        if factor_and_name(part.value, numbers) or factor == 1.0:
             continue
         text, scale = ast.unparse(part.value), abs(factor) * size * (1e-2 if dimension == "%" else 1.0)
         known = [1.0, *(many for word, many in _TWICE.items() if word in text)]
-        if (to and dimension != to) or (dimension in _INSIDE and not any(isclose(scale, one) for one in known)):
+        if dimension in _INSIDE and not any(isclose(scale, one) for one in known):
             yield part.lineno, f"{text} in {shown}"
 
 
@@ -463,7 +455,7 @@ def unscaled(source: Source) -> Slips:
             if (said := dimension_of(name)) in _INSIDE and (said != dimension or not isclose(factor * size, 1.0)):
                 yield line, f"{factor:g} {name} in {shown}"
         size *= 1e-2 if dimension == "%" else 1.0
-        shown_so = factor == 1.0 and name in _SHOWN_AS.split()
+        shown_so = factor not in (1e3, 1e6) and name in _SHOWN_AS.split()
         if dimension not in _INSIDE or dimension_of(name) is not None or shown_so:
             continue
         known = [

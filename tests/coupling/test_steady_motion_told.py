@@ -10,6 +10,10 @@ import pytest
 from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, settling_warnings
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion, spectra_of_sum
+from gearwhine.coupling.linear.campbell import _error_of_frozen_carriers
+from gearwhine.coupling.linear.excitation_orders import _harmonic_loads, excited_shaft_orders
+from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseMotion
+from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.periodic.continuation import ResponseCurve
 from gearwhine.coupling.periodic.superposition import ExcitationGroup
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
@@ -149,6 +153,47 @@ def test_frozen_carriers_err_by_what_the_exponents_say() -> None:
     assert (told["turning"], told["turning_hz"]) == (["part 1", "part 2"], pytest.approx(3.0))
     assert (told["mode"], told["frequency_hz"]) == ("third", pytest.approx(101.0))
     assert told["largest_error"] == pytest.approx(99.0 / 101.0 - 1.0)
+
+    # Over speed: of six modes four have exponents, at two of three speeds.
+    exact = turns * np.array([[99.0, np.nan], [np.nan, np.nan], [50.0, 198.0]])
+    frozen = turns * np.array([[100.0, 200.0], [100.0, 200.0], [50.0, 192.06]])
+    assert _error_of_frozen_carriers(np.array([10.0, 20.0, -30.0]) / RPM, frozen, exact) == (
+        "beside them stand the exponents with turning carriers at 2 speeds, from which the largest error of a "
+        "frequency is -3 %, of the mode at 198 Hz and 30 rpm"
+    )
+    assert _error_of_frozen_carriers(np.ones(3), frozen, exact * np.nan) is None
+
+
+def test_loads_have_their_names_and_orders() -> None:
+    """The first driver turns at 100 rad/s, the output the other way at 40 rad/s."""
+    torques = (
+        TorqueRipple("input", 0.0, 1.0, frequency=30.0 * np.pi),
+        TorqueRipple("output", 0.0, 2.0, order=3.0),
+        TorqueRipple("output", 0.0, 0.0, order=5.0),
+        TorqueRipple("held", 0.0, 1.0, order=2.0),
+    )
+    base = BaseMotion((BaseHarmonic(50.0 * np.pi, np.ones(6, dtype=np.complex128)),))
+    bows = [SimpleNamespace(rotor=rotor, forces=np.array([size])) for rotor, size in (("input", 0.0), ("bent", 1.0))]
+    unbalances = [SimpleNamespace(rotor=rotor, moment=size) for rotor, size in (("input", 1e-5), ("held", 0.0))]
+    loads = SimpleNamespace(torques=torques, base=base, bows=bows, unbalances=unbalances)
+    speeds, system = {"input": 100.0, "output": -40.0, "held": 0.0}, SimpleNamespace(nonlinear=False)
+    machine: Any = SimpleNamespace(loads=loads, speeds=speeds, meshes=(), system=system)
+    named = dict(_harmonic_loads(machine, 100.0))
+    assert named == {
+        "ripple of 15 Hz on input": pytest.approx(0.3 * np.pi),
+        "ripple of order 3 on output": pytest.approx(1.2),
+        "base of 25 Hz": pytest.approx(0.5 * np.pi),
+    }
+    excited = excited_shaft_orders(machine)
+    assert {rotor: set(one.orders) for rotor, one in excited.items()} == {
+        "input": {1.0},
+        "bent": {1.0},
+        "output": {3.0},
+        "held": {2.0},
+    }
+    assert not any(one.every for one in excited.values())
+    system.nonlinear = True
+    assert all(one.every for one in excited_shaft_orders(machine).values())
 
 
 def test_a_line_near_a_mode_that_rings_and_power_that_is_not_modelled_are_told() -> None:
