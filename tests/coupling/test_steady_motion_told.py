@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearwhine.coupling.analyses.condition_record import _gears
 from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, settling_warnings
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion, spectra_of_sum
@@ -14,7 +15,7 @@ from gearwhine.coupling.linear.campbell import _error_of_frozen_carriers
 from gearwhine.coupling.linear.excitation_orders import _harmonic_loads, excited_shaft_orders
 from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseMotion
 from gearwhine.coupling.machine.loads import TorqueRipple
-from gearwhine.coupling.periodic.continuation import ResponseCurve
+from gearwhine.coupling.periodic.continuation import Bifurcation, ResponseCurve
 from gearwhine.coupling.periodic.superposition import ExcitationGroup
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 
@@ -95,6 +96,64 @@ def test_narrow_ranges_without_a_motion_are_told_together() -> None:
         )
         assert narrow["name"] == "branch ranges"
         assert np.sort(np.ravel(narrow["ranges_rpm"])) == pytest.approx([1200.0, 1204.0, 1700.0, 1706.0])
+
+
+def test_pieces_and_gaps_of_a_branch_are_told() -> None:
+    """Six pieces of two points, of which four are told one by one, and as many of the five gaps, the widest."""
+    ends = np.array([10.0, 20.0, 21.0, 30.0, 32.0, 40.0, 43.0, 50.0, 54.0, 60.0, 65.0, 70.0])
+    folds = (Bifurcation(3, "fold", 25.0), Bifurcation(4, "period doubling", 33.0), Bifurcation(5, "fold", 33.0))
+    system_at: Any = None
+    endings: Any = ("lost", "end", "points", "end", "end", "end")
+    curve = ResponseCurve(ends, (), folds, system_at, 1, endings, 10.0, 70.0, (0, 2, 4, 6, 8, 10))
+    first, second, third, fourth, more, none = curve.description(0.5, "rpm").split(". ")
+    assert first.startswith("followed from 20 to 40 rpm: 2 points, 0 folds; ")
+    assert second == "begun anew and followed from 42 to 60 rpm: 2 points, 1 fold"
+    assert third.startswith("begun anew and followed from 64 to 80 rpm: 2 points, 1 fold; ")
+    assert fourth == "begun anew and followed from 86 to 100 rpm: 2 points, 0 folds"
+    assert more == "2 more pieces with 12 points in all"
+    assert none == (
+        "Nothing was followed between 60 and 64, between 80 and 86, between 100 and 108, between 120 and 130 rpm, nor "
+        "in 1 narrower range"
+    )
+    assert curve.piece_numbers.tolist() == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6]
+
+
+def test_gears_without_an_average_say_why() -> None:
+    """Shafts of 10, 20 and 0 turns a second, and a planet's; 30 teeth at 10 Hz are 300 Hz, 31 at 10 Hz no multiple."""
+
+    def mesh(*sides: tuple[str, str, int]) -> Any:
+        parts = [SimpleNamespace(name=gear, tooth_count=teeth) for gear, _, teeth in sides]
+        mounted = [SimpleNamespace(rotor=shaft) for _, shaft, _ in sides]
+        geometry = SimpleNamespace(driver=parts[0], driven=parts[1])
+        return SimpleNamespace(driver=mounted[0], driven=mounted[1], geometry=geometry)
+
+    meshes = [
+        mesh(("pinion", "slow", 30), ("wheel", "fast", 15)),
+        mesh(("sun", "slow", 31), ("planet", "carried", 20)),
+        mesh(("quick", "fast", 20), ("ring", "held", 40)),
+    ]
+    contacts = [SimpleNamespace(mesh_frequency=hertz) for hertz in (-300.0, 200.0, 400.0)]
+    speeds = {"slow": -20.0 * np.pi, "fast": 40.0 * np.pi, "carried": 5.0, "held": 0.0}
+    rotors = [SimpleNamespace(name=name, carrier="c" if name == "carried" else None) for name in speeds]
+    system = SimpleNamespace(contacts=contacts)
+    machine = SimpleNamespace(rotors=rotors, meshes=meshes, system=system, speeds=speeds)
+    transient: Any = SimpleNamespace(machine=machine, trusted_limit=419.0)
+    gears = {gear.gear: gear for gear in _gears(transient)}
+    assert {name: gear.undefined for name, gear in gears.items()} == {
+        "pinion": "",
+        "sun": "the gear meshes with planets: its mesh frequency is no multiple of its shaft's turns",
+        "wheel": "",
+        "quick": "its mesh frequency, 400 Hz, with sidebands is beyond the trusted limit of 419 Hz; raise the "
+        "housing's frequency_limit, or take a lower speed",
+        "planet": "the axis of the gear turns with its carrier",
+        "ring": "the shaft stands still",
+    }
+    assert [(one.shaft, one.teeth, one.others, one.turn_hz) for one in (gears["pinion"], gears["quick"])] == [
+        ("slow", 30, (31,), pytest.approx(10.0)),
+        ("fast", 20, (15,), pytest.approx(20.0)),
+    ]
+    transient.trusted_limit = 420.0
+    assert next(gear.undefined for gear in _gears(transient) if gear.gear == "quick") == ""
 
 
 def test_a_doubtful_sum_is_told_of_each_contact_and_sensor() -> None:
