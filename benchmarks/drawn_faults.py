@@ -38,7 +38,7 @@ _FILES_OF_TESTS = 15
 _READING = {
     "tests/gearwhine/results/test_units_of_declarations.py": ("gearwhine/results/",),
     "tests/gearwhine/results/test_names_of_results.py": ("gearwhine/results/",),
-    "tests/test_written_slips.py": ("gearwhine/", "coupling/"),
+    "tests/test_written_slips.py": tuple(f"{room}/" for room in ROOMS),
 }
 _TIMEOUT = 300.0  # s of one run: a fault that never ends is caught
 
@@ -149,7 +149,8 @@ class Module:
             for number, child in enumerate(value if isinstance(value, list) else [value]):
                 docstring = isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant)
                 checking = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
-                if isinstance(child, ast.AST) and not docstring and not checking:
+                asserting = isinstance(child, ast.keyword) and child.arg == "strict"  # of what is never of two lengths
+                if isinstance(child, ast.AST) and not docstring and not checking and not asserting:
                     where = place
                     if isinstance(node, ast.Call):
                         where = ("call", ast.unparse(node.func), str(number) if field == "args" else field)
@@ -282,7 +283,7 @@ class Module:
             yield "term", *self.ends(node), self.piece(args[0])
         for keyword in keywords:
             begin, end = self.ends(keyword)
-            if keyword.arg and self.text[:begin].rstrip().endswith(","):
+            if keyword.arg not in (None, "strict") and self.text[:begin].rstrip().endswith(","):
                 yield "term", len(self.text[:begin].rstrip()) - 1, end, ""
 
 

@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from itertools import pairwise
-from math import isclose
+from math import isclose, pi
 from pathlib import Path
 from typing import Any
 
@@ -27,19 +27,9 @@ _UNIT = re.compile(rf"\s?({'|'.join(sorted(map(re.escape, UNITS), key=len, rever
 _BETWEEN = (" to ", " and ", ", ", " ± ")  # of two numbers of one unit
 WORDS = {"speed": "rpm", "torque": "N m", "force": "N", "frequency": "Hz"}
 WORDS |= dict.fromkeys(("rpm", "speeds", "onset", "widest", "undamped"), "rpm")
-WORDS |= dict.fromkeys(
-    ("hz", "hertz", "frequencies", "mesh_frequency", "limit", "trusted_limit", "spacing", "exciting", "held", "rate"),
-    "Hz",
-)
+WORDS |= dict.fromkeys(("hz", "hertz", "frequencies", "mesh_frequency", "limit", "trusted_limit", "spacing"), "Hz")
+WORDS |= dict.fromkeys(("exciting", "held", "rate", "slowest", "modulating"), "Hz")
 """Names without a unit of values in the unit of the document."""
-CONVERTED = {
-    (ast.Mult, "RPM"): "converted_rpm",
-    (ast.Div, "HERTZ"): "converted_hz",
-    (ast.Div, "(2.0 * np.pi)"): "converted_hz",
-    (ast.Div, "_TWO_PI"): "converted_hz",
-    (ast.Div, "TWO_PI"): "converted_hz",
-}
-"""What rad/s become by an operator and a constant, as a key says it."""
 PARTS = {"share", "part", "covered", "axial_share", "damping_ratio", "load_share", "contact_loss_fraction", "margin"}
 """Names of parts of 1."""
 
@@ -90,10 +80,37 @@ def constants(tree: ast.Module) -> dict[str, float]:
     }
 
 
+_CONSTANTS = {"MM": 1e3, "MILLI": 1e3, "MICRO": 1e6, "MEGA": 1e-6}
+_TURN = {"TWO_PI", "HERTZ", "2.0 * np.pi", "2 * np.pi", "2.0 * math.pi"}
+_TWICE = {"radius": 2.0, "strip": 2.0, "cell": 2.0, "face_width": 0.5, "lengths": 0.5, "modulus": 0.5}
+"""What is shown by its double, as diameters are, or by its half."""
+
+
+def scale_of(node: ast.expr) -> tuple[float, str]:
+    """Product of the numbers of an expression, and what it is converted to from rad/s."""
+    match node:
+        case ast.Constant(value=int(number) | float(number)):
+            return number, ""
+        case ast.Name(id=name) if name.lstrip("_") in ("RPM", *_CONSTANTS):
+            return _CONSTANTS.get(name.lstrip("_"), 1.0), "rpm" if name.endswith("RPM") else ""
+        case ast.Call(func=func, args=[inner, *_]) if re.fullmatch("abs|float|_?round(ed)?|np.ceil", ast.unparse(func)):
+            return scale_of(inner)
+        case ast.Call(func=ast.Attribute(attr="degrees")):
+            return 180.0 / pi, ""
+        case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as op, right=right):
+            (first, to), (second, other) = scale_of(left), scale_of(right)
+            if isinstance(op, ast.Div) and ast.unparse(right).lstrip("_") in _TURN:
+                return (1.0, "rpm") if first == 60.0 else (first, "Hz")
+            return first * second if isinstance(op, ast.Mult) else first / second, to or other
+        case ast.UnaryOp(operand=inner):
+            return scale_of(inner)
+    return 1.0, ""
+
+
 def factor_and_name(node: ast.expr, numbers: dict[str, float]) -> tuple[float, str] | None:
     """A number times a key, an attribute or a name; None of another expression."""
-    if isinstance(node, ast.BinOp) and (unit := CONVERTED.get((type(node.op), ast.unparse(node.right)))):
-        return 1.0, unit
+    if isinstance(node, ast.BinOp) and (scale := scale_of(node))[1]:
+        return scale[0], f"converted_{scale[1].lower()}"
     match node:
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             for one, other in ((left, right), (right, left)):
@@ -111,19 +128,24 @@ def factor_and_name(node: ast.expr, numbers: dict[str, float]) -> tuple[float, s
     return None
 
 
-def values_with_units(source: Source) -> Iterator[tuple[int, str, float, str]]:
-    """Line, name, factor and unit of each value in a text that a unit follows, there or after the next value."""
-    numbers = constants(source.tree)
+def units_behind(source: Source) -> Iterator[tuple[ast.FormattedValue, str]]:
+    """Values in texts that a unit follows, there or after the next value, with it."""
     for text in (node.values for node in source.of(ast.JoinedStr)):
         for place, part in enumerate(text):
-            if not isinstance(part, ast.FormattedValue) or not (found := factor_and_name(part.value, numbers)):
-                continue
-            for after in text[place + 1 :: 2]:
+            for after in text[place + 1 :: 2] if isinstance(part, ast.FormattedValue) else ():
                 words = str(after.value) if isinstance(after, ast.Constant) else ""
                 if unit := _UNIT.match(words):
-                    yield part.lineno, found[1], found[0], unit[1]
+                    yield part, unit[1]
                 if unit or words not in _BETWEEN:
                     break
+
+
+def values_with_units(source: Source) -> Iterator[tuple[int, str, float, str]]:
+    """Line, name, factor and unit of each value of a name in a text that a unit follows."""
+    numbers = constants(source.tree)
+    for part, unit in units_behind(source):
+        if found := factor_and_name(part.value, numbers):
+            yield part.lineno, found[1], found[0], unit
 
 
 def wrong_units(source: Source) -> Slips:
@@ -287,24 +309,43 @@ def wrong_pairs(source: Source) -> Slips:
                 yield node.lineno, f"{named[0]} in {units[0]}"
 
 
+_RULES = {"stiffnesses": {"N/m"}, "radial": {"N/m"}, "tangential": {"N/m"}, "gravity": {"m/s²"}}
+"""Names of numbers of a description: units that they have."""
+
+
 def wrong_rules(source: Source) -> Slips:
     """Units of the rule of a number that its name has not."""
-    for node in source.of(ast.Dict, ast.Call):
+    for node in source.of(ast.Dict, ast.Call, ast.Assign):
         if isinstance(node, ast.Dict):
             entries = [(getattr(key, "value", ""), value) for key, value in zip(node.keys, node.values, strict=True)]
+        elif isinstance(node, ast.Assign):
+            entries = [(getattr(node.targets[0], "id", ""), node.value)]
         else:
             entries = [(keyword.arg or "", keyword.value) for keyword in node.keywords]
         for name, rule in entries:
-            if isinstance(rule, ast.Call) and ast.unparse(rule.func) == "Number":
-                (unit,) = [ast.literal_eval(one.value) for one in rule.keywords if one.arg == "unit"] or [""]
-                allowed = NAMES.get(str(name).rpartition("_")[2])
-                if unit and allowed and unit.partition(" per ")[0] not in allowed | {"rad/s", "N m/rad"}:
-                    yield rule.lineno, f"{name} in {unit}"
+            word = str(name).rpartition("_")[2]
+            for number in ast.walk(rule) if isinstance(rule, ast.Call) else ():
+                if isinstance(number, ast.Call) and ast.unparse(number.func) == "Number":
+                    (unit,) = [ast.literal_eval(one.value) for one in number.keywords if one.arg == "unit"] or [""]
+                    allowed = _RULES.get(word) or NAMES.get(word)
+                    if unit and allowed and unit.partition(" per ")[0] not in allowed | {"rad/s", "N m/rad"}:
+                        yield number.lineno, f"{name} in {unit}"
+
+
+def wrong_frequencies(source: Source) -> Slips:
+    """Units of an array in a file whose long name says a natural, a circular, or another frequency."""
+    for node in source.of(ast.Call, ast.Tuple):
+        words = [one.value for one in getattr(node, "args", getattr(node, "elts", ())) if isinstance(one, ast.Constant)]
+        for unit, meaning in pairwise(one for one in words if isinstance(one, str)):
+            right = "rad s-1" if re.search("circular|root of stiffness", meaning) else "Hz"
+            if unit in {"Hz", "rpm", "rad s-1", "deg s-1"} - {right} and " " in meaning and "speed" not in meaning:
+                yield node.lineno, f"{meaning} in {unit}"
 
 
 def test_signs_and_units_fit_the_words_beside_them() -> None:
     assert slips(wrong_pairs) == []
     assert slips(wrong_rules) == []
+    assert slips(wrong_frequencies) == []
 
 
 _HEADINGS = {
@@ -351,9 +392,9 @@ def texts(source: Source) -> Iterator[tuple[int, str]]:
 
 
 def wrong_headings(source: Source) -> Slips:
-    """Units in brackets behind words that have others, as above columns; parts in per cent, torques in N·m."""
+    """Units in brackets behind words that have others; parts not in per cent, torques not in N·m, places not in mm."""
     for line, text in texts(source):
-        if "‰" in text or re.search(r"[\d}[] ?N m\b", text):
+        if "‰" in text or re.search(r"[\d}[] ?N m\b|\) (µm|nm)\b", text):
             yield line, text
         for before, unit in _HEADING.findall(text):
             words = [word for word in re.findall(r"[A-Za-z_0-9]+", before) if word in _WORDS_OF_HEADINGS]
@@ -390,6 +431,19 @@ def assigned(source: Source) -> dict[str, list[tuple[int, ast.expr]]]:
     return found
 
 
+def unnamed(source: Source) -> Slips:
+    """Values of expressions without a name whose factor is not that of the unit behind them."""
+    numbers = constants(source.tree)
+    for part, shown in units_behind(source):
+        factor, (dimension, size) = scale_of(part.value)[0], UNITS[shown]
+        if factor_and_name(part.value, numbers) or factor == 1.0:
+            continue
+        text, scale = ast.unparse(part.value), abs(factor) * size * (1e-2 if dimension == "%" else 1.0)
+        known = [1.0, *(many for word, many in _TWICE.items() if word in text)]
+        if dimension in _INSIDE and not any(isclose(scale, one) for one in known):
+            yield part.lineno, f"{text} in {shown}"
+
+
 def unscaled(source: Source) -> Slips:
     """Values of the inside, in SI, whose factor in a text is not that of the unit behind them."""
     numbers, named = constants(source.tree), assigned(source)
@@ -401,7 +455,8 @@ def unscaled(source: Source) -> Slips:
             if (said := dimension_of(name)) in _INSIDE and (said != dimension or not isclose(factor * size, 1.0)):
                 yield line, f"{factor:g} {name} in {shown}"
         size *= 1e-2 if dimension == "%" else 1.0
-        if dimension not in _INSIDE or dimension_of(name) is not None or name in _SHOWN_AS.split():
+        shown_so = factor not in (1e3, 1e6) and name in _SHOWN_AS.split()
+        if dimension not in _INSIDE or dimension_of(name) is not None or shown_so:
             continue
         known = [
             1.0,
@@ -414,3 +469,4 @@ def unscaled(source: Source) -> Slips:
 
 def test_values_of_the_inside_are_scaled_to_the_unit_behind_them() -> None:
     assert slips(unscaled) == []
+    assert slips(unnamed) == []

@@ -99,7 +99,6 @@ def isotropic_machine(carrier_speed: float, *, standing: bool) -> CoupledMachine
     )
 
 
-@pytest.mark.slow
 def test_frozen_coordinates_of_the_carrier_are_exact_where_all_is_alike_all_round() -> None:
     speed = 1500.0
     constant, turning = (isotropic_machine(speed, standing=standing).system for standing in (False, True))
@@ -120,7 +119,6 @@ def test_frozen_coordinates_of_the_carrier_are_exact_where_all_is_alike_all_roun
     assert coupled_modes(turning).warnings[0]["name"] == "carrier frozen"
 
 
-@pytest.mark.slow
 def test_a_campbell_diagram_with_turning_carriers_is_that_of_the_carriers_coordinates(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -23,6 +23,7 @@ from gearwhine.housing.model.bushings import Bushing
 from gearwhine.housing.model.patches import Patch
 from gearwhine.meshes import Mesh
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, Unbalance
+from gearwhine.rotors.model.loads import Bow
 
 ROTOR = Rotor("r", [Segment(0.2, 0.03, 0.0, ShaftMaterial(207e9, 80e9, 7850.0))])
 SHAKEN = BaseHarmonic(100.0, np.ones(6, dtype=np.complex128))
@@ -123,6 +124,8 @@ ARRAYS: dict[str, tuple[Callable[[Any], Any], str, Any]] = {
         "offset",
         [1.0, 2.0, 3.0, 4.0, 5.0],
     ),
+    "places of a bow": (lambda given: Bow(given, np.ones(2)), "at", [0.1, 0.2]),
+    "phases of a bow": (lambda given: Bow(np.arange(2.0), np.ones(2), given), "phase", [0.1, 0.2]),
     "times of a base": (lambda given: BaseHistory(given, SIX[:2]), "times", [0.0, 1.0]),
     "amplitude of a base": (lambda given: BaseHarmonic(10.0, given), "amplitude", [1.0 + 1.0j] * 6),
 }

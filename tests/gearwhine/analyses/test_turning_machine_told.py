@@ -30,7 +30,6 @@ def test_analyses_that_freeze_the_carriers_warn_of_it() -> None:
         assert told["turning_hz"] == pytest.approx(machine.speeds["carrier"] / (2.0 * np.pi), rel=1e-12)
 
 
-@pytest.mark.slow
 def test_a_campbell_diagram_over_frozen_carriers_warns_of_it() -> None:
     diagram = turning_set(NATURAL).campbell([280.0, 300.0], frequency_limit=4000.0)
     assert [told["name"] for told in diagram.warnings] == ["carrier frozen"]
