@@ -74,6 +74,7 @@ from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
+from gearwhine.coupling.statics.flank_swing import swinging_laws, swinging_shuttling, turn_waves
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
 from gearwhine.numerics.arrays import FloatArray
@@ -659,22 +660,32 @@ def _with_faces(
     mean = known if known is not None and known.hold_in(system) else None
     if mean is None:
         states = _face_states(system, coordinates, flanks, turning)
+        moving = turning(_on_faces(system, states, slope_is_found=True))
+        laws, waves = swinging_laws(moving), turn_waves(moving)
         shuttling: dict[int, list[HarmonicLoad]] = {}
         for number, (face, _, under, _) in states.items():
             if under.force > 0.0:
                 contact = system.contacts[number]
-                shuttling[number] = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+                shuttling[number] = (
+                    swinging_shuttling(face, contact, laws[number], waves)
+                    if number in laws
+                    else face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+                )
         mean = MeanFaces(system, states, shuttling)
     if not mean.states:
         return system, mean
-    harmonics = list(system.harmonic_loads)
+    together: dict[float, HarmonicLoad] = {}
     for number, loads in mean.shuttling.items():
         frame = mesh_frame(coordinates, flanks[number][0])
         before, present = (abs(one.contacts[number].mesh_frequency) for one in (mean.system, system))
         for load in loads:
-            order = round(load.frequency / (2.0 * np.pi * before))
-            harmonics += frames.harmonics(replace(load, frequency=2.0 * np.pi * order * present), frame)
-    return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
+            for part in frames.harmonics(replace(load, frequency=load.frequency * (present / before)), frame):
+                # Those of all contacts at one frequency act as one.
+                of_others = together.get(at := round(part.frequency, 6))
+                amplitude = part.amplitude if of_others is None else of_others.amplitude + part.amplitude
+                together[at] = replace(part, amplitude=amplitude)
+    harmonics = (*system.harmonic_loads, *together.values())
+    return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=harmonics), mean
 
 
 def _face_states(
