@@ -430,9 +430,10 @@ class MeshHarmonicModel:
         waves, found = by_order(turn_waves(self.machine.system), self.turning.model), dict[int, SwingingMesh]()
         for number, laws in self._laws_over_turn.items():
             contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
+            force = self._force(number)
             under = [
                 varying_mesh(number, replace(contact, contact=law), stiffness, mesh_under(law, force), between=False)
-                for law, force in laws
+                for law, _ in laws
             ]
             errors, varying = (np.array([getattr(one, name)[0] for one in under]) for name in ("error", "stiffness"))
             found[number] = SwingingMesh(
@@ -482,7 +483,6 @@ class MeshHarmonicModel:
 
         found = dict[int, TurningStiffnessForce]()
         swings = swings_at_rest(self.machine.system, *self._at_rest, model)
-        swings = {number: swing for number, swing in swings.items() if number not in self.swinging_meshes}
         for meshes in groups.values():
             found |= turning_stiffness_forces(meshes, model, partial(loads, meshes), swings, self.swinging_meshes)
         self._turning_forces[model] = found

@@ -78,7 +78,9 @@ class HarmonicLoad:
     frequency: float
     amplitude: ComplexArray
     follows: Literal["time", "turning", "unbalance"] = "time"
-    mechanism: Literal["unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "load"] = "load"
+    mechanism: Literal[
+        "unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "transmission_error", "load"
+    ] = "load"
     circling: float | None = None
 
     @property

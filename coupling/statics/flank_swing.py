@@ -9,7 +9,8 @@ phase p and in θ,
     e = Σ_{n,m} e_{n,m} e^{i(nΩ + m·f)t},
 
 and so are κ and the moments: a mesh excites sidebands by itself, even where all that stands still is alike all round.
-What flanks yield in the mean at each angle, n = 0, is that of the equilibrium over a turn. Their linear law of tilting
+What flanks yield in the mean at each angle, n = 0, is that of the equilibrium over a turn. e and κ are those under the
+mean force on each gap, as what F(θ) changes in e is by κ; the moments have F(θ). Their linear law of tilting
 has the mean stiffness over the phase; what the change of it with the phase makes of the slope at θ is in e and in the
 moments here. Against a set of rigid bodies with helical or spur faces that is integrated as it stands, lines at mesh
 harmonics and their sidebands are within 5 % where faces carry all over, and within a tenth where the stiffness swings
@@ -22,13 +23,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import ToothContact, loaded_transmission_error
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases, transmission_error_phasors
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
+_POINTS = 200  # number of phases of a mesh period, as in the mean mesh
+_HARMONICS = 6  # largest number of mesh harmonics, as of load shuttling
 _TURNS = 3  # turns of carriers, all together, that the swing over a turn is known of
 
 
@@ -85,6 +89,46 @@ def swinging_laws(
                 (replace(laws[number], faces=gap), force) for gap, force in zip(gaps, forces.tolist(), strict=True)
             ]
     return found
+
+
+def swinging_errors(
+    contact: ContactConnector,
+    mean: MeanMesh,
+    laws: Sequence[tuple[ToothContact, float]],
+    waves: Mapping[float, ComplexArray],
+) -> list[HarmonicLoad]:
+    """Return the loads k e_{n,m}, m not 0, of a contact whose flanks swing.
+
+    e is that under the mean force on the gaps of a turn: in motion the law has what the load's swing changes.
+
+    Parameters
+    ----------
+    contact : ContactConnector
+        With the parts of its direction that turn.
+    mean : MeanMesh
+    laws, waves
+        As of `swinging_shuttling`.
+    """
+    orders, sense = np.arange(1, _HARMONICS + 1), np.sign(contact.mesh_frequency)
+    meshes = [loaded_transmission_error(law, mean.force, mesh_period_phases(law, _POINTS)) for law, _ in laws]
+    errors = np.array([transmission_error_phasors(mesh, _HARMONICS, 1) for mesh in meshes])
+    if sense < 0.0:
+        errors = errors.conj()
+    errors = mean.stiffness * errors * np.exp(2j * np.pi * sense * orders * contact.phase)
+    stands = contact.direction - sum((part.cosine[:, 0] for part in contact.turning), np.zeros(contact.direction.size))
+    directions: list[tuple[float, ComplexArray]] = [(0.0, stands.astype(np.complex128))]
+    for part in contact.turning:
+        directions += [
+            (turn * part.rate, np.asarray(0.5 * (part.cosine - 1j * turn * part.sine)[:, 0])) for turn in (1.0, -1.0)
+        ]
+    rates = 2.0 * np.pi * abs(contact.mesh_frequency) * orders
+    return [
+        HarmonicLoad(rate + shift + turning, amplitude * direction, "turning", "transmission_error")
+        for shift, wave in waves.items()
+        if shift != 0.0
+        for rate, amplitude in zip(rates.tolist(), (wave @ errors).tolist(), strict=True)
+        for turning, direction in directions
+    ]
 
 
 def swinging_shuttling(

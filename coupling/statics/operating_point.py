@@ -360,7 +360,8 @@ def face_gaps(loads: Sequence[PairLoad]) -> FaceGaps:
     """Gap of a pair that motion takes at its loads over a turn of carriers: ``face_gap`` and ``gap_changes`` [m].
 
     The gap is the mean of `PairLoad.station_gap`; there is none where spur teeth carry evenly with all of them. Its
-    changes contain the approach at each load beside the mean one. A gap that moves as little has none.
+    changes contain the approach at each gap beside the mean one, both under the mean force: the swing of the force is
+    the machine's motion. A gap that moves as little has none.
     """
     gaps = np.array([load.station_gap for load in loads])
     is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
@@ -370,7 +371,9 @@ def face_gaps(loads: Sequence[PairLoad]) -> FaceGaps:
     mean = gaps.mean(axis=0)
     if np.ptp(gaps - mean, axis=1).max() <= small:
         return tuple(mean.tolist()), ()
+    more = np.array([load.force for load in loads]) - np.mean([load.force for load in loads])
     approach = np.array([float(load.pair.contact.face_mean @ load.approach) for load in loads])
+    approach -= more / [load.mean_stiffness for load in loads]
     changes = gaps - mean - (approach - approach.mean())[:, None]
     return tuple(mean.tolist()), tuple(map(tuple, changes.tolist()))
 

@@ -13,7 +13,7 @@ direction turns with its load. κ couples the mesh harmonics, and S the meshes a
 two periods. The unknowns are thousands, and κ varies by a part of its mean: GMRES solves them in some tens of steps.
 
 Where the gap of a mesh swings with its load (:mod:`gearwhine.coupling.statics.flank_swing`), e and κ have the orders m
-too, κ couples them, and e is that under the force at each angle: nothing is left of u° at rest.
+too, and κ couples them.
 
 κ is that of the mesh harmonics: what pitch deviations change in it is left out here.
 """
@@ -127,7 +127,7 @@ def turning_stiffness_forces(
         Loads of the meshes at a harmonic n of their frequency on the machine with the mean stiffness, by the order of
         their frequency, one-sided by e^{i(nΩ + m·f)t}.
     swings : mapping of int to mapping of order to complex
-        See `swings_at_rest`; of meshes whose flanks do not swing.
+        See `swings_at_rest`.
     flanks : mapping of int to SwingingMesh
         Meshes whose flanks swing, by contact.
 
