@@ -74,6 +74,12 @@ from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
+from gearwhine.coupling.statics.flank_swing import (
+    swinging_errors,
+    swinging_laws,
+    swinging_shuttling,
+    turn_waves,
+)
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -615,6 +621,8 @@ class MeanFaces:
     states : dict of int to tuple
     shuttling : dict of int to list of HarmonicLoad
         Moments of load shuttling on the loaded flanks, whose amplitudes are those at any speed.
+    errors : dict of int to list of HarmonicLoad
+        Loads by the transmission error of flanks that swing, at sidebands of mesh harmonics.
     are_kept : bool
         Whether they stay under another mean load and stiffness of the same flanks.
     """
@@ -622,12 +630,13 @@ class MeanFaces:
     system: CoupledSystem
     states: dict[int, _FaceState]
     shuttling: dict[int, list[HarmonicLoad]]
+    errors: dict[int, list[HarmonicLoad]] = field(default_factory=dict)
     are_kept: bool = False
 
     def moments_under(self, number: int, force: float) -> dict[int, ComplexArray] | None:
-        """Moments of load shuttling by mesh harmonic; None where they are not those under a mean force [N]."""
+        """Moments of load shuttling by mesh harmonic; None where they swing, or are not those under a mean force [N]."""
         loads = self.shuttling.get(number)
-        if loads is None or abs(self.states[number][2].force - force) > _SAME_FORCE * force:
+        if loads is None or number in self.errors or abs(self.states[number][2].force - force) > _SAME_FORCE * force:
             return None
         rate = self.system.contacts[number].mesh_frequency
         return {load.harmonic_of(rate): load.amplitude for load in loads}
@@ -668,22 +677,36 @@ def _with_faces(
     mean = known if known is not None and known.hold_in(system) else None
     if mean is None:
         states = _face_states(system, coordinates, flanks, turning)
-        shuttling: dict[int, list[HarmonicLoad]] = {}
+        moving = turning(_on_faces(system, states, slope_is_found=True))
+        laws, waves = swinging_laws(moving), turn_waves(moving)
+        shuttling, errors = dict[int, list[HarmonicLoad]](), dict[int, list[HarmonicLoad]]()
         for number, (face, _, under, _) in states.items():
             if under.force > 0.0:
                 contact = system.contacts[number]
-                shuttling[number] = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
-        mean = MeanFaces(system, states, shuttling)
+                shuttling[number] = (
+                    swinging_shuttling(face, contact, laws[number], waves)
+                    if number in laws
+                    else face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+                )
+                if number in laws:
+                    errors[number] = swinging_errors(moving.contacts[number], under, laws[number], waves)
+        mean = MeanFaces(system, states, shuttling, errors)
     if not mean.states:
         return system, mean
-    harmonics = list(system.harmonic_loads)
-    for number, loads in mean.shuttling.items():
-        frame = mesh_frame(coordinates, flanks[number][0])
-        before, present = mean.system.contacts[number].mesh_frequency, abs(system.contacts[number].mesh_frequency)
-        for load in loads:
-            order = load.harmonic_of(before)
-            harmonics += frames.harmonics(replace(load, frequency=2.0 * np.pi * order * present), frame)
-    return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
+    together: dict[tuple[float, str], HarmonicLoad] = {}
+    for of_mesh, in_frames in ((mean.shuttling, False), (mean.errors, True)):
+        for number, loads in of_mesh.items():
+            frame = mesh_frame(coordinates, flanks[number][0])
+            before, present = (abs(one.contacts[number].mesh_frequency) for one in (mean.system, system))
+            for load in loads:
+                at_speed = replace(load, frequency=load.frequency * (present / before))
+                for part in [at_speed] if in_frames else frames.harmonics(at_speed, frame):
+                    # Those of all contacts at one frequency act as one.
+                    of_others = together.get(at := (round(part.frequency, 6), part.mechanism))
+                    amplitude = part.amplitude if of_others is None else of_others.amplitude + part.amplitude
+                    together[at] = replace(part, amplitude=amplitude)
+    harmonics = (*system.harmonic_loads, *together.values())
+    return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=harmonics), mean
 
 
 def _face_states(

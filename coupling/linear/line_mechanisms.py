@@ -308,9 +308,13 @@ class LineMechanisms:
         rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
         order = round(frequency / rate)
         alike, _ = self.model.alike[number]
+        swings = number in self.model.swinging_meshes
         if order > 0 and abs(order * rate - frequency) <= reach:
+            for swung in self.model.error_forces((number, order)) if swings else ():
+                if not any(swung.order):  # sidebands are among the loads of the system
+                    yield order * rate, "transmission_error", swung
             error = at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
-            if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
+            if not swings and abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
                 yield order * rate, "transmission_error", Force.along(contact, stiffness * error[0])
             if (rubbed := self.model.friction((number, order))) is not None:
                 yield order * rate, "friction", rubbed

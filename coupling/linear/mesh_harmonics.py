@@ -37,7 +37,9 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 from gearwhine.coupling.linear.carriers.carrier_sidebands import CarrierSidebands, Sideband
 from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
 from gearwhine.coupling.linear.carriers.turning_stiffness import (
+    SwingingMesh,
     TurningStiffnessForce,
+    by_order,
     swings_at_rest,
     turning_stiffness_forces,
 )
@@ -47,6 +49,12 @@ from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForc
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
+from gearwhine.coupling.statics.flank_swing import (
+    LawsOverTurn,
+    swinging_laws,
+    swinging_shuttling,
+    turn_waves,
+)
 from gearwhine.coupling.statics.mean_mesh import (
     ContactState,
     MeanMesh,
@@ -381,16 +389,71 @@ class MeshHarmonicModel:
     def _mean_turning_loads(self, w: float, cause: Cause) -> dict[str, dict[Order, ComplexArray]]:
         """Return the loads of a cause at ω on the machine with the mean mesh stiffness, by mechanism and order."""
         number, harmonic = cause
-        model, force = self.turning.model, self.contact.stiffness[number] * self._errors[number][harmonic - 1]
-        amplitude, frame = self._shuttling[number].get(harmonic), self.turning.frame_of_contact(number)
+        model, frame = self.turning.model, self.turning.frame_of_contact(number)
+        moments = [
+            self.turning.by_order(w, load, frame)
+            for load in self._shuttling_over_turn[number]
+            if round(load.frequency / (w / harmonic)) == harmonic
+        ]
         loads = {
-            "transmission_error": model.force_along(number, force),
-            "load_shuttling": {} if amplitude is None else self.turning.by_order(w, HarmonicLoad(w, amplitude), frame),
+            "transmission_error": sum_by_order(force.by_order(model) for force in self.error_forces(cause)),
+            "load_shuttling": sum_by_order(moments),
         }
         if self._has_friction:
             rubbed = self.friction(cause)
             loads["friction"] = {} if rubbed is None else rubbed.by_order(model)
         return loads
+
+    def error_forces(self, cause: Cause) -> list[Force]:
+        """Return the forces k e along a contact at a mesh harmonic, and at its sidebands where flanks swing."""
+        number, harmonic = cause
+        contact, stiffness = self.machine.system.contacts[number], self.contact.stiffness[number]
+        if number not in self.swinging_meshes:
+            return [Force.along(contact, stiffness * self._errors[number][harmonic - 1])]
+        if harmonic > LEAST_REACH:
+            return []
+        errors = self.swinging_meshes[number].errors
+        return [
+            Force.along(contact, 2.0 * stiffness * complex(error[LEAST_REACH + harmonic]), order)
+            for order, error in errors.items()
+        ]
+
+    @cached_property
+    def _laws_over_turn(self) -> LawsOverTurn:
+        """Laws and forces of the loaded contacts whose flanks swing as the carriers turn."""
+        found = swinging_laws(self.machine.system, self._at_rest)
+        return {number: laws for number, laws in found.items() if number in self.loaded}
+
+    @cached_property
+    def swinging_meshes(self) -> dict[int, SwingingMesh]:
+        """Loaded contacts whose flanks swing as the carriers turn."""
+        waves, found = by_order(turn_waves(self.machine.system), self.turning.model), dict[int, SwingingMesh]()
+        for number, laws in self._laws_over_turn.items():
+            contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
+            force = self._force(number)
+            under = [
+                varying_mesh(number, replace(contact, contact=law), stiffness, mesh_under(law, force), between=False)
+                for law, _ in laws
+            ]
+            errors, varying = (np.array([getattr(one, name)[0] for one in under]) for name in ("error", "stiffness"))
+            found[number] = SwingingMesh(
+                {order: wave @ errors for order, wave in waves.items()},
+                {order: wave @ varying for order, wave in waves.items()},
+            )
+        return found
+
+    @cached_property
+    def _shuttling_over_turn(self) -> dict[int, list[HarmonicLoad]]:
+        """Moments of every loaded contact at mesh harmonics, and at their sidebands where its flanks swing."""
+        contacts, waves = self.machine.system.contacts, turn_waves(self.machine.system)
+        found = dict[int, list[HarmonicLoad]]()
+        for number, by_harmonic in self._shuttling.items():
+            rate = 2.0 * np.pi * abs(contacts[number].mesh_frequency)
+            found[number] = [HarmonicLoad(harmonic * rate, moment) for harmonic, moment in by_harmonic.items()]
+            if number in self._laws_over_turn:
+                face = self.machine.face(number, contacts[number].contact)
+                found[number] = swinging_shuttling(face, contacts[number], self._laws_over_turn[number], waves)
+        return found
 
     def _turning_loads(self, w: float, cause: Cause) -> dict[str, dict[Order, ComplexArray]]:
         """Return the loads of a cause at ω by mechanism and order; every cause has the same mechanisms."""
@@ -421,7 +484,7 @@ class MeshHarmonicModel:
         found = dict[int, TurningStiffnessForce]()
         swings = swings_at_rest(self.machine.system, *self._at_rest, model)
         for meshes in groups.values():
-            found |= turning_stiffness_forces(meshes, model, partial(loads, meshes), swings)
+            found |= turning_stiffness_forces(meshes, model, partial(loads, meshes), swings, self.swinging_meshes)
         self._turning_forces[model] = found
         return found
 
@@ -644,8 +707,8 @@ def sum_of(loads: Mapping[str, ComplexArray]) -> ComplexArray:
 def sum_by_order(loads: Iterable[Mapping[Order, ComplexArray]]) -> dict[Order, ComplexArray]:
     """Sum of loads on the coordinates by the order of their frequency."""
     total = dict[Order, ComplexArray]()
-    for by_order in loads:
-        for order, load in by_order.items():
+    for some in loads:
+        for order, load in some.items():
             total[order] = total[order] + load if order in total else load
     return total
 

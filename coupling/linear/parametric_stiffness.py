@@ -101,8 +101,7 @@ class VaryingMesh:
     @property
     def coupling(self) -> ComplexArray:
         """κ_{n-m} from a mesh harmonic m to an order n, shape (r, 2 J + 1, 2 J + 1)."""
-        places = np.arange(2 * self.reach + 1)
-        return np.asarray(self.stiffness[:, places[:, None] - places + 2 * self.reach])
+        return coupled(self.stiffness)
 
     def loads(self, stiffness: float, damping: float, ratio: float) -> ComplexArray:
         """Load (k̄ + i ω c) e at the part ``ratio`` of the nominal speed [N], shape (r, 2 J + 1)."""
@@ -134,6 +133,13 @@ class VaryingMesh:
         moved = between * (loads[1:] - by_harmonics[1:]) - self.error[1:]
         further = np.linalg.solve(np.eye(len(own)) + between[:, :, None] * own, moved[:, :, None])[:, :, 0]
         return -np.concatenate([by_harmonics[:1], by_harmonics[1:] + further @ own.T])
+
+
+def coupled(stiffness: ComplexArray) -> ComplexArray:
+    """κ_{n-m} between orders, shape (..., 2 J + 1, 2 J + 1), of κ at the orders -2 J ... 2 J, shape (..., 4 J + 1)."""
+    reach = (stiffness.shape[-1] - 1) // 4
+    places = np.arange(2 * reach + 1)
+    return np.asarray(stiffness[..., places[:, None] - places + 2 * reach])
 
 
 def _reach(limit: float, rate: float) -> int:

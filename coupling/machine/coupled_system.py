@@ -31,20 +31,28 @@ def times_over_turn(rates: Sequence[float]) -> FloatArray:
     none of |a| ≤ `_WAVES` and |a| + |b| ≤ `_WAVES_OF_TWO` is so, a rank-1 lattice over the angles of two carriers.
     Multiples of another rate are left out; rates without a common turn within `_TURNS` of the slowest have so many.
     """
-    sizes = np.unique(np.abs([rate for rate in rates if rate != 0.0]))
-    if not sizes.size:
+    own, rate = _common_turns(rates)
+    if not own:
         return np.zeros(1)
-    ratios = sizes / sizes[0]
-    common = (n for n in range(1, _TURNS) if np.all(np.abs(n * ratios - np.rint(n * ratios)) < _WHOLE * n))
-    turns = next(common, _TURNS)
-    whole = np.rint(turns * ratios).astype(np.int64)
-    own = [p for i, p in enumerate(whole.tolist()) if not any(p % other == 0 for other in whole[:i].tolist())]
     among = range(-_WAVES_OF_TWO, _WAVES_OF_TWO + 1)
     waves = {a * p for p in own for a in range(1, _WAVES + 1)}
     waves |= {a * p + b * q for p in own for q in own for a in among for b in among if abs(a) + abs(b) <= _WAVES_OF_TWO}
     waves -= {0}
     count = next(count for count in itertools.count(_WAVES + 1) if not any(wave % count == 0 for wave in waves))
-    return np.asarray(2.0 * np.pi * turns / sizes[0] * np.arange(count) / count)
+    return np.asarray(2.0 * np.pi / rate * np.arange(count) / count)
+
+
+def _common_turns(rates: Sequence[float]) -> tuple[list[int], float]:
+    """Count the turns in a common turn of rates that are no multiples of another one; rate of that turn [rad/s]."""
+    sizes = np.unique(np.abs([rate for rate in rates if rate != 0.0]))
+    if not sizes.size:
+        return [], 0.0
+    ratios = sizes / sizes[0]
+    common = (n for n in range(1, _TURNS) if np.all(np.abs(n * ratios - np.rint(n * ratios)) < _WHOLE * n))
+    turns = next(common, _TURNS)
+    whole = np.rint(turns * ratios).astype(np.int64)
+    own = [p for i, p in enumerate(whole.tolist()) if not any(p % other == 0 for other in whole[:i].tolist())]
+    return own, float(sizes[0]) / turns
 
 
 @dataclass(frozen=True)
@@ -70,7 +78,9 @@ class HarmonicLoad:
     frequency: float
     amplitude: ComplexArray
     follows: Literal["time", "turning", "unbalance"] = "time"
-    mechanism: Literal["unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "load"] = "load"
+    mechanism: Literal[
+        "unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "transmission_error", "load"
+    ] = "load"
     circling: float | None = None
 
     def harmonic_of(self, mesh_frequency: float) -> int:
@@ -259,6 +269,12 @@ class CoupledSystem:
     def turn_times(self) -> FloatArray:
         """Nominal times for means over a common turn of the directions [s], (t,), see `times_over_turn`."""
         return times_over_turn(self.turning_rates if self.turns else ())
+
+    @property
+    def base_rates(self) -> tuple[float, ...]:
+        """Rates of turning of which all others are multiples, as `turn_times` has them [rad/s], ascending."""
+        own, rate = _common_turns(self.turning_rates if self.turns else ())
+        return tuple(number * rate for number in own)
 
     @cached_property
     def over_turn(self) -> tuple["CoupledSystem", ...]:

@@ -376,8 +376,8 @@ def flank_gap(loads: Sequence[PairLoad]) -> FlankGap:
     """Gap of a pair that motion takes at its loads over a turn of carriers.
 
     The gap is the mean of `PairLoad.station_gap`; there is none where spur teeth carry evenly with all of them. Its
-    changes contain the approach at each load beside the mean one. A gap that moves as little has none. Its slope along
-    the path is the mean of all.
+    changes contain the approach at each gap beside the mean one, both under the mean force: the swing of the force is
+    the machine's motion. A gap that moves as little has none. Its slope along the path is the mean of all.
     """
     gaps = np.array([load.station_gap for load in loads])
     is_spur = loads[0].pair.geometry.driver.helix_angle == 0.0
@@ -388,7 +388,9 @@ def flank_gap(loads: Sequence[PairLoad]) -> FlankGap:
     path_slope = float(np.mean([load.path_slope for load in loads]))
     if np.ptp(gaps - mean, axis=1).max() <= small:
         return FlankGap(tuple(mean.tolist()), (), path_slope)
+    more = np.array([load.force for load in loads]) - np.mean([load.force for load in loads])
     approach = np.array([float(load.pair.contact.face_mean @ load.approach) for load in loads])
+    approach -= more / [load.mean_stiffness for load in loads]
     changes = gaps - mean - (approach - approach.mean())[:, None]
     return FlankGap(tuple(mean.tolist()), tuple(map(tuple, changes.tolist())), path_slope)
 

@@ -197,7 +197,7 @@ class TurningResponse:
         bounds = np.maximum(self.sidebands, (3 * farthest + 1) // 2)
         reached = {self.still}
         for _ in range(self.sidebands):
-            next_orders = {_plus(order, step) for order in reached for step in self._offsets}
+            next_orders = {plus(order, step) for order in reached for step in self._offsets}
             reached |= {order for order in next_orders if np.all(np.abs(order) <= bounds)}
         return tuple(sorted(reached))
 
@@ -323,8 +323,7 @@ class TurningResponse:
 
         return {
             (order, restrained): [
-                _Reach(*reached(order, _plus, part, first), *reached(order, _minus, part, first))
-                for part in self._parts
+                _Reach(*reached(order, plus, part, first), *reached(order, _minus, part, first)) for part in self._parts
             ]
             for restrained, first in ((True, 0), (False, self._restraint[0].shape[1]))
             for order in self.orders
@@ -512,7 +511,7 @@ class TurningResponse:
 
     def at_order(self, loads: Mapping[Order, ComplexArray], order: Order) -> dict[Order, ComplexArray]:
         """Shift the loads by order of a force to those of one at ω + m·f, m an order; those that are followed."""
-        shifted = {_plus(order, step): load for step, load in loads.items()}
+        shifted = {plus(order, step): load for step, load in loads.items()}
         return {place: load for place, load in shifted.items() if place in self._places}
 
     def deflection(
@@ -587,5 +586,6 @@ def _minus(first: Order, second: Order) -> Order:
     return tuple(a - b for a, b in zip(first, second, strict=True))
 
 
-def _plus(first: Order, second: Order) -> Order:
+def plus(first: Order, second: Order) -> Order:
+    """Sum of two orders."""
     return tuple(a + b for a, b in zip(first, second, strict=True))

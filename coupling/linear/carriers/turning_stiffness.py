@@ -12,6 +12,9 @@ the compression under the constant load, with which κ makes sidebands, and the 
 direction turns with its load. κ couples the mesh harmonics, and S the meshes and the turns m: this is Hill's method for
 two periods. The unknowns are thousands, and κ varies by a part of its mean: GMRES solves them in some tens of steps.
 
+Where the gap of a mesh swings with its load (:mod:`gearwhine.coupling.statics.flank_swing`), e and κ have the orders m
+too, and κ couples them.
+
 κ is that of the mesh harmonics: what pitch deviations change in it is left out here.
 """
 
@@ -22,14 +25,37 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse
-from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
+from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse, plus
+from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh, coupled
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.statics.flank_swing import compressions_over_turn, turn_waves
 from gearwhine.coupling.statics.mean_mesh import MeanMesh
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
 _TOLERANCE = 1e-10  # of the compressions, relative
 _STEPS = 200  # of GMRES
+
+
+@dataclass(frozen=True, eq=False)
+class SwingingMesh:
+    """A mesh whose flanks swing, by the turns m of the carriers (:mod:`gearwhine.coupling.statics.flank_swing`).
+
+    Attributes
+    ----------
+    errors : mapping of order to ndarray of complex, shape (2 J + 1,)
+        Transmission error e_{n,m} at n = -J ... J, two-sided [m].
+    stiffness : mapping of order to ndarray of complex, shape (4 J + 1,)
+        κ_{n,m} less the mean mesh stiffness at n = -2 J ... 2 J [N/m].
+    """
+
+    errors: Mapping[Order, ComplexArray]
+    stiffness: Mapping[Order, ComplexArray]
+
+
+def by_order(of_shifts: Mapping[float, ComplexArray], model: TurningResponse) -> dict[Order, ComplexArray]:
+    """Values by the order of their shifts of frequency [rad/s]; those of orders that are followed."""
+    found = {model.order_of(shift): value for shift, value in of_shifts.items()}
+    return {order: value for order, value in found.items() if order is not None}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +80,6 @@ class TurningStiffnessForce:
         return dict(zip(self.orders, self.amplitudes[harmonic].tolist(), strict=True))
 
 
-_SWING_TURNS = 3  # turns of carriers, all together, that the swing at rest is known of
-
-
 def swings_at_rest(
     system: CoupledSystem, means: Sequence[MeanMesh | None], motions: FloatArray, model: TurningResponse
 ) -> dict[int, dict[Order, complex]]:
@@ -72,12 +95,14 @@ def swings_at_rest(
         See `gearwhine.coupling.statics.mean_mesh.equilibrium_over_turn`.
     model : TurningResponse
     """
-    compressions = np.array([q @ at.contact_directions for q, at in zip(motions, system.over_turn, strict=True)])
-    orders = [order for order in model.orders if 0 < sum(map(abs, order)) <= _SWING_TURNS]
-    waves = np.exp(-1j * np.outer([model.shift(order) for order in orders], system.turn_times))
-    amplitudes = waves @ compressions / len(motions)
+    compressions = compressions_over_turn(system, motions)
+    waves = by_order(turn_waves(system), model)
     return {
-        number: dict(zip(orders, (amplitudes[:, number] * (mean.secant / mean.stiffness)).tolist(), strict=True))
+        number: {
+            order: complex(wave @ compressions[:, number]) * (mean.secant / mean.stiffness)
+            for order, wave in waves.items()
+            if order != model.still
+        }
         for number, mean in enumerate(means)
         if mean is not None and mean.stiffness > 0.0
     }
@@ -88,6 +113,7 @@ def turning_stiffness_forces(
     model: TurningResponse,
     loads: Callable[[int], Mapping[Order, ComplexArray]],
     swings: Mapping[int, Mapping[Order, complex]],
+    flanks: Mapping[int, SwingingMesh],
 ) -> dict[int, TurningStiffnessForce]:
     """Solve the forces of meshes of one frequency by their stiffness that varies, by contact.
 
@@ -102,6 +128,8 @@ def turning_stiffness_forces(
         their frequency, one-sided by e^{i(nΩ + m·f)t}.
     swings : mapping of int to mapping of order to complex
         See `swings_at_rest`.
+    flanks : mapping of int to SwingingMesh
+        Meshes whose flanks swing, by contact.
 
     Raises
     ------
@@ -109,8 +137,8 @@ def turning_stiffness_forces(
         Where the forces are not found, as of a machine that is about to grow on its own.
     """
     reach, rate, numbers = meshes[0].reach, meshes[0].rate, [mesh.number for mesh in meshes]
-    still = model.orders.index(model.still)
     opposite = [model.orders.index(tuple(-turn for turn in order)) for order in model.orders]
+    places = {order: place for place, order in enumerate(model.orders)}
     shape = 2 * reach + 1, len(model.orders), len(meshes)
     width = shape[1] * shape[2]
     free = np.zeros(shape, dtype=np.complex128)
@@ -122,15 +150,27 @@ def turning_stiffness_forces(
         compliance[reach + harmonic] = by_forces.reshape(width, width)
         if harmonic:
             free[reach + harmonic] = 0.5 * by_loads
-            free[reach + harmonic, still] -= [mesh.error[0, reach + harmonic] for mesh in meshes]
+            for place, mesh in enumerate(meshes):
+                errors = flanks[mesh.number].errors if mesh.number in flanks else {model.still: mesh.error[0]}
+                for order, error in errors.items():
+                    free[reach + harmonic, places[order], place] -= error[reach + harmonic]
             free[reach - harmonic] = free[reach + harmonic][opposite].conj()
     for place, number in enumerate(numbers):
         for order, swing in swings.get(number, {}).items():
-            free[reach, model.orders.index(order), place] += swing
-    varying = np.array([mesh.coupling[0] for mesh in meshes])
+            free[reach, places[order], place] += swing
+    varying = []
+    for place, mesh in enumerate(meshes):
+        own = flanks[mesh.number].stiffness if mesh.number in flanks else {model.still: mesh.stiffness[0]}
+        for turns, stiffness in own.items():
+            steps = [(places.get(plus(order, turns)), source) for order, source in places.items()]
+            at = np.array([pair for pair in steps if pair[0] is not None], dtype=np.intp)
+            varying.append((place, at[:, 0], at[:, 1], coupled(stiffness)))
 
     def forces(compression: ComplexArray) -> ComplexArray:
-        return np.asarray(-np.einsum("cnj,jmc->nmc", varying, compression.reshape(shape)))
+        found, pressed = np.zeros(shape, dtype=np.complex128), compression.reshape(shape)
+        for place, acted, acting, stiffness in varying:
+            found[:, acted, place] -= stiffness @ pressed[:, acting, place]
+        return found
 
     def less_that_of_forces(compression: ComplexArray) -> ComplexArray:
         by_forces = compliance @ forces(compression).reshape(len(compliance), width, 1)
