@@ -634,7 +634,7 @@ class MeanFaces:
     are_kept: bool = False
 
     def moments_under(self, number: int, force: float) -> dict[int, ComplexArray] | None:
-        """Moments of load shuttling by mesh harmonic; None where they swing, or are not those under a mean force [N]."""
+        """Moments of load shuttling by mesh harmonic; None where they swing or are not those under a force [N]."""
         loads = self.shuttling.get(number)
         if loads is None or number in self.errors or abs(self.states[number][2].force - force) > _SAME_FORCE * force:
             return None
