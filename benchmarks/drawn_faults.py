@@ -32,7 +32,7 @@ from traced_lines import ROOMS
 BUILD = ROOT / "build" / "drawn-faults"
 LINES, VERDICTS, TREE = BUILD / "lines.jsonl", BUILD / "verdicts.json", BUILD / "tree"
 EQUIVALENT = LISTS / "equivalent.toml"
-_SECONDS_OF_TESTS = 60.0  # of a fault's tests by the map, which is made at about half the speed
+_SECONDS_OF_TESTS = 60.0  # of a fault's running tests by the map, which is made at about half the speed
 _FILES_OF_TESTS = 15
 # Tests that read the source of what they hold, and so run no line of it, by the beginning of its path.
 _READING = {
@@ -329,7 +329,7 @@ def tests_of(fault: DrawnFault, lines: dict[str, dict[str, list[int]]], seconds:
         ordered |= dict.fromkeys(sorted(touching, key=seconds.__getitem__))
     chosen, total = list[str](), 0.0
     for test in ordered:
-        total += seconds.get(test, 0.0)
+        total += 0.0 if test in _READING else seconds.get(test, 0.0)
         if not chosen or (total <= _SECONDS_OF_TESTS and len(chosen) < _FILES_OF_TESTS):
             chosen.append(test)
     return chosen

@@ -236,7 +236,6 @@ def test_a_motion_of_long_period_is_refused_with_what_to_leave_out() -> None:
         settled_response(system)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("stability_left_out")
 def test_machine_and_analysis_take_the_motion_that_settles() -> None:
     """Planets in a housing and planets on the ground, whose coordinates all stand in the carrier's frame."""

@@ -13,6 +13,7 @@ from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, s
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion, spectra_of_sum
 from gearwhine.coupling.linear.campbell import _error_of_frozen_carriers
 from gearwhine.coupling.linear.excitation_orders import _harmonic_loads, excited_shaft_orders
+from gearwhine.coupling.load_analysis.influences import Influence
 from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseMotion
 from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.periodic.continuation import Bifurcation, ResponseCurve
@@ -289,3 +290,19 @@ def test_a_line_near_a_mode_that_rings_and_power_that_is_not_modelled_are_told()
     assert (beyond["trusted_below_hz"], beyond["parts"]) == (60.0, {"top": pytest.approx(0.64)})
     record.sampling.is_long = True
     assert beyond_limit_warnings(transient) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "step", "thick", "words"),
+    [
+        ("housing", 1e-3, True, ("1 mm thicker", "1 mm thinner")),
+        ("bearing position", 2.5e-4, False, ("0.25 mm to +z", "0.25 mm to -z")),
+        ("bearing stiffness", 0.1, False, ("10 % stiffer", "10 % softer")),
+        ("housing", 0.05, False, ("5 % more", "5 % less")),
+    ],
+)
+def test_steps_of_parameters_are_named(kind: str, step: float, thick: bool, words: tuple[str, str]) -> None:
+    none = np.zeros((0, 3))
+    one = Influence("p", kind, step, "mm" in words[0], none, none, none, none, is_thickness=thick)
+    assert one.words == words
+    assert one.step_text == "+" + " ".join(words[0].split()[:2])
