@@ -1,0 +1,501 @@
+"""Sentences and tables of what few results have, word for word: documents by hand, all of their numbers distinct."""
+
+from collections.abc import Iterable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from gearwhine.output.sections import Finding, Table
+from gearwhine.results import (
+    comparison,
+    condition,
+    first_page,
+    gears,
+    mesh_lines,
+    operating_point,
+    optimisation,
+    steady_state,
+    survey,
+    system,
+    update,
+)
+from gearwhine.results import run as motion
+
+Document = dict[str, Any]
+
+
+def told(content: Iterable[str | Table | Finding]) -> list[str]:
+    """Return sentences as they are, and of a table its caption, its heads and its rows with the cells apart by bars."""
+    lines = list[str]()
+    for one in content:
+        if isinstance(one, Table):
+            columns, rows = one.filled()
+            lines.append(f"[{one.caption}]")
+            lines += [" | ".join(cells).replace("\n", " ") for cells in ([c.heading for c in columns], *rows)]
+        else:
+            lines.append(str(one))
+    return lines
+
+
+def test_condition_of_gears_with_the_reasons_of_what_is_undefined() -> None:
+    """A reason that holds for two indicators is said once, and the limit is that of the averages."""
+    reason, steady = "the average has no mesh harmonics", "the speed varies over the record"
+    of_top = {"rms_m_per_s2": 1.25, "difference_rms_m_per_s2": 0.5, "fm4": 3.125, "m6a": None, "na4": 7.0}
+    of_top |= {"sideband_index_m_per_s2": 0.0625, "sideband_level_factor": None, "spectral_kurtosis": None}
+    top = {"sensor": "top", "indicators": of_top}
+    top |= {"undefined": {"m6a": reason, "sideband_level_factor": reason, "spectral_kurtosis": steady}}
+    side = {"sensor": "side", "indicators": dict.fromkeys(of_top, 2.0)}
+    watched = [{"gear": "pinion", "sensors": [top, side]}, {"gear": "wheel", "sensors": [], "undefined": "it stands"}]
+    tones = [{"tone": "outer race of front", "frequency_hz": 187.25, "envelope": {"top": 0.375, "side": None}}]
+    lines = told(condition.content({"limit_hz": 4321.0, "gears": watched, "tones": tones}))
+    assert lines[:-1] == [
+        "[Condition of the gears]",
+        "gear | sensor | rms [m/s²] | difference rms [m/s²] | FM4 | M6A | NA4 | sideband index [m/s²] | "
+        "sideband level factor",
+        "pinion | top | 1.25 | 0.5 | 3.125 | – | 7 | 0.0625 | –",
+        " | side | 2 | 2 | 2 | 2 | 2 | 2 | 2",
+        "[]",
+        "gear | sensor | spectral kurtosis",
+        "pinion | top | –",
+        " | side | 2",
+        f"Undefined of gear 'pinion' at sensor 'top': M6A, sideband level factor, as {reason}.",
+        f"Undefined of gear 'pinion' at sensor 'top': spectral kurtosis, as {steady}.",
+        "Gear 'wheel' has no indicators: it stands.",
+        "[Envelope spectra at the tones of rolling bearings]",
+        "bearing tone | Hz | sensor | envelope line / mean",
+        "outer race of front | 187.2 | top | 0.375",
+        "outer race of front | 187.2 | side | –",
+    ]
+    assert "up to 4321 Hz, the trusted limit" in lines[-1]
+
+
+def _updated(**changes: Any) -> Document:
+    stiffness = {"name": "support.k", "before": 2e8, "after": 1.5e8, "standard_deviation": 1.25e7}
+    stiffness |= {"written_unit": "N/µm", "written_unit_in_si": 1e6, "left_of_prior_spread": 0.23}
+    pair = {"mode": 3, "measured_hz": 812.0, "before_hz": 850.5, "before_error_percent": 4.74, "model_hz": 808.25}
+    mode = {"measured_hz": 633.0, "predicted_hz": 640.5, "error_percent": 1.18, "standard_deviation_percent": 2.25}
+    return {
+        "parameters": [stiffness | {"at_end_of_range": True}, stiffness | {"name": "b", "at_end_of_range": False}],
+        "pairs": [
+            pair | {"error_percent": -0.46, "mac": 0.87},
+            dict.fromkeys(pair) | {"measured_hz": 977.0, "error_percent": None, "mac": None},
+        ],
+        "pairing_rule": "shapes",
+        "max_error_percent": 3.21,
+        "rms_error_percent": 1.98,
+        "before": {"rms_error_percent": 6.54, "max_error_percent": 9.87},
+        "model_modes": {"count": 11, "below_hz": 2345.0},
+        "wrong_pairs": 2,
+        "search": {"steps": [0, 1, 2, 3], "mesh_dofs": 1234},
+        "mesh": {"dofs": 56789},
+        "seconds": {"total": 77.0},
+        "identifiability": {
+            "parameters": 5,
+            "learned_combinations": 1,
+            "confounded": [{"parameters": ["E", "rho"], "correlation": -0.93}],
+        },
+        "held_back": [mode | {"before_error_percent": 5.5, "rms_error_percent_of_the_others": 0.75}],
+        "null": {
+            "sets": 20,
+            "within_5_percent": 0.65,
+            "within_2_percent": 0.4,
+            "within_1_percent": 0.15,
+            "all_met": 0.1,
+            "as_good_in_rms": 0.3,
+            "measured_likewise": {"rms_error_percent": 2.22, "max_error_percent": 4.44},
+        },
+        "warnings": [{"message": "something is odd"}],
+    } | changes
+
+
+_PAIRED = "Paired by shapes: largest error 3.21 %, rms 1.98 % (before: 6.54 %); 11 model modes below 2345 Hz; "
+_RANDOM = (
+    "Of 20 random sets of as many frequencies the same search on the coarser mesh fits 65 % within 5 %, 40 % within 2 "
+    "% and 15 % within 1 % each, and meets for 10 % all that is asked for.",
+    "The measured ones come there to 2.22 % root mean square, 4.44 % at most; 30 % of the random sets do as well.",
+)
+
+
+def test_a_fitted_housing_with_all_its_tests() -> None:
+    assert told(update._content(_updated())) == [
+        "[]",
+        "parameter | before | after | give or take | of the prior's | ",
+        "support.k | 200 N/µm | 150 N/µm | 12.5 N/µm | 23 % | at the end of its range",
+        "b | 200 N/µm | 150 N/µm | 12.5 N/µm | 23 % | ",
+        "[]",
+        "mode | measured [Hz] | before [Hz] | error | after [Hz] | error",
+        "3 | 812 | 850.5 | +4.74 % | 808.2 | -0.46 %",
+        "none | 977 | none | none | none | none",
+        f"{_PAIRED}MAC from 0.87 to 0.87, 2 without a partner.",
+        "4 designs solved on the way, the first on a mesh of 1234 degrees of freedom, verified on one of 56789; 77 s.",
+        "Of 5 parameters the data tell 1 combination better than the prior did; the rest stays what was assumed.",
+        "  not told apart: E and rho (correlation -0.93)",
+        "[]",
+        "held back [Hz] | predicted [Hz] | error | expected | error before | rms of others",
+        "633 | 640.5 | +1.18 % | ± 2.25 % | +5.50 % | 0.75 %",
+        *_RANDOM,
+        "So the errors alone say little of this housing: it is a plausible one, calibrated.",
+        "Mind: something is odd.",
+    ]
+    chapter = update.report(_updated())
+    assert told(chapter.sentences)[:4] == [
+        "Before: 6.54 % root mean square, 9.87 % at most.",
+        "The data tell 1 combination of the 5 numbers better than the prior.",
+        *_RANDOM,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "choice"),
+    [
+        ({}, "no shapes and no dominance tell which modes are which"),
+        ({"gap": None, "measures_agree": True}, "no mode of the band is left out of the pairs"),
+        ({"gap": 0.34, "measures_agree": True}, "gap 0.34, the three measures of dominance agree"),
+        ({"gap": 0.34, "measures_agree": False}, "gap 0.34, the three measures of dominance do not all agree"),
+    ],
+)
+def test_how_sure_a_pairing_without_shapes_is(changes: Document, choice: str) -> None:
+    document = _updated(pairs=[pair | {"mac": None} for pair in _updated()["pairs"]], **changes)
+    del document["null"], document["held_back"], document["warnings"]
+    lines = told(update._content(document))
+    assert f"{_PAIRED}{choice}." in lines
+    assert lines[-1] == "How often random frequencies are fitted as well: --null 20. Modes held back: --held-back."
+
+
+def test_comparison_by_shapes_with_modes_of_every_kind() -> None:
+    document = {
+        "pairing_rule": "MAC",
+        "pairs": [],
+        "model_modes": {"count": 9, "below_hz": 3000.0},
+        "unpaired_measured": [{"measured_mode": 4, "measured_hz": 1717.0, "most_like": 6, "mac": 0.31}],
+        "unpaired_model": [{"mode": 7, "model_hz": 1818.0}, {"mode": 8, "model_hz": 1919.0}],
+        "duplicates": [{"modes": [2, 3], "mac": 0.96}],
+        "look_alikes": {"measured": [{"modes": [1, 5], "mac": 0.84}], "model": [{"modes": [9, 10], "mac": 0.91}]},
+        "close_modes": [
+            {"modes": [11, 12], "measured_modes": [13, 14], "largest_angle_deg": 12.3},
+            {"modes": [15], "measured_modes": [16, 17], "largest_angle_deg": None},
+        ],
+        "auto_mac_off_diagonal": {"measured": 0.22, "model": 0.99},
+        "phase_collinearity": [0.99, 0.12, 0.98, 0.23],
+        "responses": {
+            "lines": 801,
+            "from_hz": 100.0,
+            "to_hz": 2600.0,
+            "mean": 0.55,
+            "frac": [[0.25, None], [0.75, 0.66]],
+        },
+        "cross_orthogonality": {"missing_because": "the survey has too few points"},
+    }
+    lines = told(comparison._by_shapes(document))
+    bent = lines.pop(-3)
+    assert bent.startswith("Complex shapes (phase collinearity below 0.")
+    assert bent.endswith("): measured 2, 4.")
+    assert lines == [
+        "Paired by MAC: no measured mode is like one of 9 model modes.",
+        "Measured mode 4 (1717 Hz) has no partner: most like mode 6, MAC 0.31.",
+        "Model modes in the measured band that no measured mode is: 7 (1818 Hz), 8 (1919 Hz).",
+        "Measured modes 2 and 3 may be one mode found twice (MAC 0.96).",
+        "The survey cannot tell measured modes 1 and 5 apart (MAC 0.84): it needs more points.",
+        "The survey cannot tell model modes 9 and 10 apart (MAC 0.91): it needs more points.",
+        "Modes 11, 12 are close and compared as one space: measured 13, 14, largest angle 12.3°.",
+        "Modes 15 are close and compared as one space: measured 16, 17.",
+        "Largest MAC between different modes: 0.22 of the test, 0.99 of the model; a survey with more points would "
+        "tell modes apart better.",
+        "Likeness of 3 responses over 801 lines from 100 to 2600 Hz (FRAC): mean 0.55, from 0.25 to 0.75; a resonance "
+        "a few per cent off costs most of it.",
+        "No cross-orthogonality: the survey has too few points.",
+    ]
+    assert told(comparison._responses({"missing_because": "none"})) == ["No likeness of responses: none."]
+    assert told(comparison._by_frequency(document | {"pairing": "order", "chance_error_percent": 2.5})) == [
+        "Measured modes for which the model has none: 4 (1717 Hz).",
+        "Model modes between the measured ones that are left out of the pairs: 7 (1818 Hz), 8 (1919 Hz).",
+        "Weak evidence: a frequency at random in the band is 2.5 % (rms) from the nearest mode of the model.",
+    ]
+    assert told(comparison._by_frequency({"pairing": "order"})) == [
+        "Weak evidence where either side lacks a mode: all pairs above it are then shifted by one."
+    ]
+
+
+def test_optimised_designs_by_the_transient() -> None:
+    """A design whose transient fails has a sentence and no column; only a whole comparison confirms the ranking."""
+    start = {
+        "linear_level_db": {"top": 81.25},
+        "motion_level_db": {"top": 79.5},
+        "peak_force_ratio": {"a → b": 1.5},
+        "contact_loss": {"a → b": 0.125},
+        "highest_level_db": {"top": 93.75},
+        "loudest_speed_rpm": {"top": 4321.0},
+    }
+    best = {key: {of: 0.5 * value for of, value in one.items()} for key, one in start.items()} | {"contact_loss": {}}
+    chosen = [{"design": "best"}, {"design": "other"}]
+    checked = {"speeds_rpm": [-3000.0, 1234.56], "start": start, "designs": [best, best], "contradicted": []}
+    document = {"chosen": chosen, "verification": checked}
+    lines = [
+        "[Start and proposed designs by the full machine at 1234.6, -3000 rpm]",
+        "of | quantity | start | best",
+        "sensor top | lines of the teeth, linear [dB re 1 µm/s²] | 81.2 | 40.6",
+        "sensor top | transient [dB re 1 µm/s²] | 79.5 | 39.8",
+        "a → b | largest tooth force / mean | 1.500 | 0.750",
+        "a → b | part of the time without contact | 0.125 | ",
+        "sensor top | highest over the speed range, linear [dB re 1 µm/s²] | 93.8 | 46.9",
+        "sensor top | at the speed [rpm] | 4321 | 2160",
+    ]
+    confirmed = "The transient confirms the ranking by the linear machine."
+    assert told(optimisation._checked(document))[-1] == confirmed
+    for changes in ({"contradicted": ["top"]}, {"start": start | {"linear_level_db": {}}}):
+        assert confirmed not in told(optimisation._checked(document | {"verification": checked | changes}))
+    checked["designs"] = [best, {"failure": "no equilibrium"}]
+    failed = "The transient of the design 'other' cannot be solved: no equilibrium"
+    assert told(optimisation._checked(document)) == [failed, *lines]
+
+
+@pytest.mark.parametrize(("scale", "passed"), [(1e-9, True), (1.0, False)])
+def test_proofs_of_a_sweep_are_those_of_its_worst_point(scale: float, passed: bool) -> None:
+    points = [
+        {"settings": {"speed": f"{n} rpm", "torque": "7 N m"}, "steps": 100 + n, "load": {"residual": scale * 0.25 * n}}
+        | {"energy_error": scale * (4 - n) * 0.25}
+        for n in (1, 2, 3)
+    ]
+    energy, forces = first_page._point_proofs(SimpleNamespace(points=points))  # type: ignore[arg-type]
+    assert energy.text.startswith(
+        f"Sweep: the energy balance of 3 points closes to {0.75 * scale:.0e} or better; worst at speed=1 rpm, torque=7 "
+        "N m, over 101 steps (bound: "
+    )
+    assert forces.text.startswith(
+        f"Sweep: at the operating points forces balance to {0.75 * scale:.0e} of the largest load or better; worst at "
+        "speed=3 rpm, torque=7 N m (bound: "
+    )
+    assert (energy.passed, forces.passed) == (passed, passed)
+    assert (energy.link, forces.link) == (("section Sweep",), ("section Sweep",))
+
+
+def test_superposed_motions_with_what_they_leave_out() -> None:
+    closed = {"stable": True, "period_s": 0.00125, "residual": 1e-12, "error": 2e-5, "largest_multiplier": 0.1}
+    excitation = {"name": "mesh a → b"} | closed
+    pair = {"driver": "a", "driven": "b", "neglected_force_n": 12.5, "neglected_part": 0.0375}
+    line = {"amplitude_m_per_s2": 0.125, "frequency_hz": 812.5, "name": "2× mesh"}
+    quiet = {"name": "side", "neglected_rms_m_per_s2": 0.5}
+    sensors = [{"name": "top", "neglected_rms_m_per_s2": 0.75, "neglected_lines": [line]}, quiet]
+    document = {"excitations": [excitation], "hunting_mesh_cycles": 1519, "gear_pairs": [pair], "sensors": sensors}
+    said = steady_state._motion(document, "", ())
+    lines = [next(said) for _ in range(6)]
+    assert "superposed" in str(lines[0])
+    assert str(lines[1]).startswith("The same teeth meet after 1519 mesh cycles: ")
+    assert lines[2:] == [
+        # A disturbance that falls to a tenth over a period does so in 1.25 ms.
+        "  mesh a → b: period 1.25 ms, stable, the slowest disturbance falls to a tenth in 0.00125 s; closes to 1e-12, "
+        "changes by 2e-05 with steps half as long",
+        "  left out in a → b: 12.5 N rms, 3.75 % of its varying force",
+        "  by that at top, estimated: 0.75 m/s² rms, highest 0.125 m/s² at 812.5 Hz (2× mesh)",
+        "  by that at side, estimated: 0.5 m/s² rms",
+    ]
+    undecided = closed | {"stable": False, "stability": "not decided", "largest_multiplier_error": 0.03, "switches": 4}
+    assert steady_state._proof(undecided, "") == (
+        "period 1.25 ms, stability not decided (largest Floquet multiplier 0.1 ± 0.03); closes to 1e-12, changes by "
+        "2e-05 with elements half as long"
+    )
+
+
+def test_bearings_and_walls_that_change_lines_most() -> None:
+    """Each table has the parameters of its kind alone, the strongest first, by the level of either step."""
+
+    def influence(name: str, kind: str, level: float, **more: Any) -> Document:
+        row = {"level_db": level, "first_order_db": 0.5 * level, "reverse_level_db": -0.25 * level} | more
+        other = dict.fromkeys(row, 99.0)
+        step = {"parameter": name, "kind": kind, "step_words": f"+{len(name)} %", "reverse_words": "reverse"}
+        return step | {"lines": [other, row], "sound": [row, other], "sound_a": row}
+
+    strengths = [
+        influence("rib", "thickness", 0.5),
+        influence("wall", "thickness", -1.5, first_order_is_off=True),
+        influence("front", "bearing stiffness", 0.25, reverse_level_db=-3.0),
+        influence("back", "bearing preload", 1.0),
+    ]
+    line = {"sensor": "top", "frequency_hz": 812.0, "ranked": True}
+    document = {"sensitivity": strengths, "sensor_lines": [line | {"sensor": "side", "ranked": False}, line]}
+    heads = "parameter | of | step | level [dB] | first order [dB] | reverse | level [dB]"
+    tables = [
+        [
+            heads,
+            "wall | thickness | +4 % | -1.50 | -0.75 (off) | reverse | +0.38",
+            "rib | thickness | +3 % | +0.50 | +0.25 | reverse | -0.12",
+        ],
+        [
+            heads,
+            "front | stiffness | +5 % | +0.25 | +0.12 | reverse | -3.00",
+            "back | preload | +4 % | +1.00 | +0.50 | reverse | -0.25",
+        ],
+    ]
+
+    def expected(quantity: str) -> list[str]:
+        captions = (f"[Change of {quantity} by a step of one parameter of {of}]" for of in ("the housing", "a bearing"))
+        return [line for caption, rows in zip(captions, tables, strict=True) for line in (caption, *rows)]
+
+    lines = told(operating_point._lines(document | {"lines_without": "bearing rates"}))
+    at = lines.index("[Change of the line of top at 812 Hz by a step of one parameter of the housing]")
+    assert lines[at:-2] == expected("the line of top at 812 Hz")
+    assert lines[-2].startswith("(off): ")
+    assert lines[-1] == (
+        "In these changes damping ratios, friction of the teeth and mean mesh forces are kept; the case fixes bearing "
+        "rates, which do not follow the walls"
+    )
+    del document["sensor_lines"]
+    loud = [{"frequency_hz": 633.0, "ranked": True}, {"frequency_hz": 977.0, "ranked": False}]
+    for second, quantity in (
+        (True, "the A-weighted sound power of 2 lines together"),
+        (False, "the sound power at 633 Hz"),
+    ):
+        loud[1]["ranked"] = second
+        lines = told(operating_point._lines(document | {"loudest_lines": loud, "lines_without": None}))
+        at = lines.index(f"[Change of {quantity} by a step of one parameter of the housing]")
+        assert lines[at:-2] == expected(quantity)
+        assert lines[-1].endswith("mean mesh forces are kept, and the radiating surface is held")
+
+
+def test_planets_over_a_turn_of_their_carrier() -> None:
+    """K_γ over the turn is the number of planets times the largest share of any of them."""
+    planets = [{"name": f"p{n}", "pin_error_m": error} for n, error in enumerate([[0.0, 0.0], [3e-6, -4e-6]])]
+    one = {"name": "epicyclic", "mesh_load_factor": 1.0625, "planets": planets, "members": []}
+    turn = {"sets": [{"name": "epicyclic", "load_share": [[0.5, 0.375, 0.5], [0.5, 0.625, 0.5]]}]}
+    document = {"carrier_turns": [turn], "planetary": [one | {"planets": []}]}
+    assert told(operating_point._planetary(document)) == [
+        "Mesh load factor K_γ of epicyclic: 1.0625 (1 where all planets carry alike)",
+        "Over a turn of the carrier the load shares are 0.3750 to 0.6250, K_γ at most 1.2500",
+    ]
+    assert told(operating_point._pin_error_note({"planetary": [one]})) == [
+        "Deflections are from the places of pins without errors, which they contain: p1 5 µm"
+    ]
+
+
+def test_how_far_lines_and_sidebands_are_followed() -> None:
+    meshes = [
+        {"name": name, "harmonics": within, "most_harmonics": most, "frequency_hz": hertz}
+        for name, within, most, hertz in (("a → b", 3, 5, 812.5), ("c → d", 1, 1, 633.25), ("e → f", 0, 4, 9876.0))
+    ]
+    carriers = [
+        {"name": name, "frequency_hz": hertz, "turns": turns, "outermost_share": share}
+        for name, hertz, turns, share in (("carrier", 12.5, 7, 0.0375), ("other", 3.75, 2, 0.9e-4))
+    ]
+    left_out = "is left out, above 2500 Hz, up to which all modes of the housing are there: raise "
+    left_out += "housing.frequency_limit for it."
+    forced = "turns, which its bores and frames force; the outermost have"
+    assert told(mesh_lines._limit_sentences({"limit_hz": 2500.0, "meshes": meshes, "carriers": carriers})) == [
+        f"Mesh frequency of a → b: 812.5 Hz and its harmonics up to 3×; 4× {left_out}",
+        "Mesh frequency of c → d: 633.25 Hz; higher ones are left out.",
+        f"Mesh frequency of e → f: 9876 Hz; 1× {left_out}",
+        f"Sidebands by carrier, 12.5 Hz, are followed up to k = ±7 {forced} 3.75 % of the highest line.",
+        f"Sidebands by other, 3.75 Hz, are followed up to k = ±2 {forced} less than 0.01 % of the highest line.",
+    ]
+    assert mesh_lines._beside_harmonic({"harmonic": 2, "turns": {"carrier": -1.0}}) == "2f_m-1f_c"
+    assert mesh_lines._beside_harmonic({"cause": "1× shaft"}) == "1× shaft"
+
+
+@pytest.mark.parametrize(
+    ("aim", "words", "values"),
+    [
+        ({"kind": "harmonics", "weights": {1: 0.75, 2: 0.25}}, "weighted harmonics of the mesh frequency (0.75 at 1, "
+         "0.25 at 2)", ("3.250 µm", "4.500 µm", "1.125 µm")),
+        ({"kind": "sensor", "sensor": "top", "given": True}, "level at top by transmission error and load shuttling, "
+         "rms over the mesh harmonics", ("3.25e-06 m/s²", "4.5e-06 m/s²", "1.125e-06 m/s²")),
+        ({"kind": "sensor", "sensor": "top", "given": False}, "level at top, the loudest sensor, by transmission error "
+         "and load shuttling, rms over the mesh harmonics", ("3.25e-06 m/s²", "4.5e-06 m/s²", "1.125e-06 m/s²")),
+    ],
+)  # fmt: skip
+def test_the_best_relief_for_another_aim(aim: Document, words: str, values: tuple[str, str, str]) -> None:
+    best = {"torque_n_m": 77.0, "amount_m": 12.5e-6, "length_m": 2.25e-3, "shape": "linear"}
+    best |= {"peak_to_peak_without_relief_m": 4.75e-6, "peak_to_peak_as_given_m": 3.5e-6, "peak_to_peak_m": 1.25e-6}
+    best |= {"driver_start_roll_angle_rad": 0.4, "driven_start_roll_angle_rad": 0.4}
+    best["aim"] = aim | {"as_given": 3.25e-6, "without_relief": 4.5e-6, "best": 1.125e-6}
+    pair = {"optimal_tip_relief": best, "gears": [{"tip_relief": None}] * 2}
+    pair["transmission_error_m"] = {"over_hunting_period": None}
+    lines = gears._best_relief(pair)
+    given, without, least = values
+    assert lines[0] == "Without relief 3.50 µm peak to peak at 77 N·m"
+    assert lines[1] == f"Aim, the {words}: {given} as given, {without} without relief, {least} with the best"
+    assert lines[-1] == (
+        "Best linear relief: 0.0125 mm on both gears from 22.92° of roll, over 2.25 mm of the line of action: 1.25 µm "
+        "peak to peak"
+    )
+    assert len(lines) == (4 if aim["kind"] == "harmonics" else 3)
+    best["length_m"] = None
+    assert gears._best_relief(pair)[1:] == [f"No tip relief, the same on both gears, lowers the {words}: leave it out"]
+
+
+def test_a_planned_survey() -> None:
+    sensor = {"point": "p1", "position_m": [0.0125, -0.25, 0.5], "direction": [0.0, 0.0, -1.0], "independence": 0.875}
+    hammer = {"position_m": [0.1, 0.2, 0.3], "direction": [0.6, 0.8, 0.0], "least_residue": 0.0375}
+    document = {"sensors": [sensor], "candidates": 40, "modes": [1, 2, 3], "modes_hz": [500.0, 700.0, 900.0]}
+    document |= {"auto_mac_largest": 0.125, "condition": 3.5, "hammer": [hammer, hammer | {"direction": [0, 1.0, 0]}]}
+    excited = "the least excited mode has 3.8 % of its largest driving-point residue"
+    assert told(survey.sections(document)[0].content) == [
+        "[]",
+        "point | x [mm] | y [mm] | z [mm] | direction | independence",
+        "p1 | 12.5 | -250.0 | 500.0 | -z | 0.875",
+        "1 sensor of 40 places for 3 modes up to 900 Hz: modes look at most 0.125 alike (auto-MAC), condition 3.5.",
+        f"Hammer: at (100.0, 200.0, 300.0) mm along 0.600 0.800 0.000: {excited}",
+        f"and at (100.0, 200.0, 300.0) mm along y: {excited}",
+    ]
+
+
+def test_highest_damped_responses_of_many_meshes() -> None:
+    """The highest peak is at a mode that hardly anything damps, and left out: of the others the highest is told."""
+
+    def peaks(*pairs: tuple[float, float]) -> list[Document]:
+        return [{"frequency_hz": hertz, "amplitude": amplitude} for hertz, amplitude in pairs]
+
+    modes = [
+        {"damped_frequency_hz": 500.0, "damping_ratio": 0.0},
+        {"damped_frequency_hz": 900.0, "damping_ratio": 0.05},
+    ]
+    forces = {"first": peaks((500.0, 9e8), (900.0, 2.5e6)), "second": peaks((905.0, 7.5e6))}
+    rows: list[Document] = [
+        {
+            "excitation": "a → b",
+            "mesh_force_n": forces,
+            "sensor_acceleration_m_per_s2": {"top": peaks((500.0, 1e6)), "side": peaks((910.0, 3e6))},
+        },
+        {
+            "excitation": "c → d",
+            "mesh_force_n": {"first": forces["first"]},
+            "sensor_acceleration_m_per_s2": {"top": [], "side": peaks((700.0, 4e6), (800.0, 5e6))},
+        },
+    ]
+    assert told(system._peaks_of_all(rows, modes)) == [
+        "Highest response to the error of each mesh at any frequency: Hz, and in brackets by 1 µm:",
+        "[]",
+        "by 1 µm of | mesh force [N/µm] | top [m/s²/µm] | side [m/s²/µm]",
+        "a → b | 905 (7.5) at second | undamped | 910 (3)",
+        "c → d | 900 (2.5) at first | none | 800 (5)",
+    ]
+
+
+def test_a_single_growing_mode_grows() -> None:
+    growing = {"frequency_hz": 812.5, "kind": "rotor", "where": "input", "whirl": 1.0, "damping_ratio": -0.0125}
+    fed = [{"name": f"bearing {n}", "share": 0.5 / n} for n in (1, 2, 4, 5)]
+    growing |= {"doubling_time_s": 0.125, "fed_by": fed}
+    assert told(system._stability({"stable": False, "growing": [growing]})) == [
+        "UNSTABLE: 1 mode grows from any disturbance.",
+        "  812.50 Hz (rotor: input ↺), damping ratio -0.013, doubling in 0.125 s; fed by bearing 1 (0.5), bearing 2 "
+        "(0.25), bearing 4 (0.12)",
+    ]
+    assert told(system._stability({"stable": False, "growing": [growing | {"fed_by": []}] * 2}))[::2] == [
+        "UNSTABLE: 2 modes grow from any disturbance.",
+        "  812.50 Hz (rotor: input ↺), damping ratio -0.013, doubling in 0.125 s; fed by nothing single",
+    ]
+
+
+def test_error_left_by_the_basis_and_friction_of_teeth() -> None:
+    bands = [
+        {"to_hz": hertz, "sensors": [{"largest": share}, {"largest": 0.5 * share}]}
+        for hertz, share in ((1000.0, 0.0125), (2500.0, 0.075))
+    ]
+    assert motion._basis_error({"basis_error": bands}) == [
+        "Error left by the modal basis, at the worst sensor and frequency: 1.2 % up to 1000 Hz, 7.5 % up to 2500 Hz."
+    ]
+    orders: list[Document] = [
+        {"signal": signal, "highest_amplitude": amplitude}
+        for signal, amplitude in (("b", 1.0), ("a", 3.0), ("b", 9.0), ("b", 4.0), ("b", 2.0), ("a", 5.0))
+    ]
+    highest = [(row["signal"], row["highest_amplitude"]) for row in motion._highest_orders(orders)]
+    assert highest == [("b", 9.0), ("b", 4.0), ("b", 2.0), ("a", 5.0), ("a", 3.0)]
