@@ -1,11 +1,13 @@
 """Sentences and tables of what few results have, word for word: documents by hand, all of their numbers distinct."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from gearwhine.coupling.sweep.missed_peaks import MissedPeak
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results import (
     comparison,
@@ -15,12 +17,15 @@ from gearwhine.results import (
     mesh_lines,
     operating_point,
     optimisation,
+    sound,
     steady_state,
     survey,
     system,
     update,
 )
 from gearwhine.results import run as motion
+from gearwhine.results_folder import export_sections
+from gearwhine.sweep.resolution import peak_warnings
 
 Document = dict[str, Any]
 
@@ -72,7 +77,7 @@ def test_condition_of_gears_with_the_reasons_of_what_is_undefined() -> None:
 
 def _updated(**changes: Any) -> Document:
     stiffness = {"name": "support.k", "before": 2e8, "after": 1.5e8, "standard_deviation": 1.25e7}
-    stiffness |= {"written_unit": "N/µm", "written_unit_in_si": 1e6, "left_of_prior_spread": 0.23}
+    stiffness |= {"written_unit": "N/µm", "written_unit_in_si": 1e6, "left_of_prior_spread": 0.996}
     pair = {"mode": 3, "measured_hz": 812.0, "before_hz": 850.5, "before_error_percent": 4.74, "model_hz": 808.25}
     mode = {"measured_hz": 633.0, "predicted_hz": 640.5, "error_percent": 1.18, "standard_deviation_percent": 2.25}
     return {
@@ -121,8 +126,8 @@ def test_a_fitted_housing_with_all_its_tests() -> None:
     assert told(update._content(_updated())) == [
         "[]",
         "parameter | before | after | give or take | of the prior's | ",
-        "support.k | 200 N/µm | 150 N/µm | 12.5 N/µm | 23 % | at the end of its range",
-        "b | 200 N/µm | 150 N/µm | 12.5 N/µm | 23 % | ",
+        "support.k | 200 N/µm | 150 N/µm | 12.5 N/µm | 100 % | at the end of its range",
+        "b | 200 N/µm | 150 N/µm | 12.5 N/µm | 100 % | ",
         "[]",
         "mode | measured [Hz] | before [Hz] | error | after [Hz] | error",
         "3 | 812 | 850.5 | +4.74 % | 808.2 | -0.46 %",
@@ -144,6 +149,7 @@ def test_a_fitted_housing_with_all_its_tests() -> None:
         "The data tell 1 combination of the 5 numbers better than the prior.",
         *_RANDOM,
     ]
+    assert [table.caption for table in chapter.tables] == ["", "Each mode predicted by a fit to the others"]
 
 
 @pytest.mark.parametrize(
@@ -175,6 +181,7 @@ def test_comparison_by_shapes_with_modes_of_every_kind() -> None:
         "close_modes": [
             {"modes": [11, 12], "measured_modes": [13, 14], "largest_angle_deg": 12.3},
             {"modes": [15], "measured_modes": [16, 17], "largest_angle_deg": None},
+            {"modes": [18, 19], "measured_modes": [20, 21], "largest_angle_deg": float("nan")},
         ],
         "auto_mac_off_diagonal": {"measured": 0.22, "model": 0.99},
         "phase_collinearity": [0.99, 0.12, 0.98, 0.23],
@@ -200,6 +207,7 @@ def test_comparison_by_shapes_with_modes_of_every_kind() -> None:
         "The survey cannot tell model modes 9 and 10 apart (MAC 0.91): it needs more points.",
         "Modes 11, 12 are close and compared as one space: measured 13, 14, largest angle 12.3°.",
         "Modes 15 are close and compared as one space: measured 16, 17.",
+        "Modes 18, 19 are close and compared as one space: measured 20, 21.",
         "Largest MAC between different modes: 0.22 of the test, 0.99 of the model; a survey with more points would "
         "tell modes apart better.",
         "Likeness of 3 responses over 801 lines from 100 to 2600 Hz (FRAC): mean 0.55, from 0.25 to 0.75; a resonance "
@@ -276,7 +284,7 @@ def test_superposed_motions_with_what_they_leave_out() -> None:
     pair = {"driver": "a", "driven": "b", "neglected_force_n": 12.5, "neglected_part": 0.0375}
     line = {"amplitude_m_per_s2": 0.125, "frequency_hz": 812.5, "name": "2× mesh"}
     quiet = {"name": "side", "neglected_rms_m_per_s2": 0.5}
-    sensors = [{"name": "top", "neglected_rms_m_per_s2": 0.75, "neglected_lines": [line]}, quiet]
+    sensors = [{"name": "top", "neglected_rms_m_per_s2": 0.75, "neglected_lines": [line, line]}, quiet]
     document = {"excitations": [excitation], "hunting_mesh_cycles": 1519, "gear_pairs": [pair], "sensors": sensors}
     said = steady_state._motion(document, "", ())
     lines = [next(said) for _ in range(6)]
@@ -313,7 +321,7 @@ def test_bearings_and_walls_that_change_lines_most() -> None:
         influence("back", "bearing preload", 1.0),
     ]
     line = {"sensor": "top", "frequency_hz": 812.0, "ranked": True}
-    document = {"sensitivity": strengths, "sensor_lines": [line | {"sensor": "side", "ranked": False}, line]}
+    document: Document = {"sensitivity": strengths, "sensor_lines": [line | {"sensor": "side", "ranked": False}, line]}
     heads = "parameter | of | step | level [dB] | first order [dB] | reverse | level [dB]"
     tables = [
         [
@@ -332,7 +340,15 @@ def test_bearings_and_walls_that_change_lines_most() -> None:
         captions = (f"[Change of {quantity} by a step of one parameter of {of}]" for of in ("the housing", "a bearing"))
         return [line for caption, rows in zip(captions, tables, strict=True) for line in (caption, *rows)]
 
+    for place, row in enumerate(document["sensor_lines"]):
+        row |= {"excitation": f"{place + 1}× mesh", "amplitude_m_per_s2": 0.125 + place}
     lines = told(operating_point._lines(document | {"lines_without": "bearing rates"}))
+    assert lines[:4] == [
+        "[Sensors' lines at mesh harmonics, linear about the mean load]",
+        "sensor | excitation | [Hz] | [m/s²]",
+        "side | 1× mesh | 812.0 | 0.125",
+        "top | 2× mesh | 812.0 | 1.12",
+    ]
     at = lines.index("[Change of the line of top at 812 Hz by a step of one parameter of the housing]")
     assert lines[at:-2] == expected("the line of top at 812 Hz")
     assert lines[-2].startswith("(off): ")
@@ -341,7 +357,11 @@ def test_bearings_and_walls_that_change_lines_most() -> None:
         "rates, which do not follow the walls"
     )
     del document["sensor_lines"]
-    loud = [{"frequency_hz": 633.0, "ranked": True}, {"frequency_hz": 977.0, "ranked": False}]
+    loud = [
+        {"excitation": f"{n}× mesh", "frequency_hz": hertz, "sound_power_db": 80.5 + n, "sound_power_db_a": 70.25 - n}
+        | {"ranked": n == 1}
+        for n, hertz in ((1, 633.0), (2, 977.0))
+    ]
     for second, quantity in (
         (True, "the A-weighted sound power of 2 lines together"),
         (False, "the sound power at 633 Hz"),
@@ -349,6 +369,12 @@ def test_bearings_and_walls_that_change_lines_most() -> None:
         loud[1]["ranked"] = second
         lines = told(operating_point._lines(document | {"loudest_lines": loud, "lines_without": None}))
         at = lines.index(f"[Change of {quantity} by a step of one parameter of the housing]")
+        assert lines[:at] == [
+            "[Loudest mesh harmonics, A-weighted, linear about the mean load: sound power level re 1 pW]",
+            "excitation | [Hz] | L_W [dB] | L_WA [dB]",
+            "1× mesh | 633.0 | 81.5 | 69.2",
+            "2× mesh | 977.0 | 82.5 | 68.2",
+        ]
         assert lines[at:-2] == expected(quantity)
         assert lines[-1].endswith("mean mesh forces are kept, and the radiating surface is held")
 
@@ -419,6 +445,15 @@ def test_the_best_relief_for_another_aim(aim: Document, words: str, values: tupl
     )
     assert len(lines) == (4 if aim["kind"] == "harmonics" else 3)
     best["length_m"] = None
+    relief = {"amount_m": 2.25e-5, "start_roll_angle_rad": 0.4}
+    relieved = pair | {"gears": [{"tip_relief": relief}, {"tip_relief": None}]}
+    relieved["harris_map"] = {"quietest_torque_n_m": 55.0, "torque_n_m": [11.0, 66.0]}
+    assert gears._best_relief(relieved)[:2] == [
+        "The relief of 0.0225/0 mm from 22.92° leaves 3.50 µm peak to peak at 77 N·m, none 4.75 µm",
+        "  it is quietest near 55 N·m",
+    ]
+    relieved["harris_map"] = {"quietest_torque_n_m": 11.0, "torque_n_m": [11.0, 66.0]}
+    assert "quietest" not in gears._best_relief(relieved)[1]
     assert gears._best_relief(pair)[1:] == [f"No tip relief, the same on both gears, lowers the {words}: leave it out"]
 
 
@@ -444,12 +479,12 @@ def test_highest_damped_responses_of_many_meshes() -> None:
     def peaks(*pairs: tuple[float, float]) -> list[Document]:
         return [{"frequency_hz": hertz, "amplitude": amplitude} for hertz, amplitude in pairs]
 
-    modes = [
+    modes: list[Mapping[str, Any]] = [
         {"damped_frequency_hz": 500.0, "damping_ratio": 0.0},
         {"damped_frequency_hz": 900.0, "damping_ratio": 0.05},
     ]
     forces = {"first": peaks((500.0, 9e8), (900.0, 2.5e6)), "second": peaks((905.0, 7.5e6))}
-    rows: list[Document] = [
+    rows: list[Mapping[str, Any]] = [
         {
             "excitation": "a → b",
             "mesh_force_n": forces,
@@ -485,6 +520,21 @@ def test_a_single_growing_mode_grows() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("mode", "words", "in_only_set"),
+    [
+        ({"kind": "rigid", "where": "a", "planetary": "planet: c"}, "rigid", "rigid"),
+        ({"kind": "rotor", "where": "a", "planetary": "planet: c"}, "planet (planetary set of c)", "planet"),
+        ({"kind": "rotor", "where": "a", "whirl": -1.0}, "rotor: a ↻", "rotor: a ↻"),
+        ({"kind": "rotor", "where": "a", "whirl": 0.0}, "rotor: a", "rotor: a"),
+        ({"kind": "mesh", "where": "a"}, "mesh", "mesh"),
+        ({"kind": "housing", "where": "housing"}, "housing", "housing"),
+    ],
+)
+def test_names_of_modes(mode: Document, words: str, in_only_set: str) -> None:
+    assert (system._named(mode), system._named_in_only_set(mode)) == (words, in_only_set)
+
+
 def test_error_left_by_the_basis_and_friction_of_teeth() -> None:
     bands = [
         {"to_hz": hertz, "sensors": [{"largest": share}, {"largest": 0.5 * share}]}
@@ -493,9 +543,134 @@ def test_error_left_by_the_basis_and_friction_of_teeth() -> None:
     assert motion._basis_error({"basis_error": bands}) == [
         "Error left by the modal basis, at the worst sensor and frequency: 1.2 % up to 1000 Hz, 7.5 % up to 2500 Hz."
     ]
-    orders: list[Document] = [
+    orders: list[Mapping[str, Any]] = [
         {"signal": signal, "highest_amplitude": amplitude}
         for signal, amplitude in (("b", 1.0), ("a", 3.0), ("b", 9.0), ("b", 4.0), ("b", 2.0), ("a", 5.0))
     ]
     highest = [(row["signal"], row["highest_amplitude"]) for row in motion._highest_orders(orders)]
     assert highest == [("b", 9.0), ("b", 4.0), ("b", 2.0), ("a", 5.0), ("a", 3.0)]
+
+
+def test_a_run_over_speeds_with_its_orders() -> None:
+    order = {"signal": "top", "name": "1× mesh", "highest_amplitude": 0.125, "unit": "m/s²", "level_db": 98.25}
+    order |= {"order": 28, "at_rpm": 3456.0, "frequency_hz": 1612.0}
+    overall = {"signal": "a → b", "highest_rms": 7.5, "unit": "N", "level_db": 137.5, "at_rpm": 2345.0}
+    signature = {"orders": [order], "overall": [overall], "from_rpm": 1500.0, "to_rpm": 4500.0}
+    signature |= {"trusted_below_hz": 2600.0, "window_turns": 12}
+    peak = {"frequency_hz": 812.0, "amplitude_m_per_s2": 0.375}
+    document: Document = {"sensors": [{"name": "top", "rms_m_per_s2": 0.75, "peaks": [peak]}]}
+    document["run_signature"] = signature
+    document |= {"run": {"accelerating_torque_n_m": {"least": 1.5, "largest": 2.25}, "train_inertia_kg_m2": 0.0375}}
+    document |= {
+        "steps": 640,
+        "method": "exact",
+        "steps_per_second": 25600.0,
+        "energy_error": 1.5e-7,
+        "coordinates": 42,
+    }
+    document["sound_not_solved"] = "no sound"
+    lines = told(motion._content(document | {"trusted_below_hz": 2600.0}))
+    assert lines[1].startswith("sensor | rms")
+    assert lines[2:] == [
+        "top | 0.75",
+        "Beside the load, 1.5 to 2.25 N·m at the first driver accelerate the train, of 0.0375 kg m² there",
+        "[Highest overall levels along the run]",
+        "signal | highest [rms] | unit | level [dB] | at [rpm]",
+        "a → b | 7.5 | N | 137.5 | 2345",
+        "[Highest of the orders along the run]",
+        "signal | order | highest [peak] | unit | level [dB] | at [rpm] | that is [Hz]",
+        "top | 1× mesh | 0.125 | m/s² | 98.2 | 3456 | 1612",
+        "Levels are of rms values, in dB re 1 µm/s² and 1 µN.",
+        "Speed from 1500 to 4500 rpm between the first and the last spectrum",
+        "Orders of sensors up to 2600 Hz, where the model is complete",
+        "Orders are fitted to windows of 12 turns of the leading shaft: a resonance passed within one turn is lower "
+        "than it was",
+        "Transient: 640 exact elements, 25600 a second; energy balance closes to 1.5e-07; 42 modal coordinates",
+        "no sound",
+    ]
+    mean = told(motion._content({key: document[key] for key in ("sensors", "run")}))
+    assert mean[1].endswith(" | means over the run: Hz (m/s², peak)")
+    assert mean[2] == "top | 0.75 | 812 (0.38)"
+    assert mean[3].startswith("Spectrum of the whole run: means over its speeds")
+    order["unit"] = "N"
+    assert not any(line.startswith("Orders of sensors") for line in told(motion._content(document)))
+
+
+def test_peaks_that_a_sweep_passes_by() -> None:
+    numbers = {"damping_ratio": 0.01, "level_db": 1.0, "found_over_linear_db": 2.0, "half_width_rpm": 6.25}
+    first = MissedPeak({"torque": "7 N m"}, 3000.0, 3200.0, 3123.456, line="1× mesh", frequency_hz=812.25,
+                       mode="rotor: a", output="top", rise_db=4.25, **numbers)  # fmt: skip
+    message = (
+        "between 3000 and 3200 rpm, torque=7 N m 1× mesh meets the mode at 812.2 Hz (rotor: a), whose half-power "
+        "bandwidth of 12 rpm is narrower than the spacing of the points: by the linear response {} peaks at 3123.5 "
+        "rpm, 4.2 dB above the louder point{}; add {}"
+    )
+    # Speeds to a tenth of the half-width, 0.625 rpm, and those within half of it are one.
+    for peaks, words in (
+        ([first], ("top", "", "3123.5 rpm")),
+        ([replace(first, output="sound"), replace(first, speed_rpm=3125.0), replace(first, speed_rpm=2987.04)],
+         ("the sound power", "; 2 more in the table", "2987 rpm, 3123.5 rpm")),
+    ):  # fmt: skip
+        (warned,) = peak_warnings(peaks)
+        assert warned["message"] == message.format(*words)
+        assert [f"{speed:g} rpm" for speed in warned["speeds_rpm"]] == words[-1].split(", ")
+    assert peak_warnings([]) == []
+
+
+def test_exported_files_by_their_kinds() -> None:
+    heard = {"file": "top.wav", "complete_below_hz": 2600.0, "seconds": 1.5, "periods": 7}
+    sensor = {"sensor": "top", "full_scale_m_per_s2": 20.0, "peak_m_per_s2": 12.345, "rms_m_per_s2": 0.0625}
+    microphone = {"microphone": "ear", "full_scale_pa": 0.5, "peak_pa": 0.25, "rms_pa": 0.125}
+    document = {
+        "tables": [{"file": "a.csv", "rows": 12}],
+        "universal_files": [{"file": "b.uff", "functions": 34}],
+        "sounds": [heard | sensor, heard | {"file": "ear.wav"} | microphone],
+    }
+    (section,) = export_sections(document)
+    assert told(section.content) == [
+        "[Tables (CSV)]",
+        "file | rows",
+        "a.csv | 12",
+        "[Universal files, datasets 58]",
+        "file | functions",
+        "b.uff | 34",
+        "[Sounds of sensors and microphones (WAV)]",
+        "file | sensor or microphone | unit | full scale | peak | rms | complete below [Hz] | length [s] | periods",
+        "top.wav | top | m/s² | 20 | 12.3 | 0.0625 | 2600 | 1.500 | 7",
+        "ear.wav | ear | Pa | 0.5 | 0.25 | 0.125 | 2600 | 1.500 | 7",
+    ]
+
+
+def test_lines_whose_sound_is_left_out() -> None:
+    lines = [{"name": f"{n}× a -> b", "frequency_hz": 100.0 * n, "share": 0.125 / n} for n in (1, 2, 3, 4, 5)]
+    document = {"left_out": lines, "covered": 0.75, "highest_frequency_hz": 2600.0}
+    named = "1× a → b at 100 Hz (12.5 %), 2× a → b at 200 Hz (6.25 %), 3× a → b at 300 Hz (4.17 %) and 2 more"
+    estimated = f"Left out: 25 % of the power by the estimate, most of it {named}"
+    assert sound.left_out_sentence(document) == estimated
+    unknown = [lines[0] | {"share": None, "frequency_hz": 3210.0}]
+    beyond = "1× a → b at 3210 Hz, where the housing's modes are not complete"
+    assert sound.left_out_sentence(document | {"left_out": unknown}) == f"Left out: {beyond}"
+    assert sound.left_out_sentence(document | {"left_out": [*lines, *unknown]}) == f"{estimated}; {beyond}"
+    assert sound.left_out_sentence(document | {"covered": 1.0}) == ""
+    assert sound.left_out_sentence(document | {"covered": 1.0, "highest_frequency_hz": 450.0}) != ""
+    proven = {"known_source_error": 0.0225, "known_source_rms": 0.0125}
+    proven["microphones"] = [{"known_source_error": value} for value in (0.0375, 0.0625, None)]  # type: ignore[assignment]
+    assert sound.known_source_sentence(proven) == (
+        "Proof by a known source inside: its pressure on the surface is off by at most 2.25 %, 1.25 % in the root mean "
+        "square, 6.25 % at the microphones"
+    )
+
+
+def test_forces_of_a_mesh_on_both_flanks() -> None:
+    other = {"mean_force_n": 12.0, "peak_force_n": 34.0, "net_mean_force_n": 544.0, "both_apart_fraction": 0.0125}
+    pair = {"driver": "a", "driven": "b", "mean_force_n": 556.0, "peak_force_n": 789.0, "contact_loss_fraction": 0.0375}
+    forces = "mean force 556 N, peak 789 N, apart 3.75 % of the time"
+    both = "mean 12 N, peak 34 N; both together 544 N, and apart 1.25 % of the time"
+    pairs = [pair, pair | {"flanks": "back", "other_flanks": other}, pair | {"flanks": "drive", "other_flanks": other}]
+    pairs[0] = pair | {"friction": {"mean_power_w": 7.125}}
+    assert told(motion._content({"gear_pairs": pairs})) == [
+        f"Gear mesh a → b: {forces}",
+        "  friction between its teeth takes 7.12 W",
+        f"Gear mesh a → b on its back flanks: {forces}; its drive flanks: {both}",
+        f"Gear mesh a → b: {forces}; its back flanks: {both}",
+    ]
