@@ -10,10 +10,12 @@ import pytest
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results import (
+    check,
     comparison,
     condition,
     first_page,
     gears,
+    housing,
     mesh_lines,
     operating_point,
     optimisation,
@@ -674,3 +676,101 @@ def test_forces_of_a_mesh_on_both_flanks() -> None:
         f"Gear mesh a → b on its back flanks: {forces}; its drive flanks: {both}",
         f"Gear mesh a → b: {forces}; its back flanks: {both}",
     ]
+
+
+def test_coupled_modes_of_a_planetary_set() -> None:
+    def mode(kind: str, hertz: float, **more: Any) -> Document:
+        energy = {"housing": 0.125, "rotor": 0.5, "torsion": 0.25, "residual": 0.0, "mesh": 0.0625, "axial": 0.03}
+        one = {"kind": kind, "frequency_hz": hertz, "damping_ratio": 0.0125, "where": "input", "energy": energy}
+        return one | {"damped_frequency_hz": hertz} | more
+
+    strained = {"kind": "gear_meshes", "name": "a → b", "share": 0.75}
+    turning = {"turning_frequency_hz": 812.5, "turning_damping_ratio": 0.0375}
+    modes = [
+        mode("rigid", 0.0, planetary="planet: c"),
+        mode("rotor", 633.25, planetary="planet: c", strained_most=strained, **turning),
+        mode("rotor", 877.5, whirl=1.0),
+        mode("residual", 988.0),
+        mode("rotor", 5300.0),
+    ]
+    certificate = {"found": 42, "expected": 44, "zeros": 2, "max_residual": 3e-9, "sum_rule": 5e-7, "complete": True}
+    document = {"modes": modes, "trusted_below_hz": 2600.0, "mesh_phase": 0.25, "coordinates": 77, "speed_rpm": 3456.0}
+    lines = told(system._content(document | {"certificate": certificate}))
+    assert lines[0] == "77 coordinates at 3456 rpm, the first pair's teeth at 0.25 of their period"
+    assert lines[2].startswith(
+        "frequency [Hz] | damping ratio | kind | turning [Hz] | damping ratio, turning | housing"
+    )
+    assert lines[2].endswith("housing | rotor | torsion | axial | residual | teeth | strained most")
+    assert lines[3].startswith("0.00 | 0.0125 | rigid | ")
+    assert lines[4].startswith("633.25 | 0.0125 | planet | 812.50 | 0.0375 | 12 % | 50 % | 25 % | 3 % | 0 % | 6 % | ")
+    assert lines[4].endswith("teeth of a → b 75 %")
+    assert lines[5].startswith("877.50 | 0.0125 | rotor: input ↺ |  |  | 12 %")
+    assert lines[6:10] == [
+        "Shares of the kinetic energy; teeth: share of the strain energy. Whirl seen from +z: ↺ counter-clockwise, ↻ "
+        "clockwise.",
+        "Rotational, translational, planet and mixed modes: those of the planetary set of c; mixed ones are none of "
+        "the three, as where planets or the housing differ all round.",
+        "Left out: 1 residual mode, local compliance at the seats, no modes of the housing.",
+        "42 of 44 eigenvalues found, 2 of them zero; residuals up to 3e-09, sum rule kept to 5e-07.",
+    ]
+    assert lines[10] == "1 more mode above 5200 Hz."
+
+
+def test_what_a_check_says_of_measured_modes_and_bushings() -> None:
+    measured = {"frequencies_hz": [812.5, 977.25], "pairing": "dominance", "points": 12, "extent_m": [0.5, 0.25, 0.125]}
+    measured |= {"degrees_of_freedom": 36, "complex": True}
+    responses = {"of": "accelerance", "references": 2, "lines": 801, "from_hz": 100.0, "to_hz": 2600.0}
+    size = "12 points over 500 x 250 x 125 mm, 36 measured directions"
+    assert check._measured_lines(measured) == [
+        "812.5, 977.25 Hz; paired with the model's by dominance",
+        f"{size}; complex shapes",
+    ]
+    assert check._measured_lines(measured | {"complex": False})[1] == f"{size}; real shapes"
+    del measured["frequencies_hz"]
+    assert check._measured_lines(measured | {"responses": responses}) == [
+        size,
+        "responses in accelerance to 2 forces, 801 lines from 100 to 2600 Hz",
+    ]
+    bolt = {"name": "m8", "diameter_m": 0.0125, "center_m": [0.1, 0.2, 0.3]}
+    bolt |= {"stiffness_n_per_m": {"axial": 2.5e8, "shear": 1.25e8}, "damping_n_m_s_per_rad": {"tilting": 7.5}}
+    assert check._bushing_line("cover", bolt) == (
+        "cover m8 (circles of 12.5 mm at 100, 200, 300 mm): axial 2.5e+08 N/m, shear 1.25e+08 N/m, tilting 7.5 "
+        "N·m·s/rad"
+    )
+
+
+def test_refined_modes_and_those_that_carry_a_receptance() -> None:
+    steps = [{"mesh_size_m": size, "largest_error": error} for size, error in ((0.0125, 0.0375), (0.005, 0.0075))]
+    assert told(housing._refinement({"refinement": steps})) == [
+        "Refined until every mode is within its accuracy; largest estimated error by elements of 12.5 mm 3.8 %, 5 mm "
+        "0.75 %"
+    ]
+    selection = {"from": ["a", "b"], "to": ["top", "side"], "band_hz": [100.0, 2600.0], "ranking": [3, 5, 1, 2]}
+    selection |= {"keep": [3, 5], "error_left": [1.0, 0.5, 0.0225, 0.001, 0.0]}
+    assert housing._selection(selection) == (
+        "From a, b to top, side, 100 to 2600 Hz: 2 of 4 modes carry the receptance to 2.2 % of its largest: 3, 5."
+    )
+
+
+def test_what_excites_and_carries_the_loudest_lines() -> None:
+    """Mechanisms less than 10 dB below the strongest are named; the largest part, not the largest in size, leads."""
+    parts = {"transmission_error": 61.0, "load_shuttling": 68.0, "friction": 58.0, "unbalance": 57.5}
+    contributions = {
+        "housing_modes": [{"name": "housing mode 7", "share": -1.5}, {"name": "local compliance", "share": 0.875}],
+        "faces": [{"name": "top", "share": 0.625}],
+        "bearings": [],
+    }
+    line = {"frequency_hz": 812.0, "name": "1× a -> b", "sound_power_db": 81.25, "sound_power_db_a": 79.5}
+    line |= {"parts_equivalent_power_db": parts, "contributions": contributions}
+    assert [column.text(line) for column in sound.LOUDEST_COLUMNS[1:]] == [
+        "81.2",
+        "79.5",
+        "1× a → b",
+        "load shuttling, transmission error -7 dB",
+        "local, 88 %",
+        "",
+        "top, 62 %",
+    ]
+    assert sound._mode_text({"mode_share": None}) == ""
+    assert sound._mode_text({"mode_share": 0.375, "mode": None}) == "local, 38 %"
+    assert sound._mode_text({"mode_share": 0.375, "mode": 7, "mode_frequency_hz": 633.0}) == "7 at 633 Hz, 38 %"
