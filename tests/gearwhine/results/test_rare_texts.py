@@ -222,6 +222,7 @@ def test_comparison_by_shapes_with_modes_of_every_kind() -> None:
         "Model modes between the measured ones that are left out of the pairs: 7 (1818 Hz), 8 (1919 Hz).",
         "Weak evidence: a frequency at random in the band is 2.5 % (rms) from the nearest mode of the model.",
     ]
+    assert told(comparison._by_frequency({"pairing": "frequency", "pairs": [1], "unpaired_measured": []})) == []
     assert told(comparison._by_frequency({"pairing": "order"})) == [
         "Weak evidence where either side lacks a mode: all pairs above it are then shifted by one."
     ]
@@ -714,6 +715,10 @@ def test_coupled_modes_of_a_planetary_set() -> None:
         "42 of 44 eigenvalues found, 2 of them zero; residuals up to 3e-09, sum rule kept to 5e-07.",
     ]
     assert lines[10] == "1 more mode above 5200 Hz."
+    few = told(system._content(document | {"modes": modes[2:4]}))
+    assert few[2] == "frequency [Hz] | damping ratio | kind | housing | rotor | torsion | axial | residual | teeth"
+    assert few[4].startswith("Shares of the kinetic energy")
+    assert len(few) == 6  # and the one residual mode
 
 
 def test_what_a_check_says_of_measured_modes_and_bushings() -> None:
