@@ -221,7 +221,7 @@ class Module:
                     yield "factor", *self.ends(node), repr(value * factor)
             case ast.Constant(value=str(value)) if place[0] != "f-string":
                 if _KEY.fullmatch(value) or "[" in value:
-                    for other in sorted(self.words[place] - {self.piece(node)}):
+                    for other in sorted(self.words[place] - {f'"{value}"', f"'{value}'"}):
                         if ("[" in other) == ("[" in value) and (_KEY.fullmatch(other[1:-1]) or "[" in value):
                             yield "name", *self.ends(node), other
                 yield from self.units(node)

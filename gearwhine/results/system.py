@@ -826,7 +826,8 @@ def _stability(stability: Document) -> Iterator[str]:
             )
         yield sentence
         return
-    yield f"UNSTABLE: {counted(len(stability['growing']), 'mode')} grow from any disturbance."
+    growing = len(stability["growing"])
+    yield f"UNSTABLE: {counted(growing, 'mode')} grow{'s' * (growing == 1)} from any disturbance."
     for mode in stability["growing"]:
         fed = ", ".join(f"{feeder['name']} ({feeder['share']:.2g})" for feeder in mode["fed_by"][:3])
         yield (

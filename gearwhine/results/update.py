@@ -264,8 +264,8 @@ def report(document: Document) -> Section:
     before, learned = document["before"], document["identifiability"]
     sentences = [
         f"Before: {before['rms_error_percent']:.2f} % root mean square, {before['max_error_percent']:.2f} % at most.",
-        f"The data tell {learned['learned_combinations']} combinations of the {learned['parameters']} numbers better "
-        "than the prior.",
+        f"The data tell {counted(learned['learned_combinations'], 'combination')} of the {learned['parameters']} "
+        "numbers better than the prior.",
     ]
     if null := document.get("null"):
         sentences += _null(null)
