@@ -34,6 +34,7 @@ from gearwhine.results.motion import (
 )
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
+from gearwhine.results.steady_state import change_by_refining
 from gearwhine.results.summaries import Summary
 from gearwhine.results.variation import summary as summary_of_variation
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
@@ -339,8 +340,8 @@ def _proofs(summary: Summary) -> Iterator[Finding]:
     for motion in summary.motions:
         if (error := motion.get("error")) is not None and motion.get("residual") is not None:
             yield Finding(
-                f"Steady state: the motion closes {closing(motion['residual'])} and changes by {error:.0e} with "
-                f"elements half as long (bound: {_PERIODIC:.0e}); {_stability(motion)}.",
+                f"Steady state: the motion closes {closing(motion['residual'])} and {change_by_refining(motion)} "
+                f"(bound: {_PERIODIC:.0e}); {_stability(motion)}.",
                 passed=max(error, motion["residual"]) < _PERIODIC and bool(motion["stable"]),
                 link=("section Steady state",),
             )

@@ -576,8 +576,13 @@ def _proof(motion: Document, name: str) -> str:
         stability += f" (largest Floquet multiplier {motion['largest_multiplier']:.4g} ± {error:.1g})"
     return (
         f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes {closing(motion['residual'])}, "
-        f"changes by {motion['error']:.0e} with {'elements' if 'switches' in motion else 'steps'} half as long"
+        f"{change_by_refining(motion)}"
     )
+
+
+def change_by_refining(motion: Document) -> str:
+    """Say by how much a motion changes with elements, or steps of one that settles, of half the length."""
+    return f"changes by {motion['error']:.0e} with {'elements' if 'switches' in motion else 'steps'} half as long"
 
 
 def _decay(multiplier: float, period: float) -> str:

@@ -403,18 +403,18 @@ def test_how_far_lines_and_sidebands_are_followed() -> None:
         for name, within, most, hertz in (("a → b", 3, 5, 812.5), ("c → d", 1, 1, 633.25), ("e → f", 0, 4, 9876.0))
     ]
     carriers = [
-        {"name": name, "frequency_hz": hertz, "turns": turns, "outermost_share": share}
-        for name, hertz, turns, share in (("carrier", 12.5, 7, 0.0375), ("other", 3.75, 2, 0.9e-4))
+        {"name": name, "frequency_hz": hertz, "turns": turns, "outermost_turns": outermost, "outermost_share": share}
+        for name, hertz, turns, outermost, share in (("carrier", 12.5, 7, 5.0, 0.0375), ("other", 3.75, 2, 2.0, 9e-5))
     ]
     left_out = "is left out, above 2500 Hz, up to which all modes of the housing are there: raise "
     left_out += "housing.frequency_limit for it."
-    forced = "turns, which its bores and frames force; the outermost have"
+    forced = "turns, which its bores and frames force; the outermost, at"
     assert told(mesh_lines._limit_sentences({"limit_hz": 2500.0, "meshes": meshes, "carriers": carriers})) == [
         f"Mesh frequency of a → b: 812.5 Hz and its harmonics up to 3×; 4× {left_out}",
         "Mesh frequency of c → d: 633.25 Hz; higher ones are left out.",
         f"Mesh frequency of e → f: 9876 Hz; 1× {left_out}",
-        f"Sidebands by carrier, 12.5 Hz, are followed up to k = ±7 {forced} 3.75 % of the highest line.",
-        f"Sidebands by other, 3.75 Hz, are followed up to k = ±2 {forced} less than 0.01 % of the highest line.",
+        f"Sidebands by carrier, 12.5 Hz, are followed up to k = ±7 {forced} ±5, have 3.75 % of the highest line.",
+        f"Sidebands by other, 3.75 Hz, are followed up to k = ±2 {forced} ±2, have less than 0.01 % of the highest line.",
     ]
     assert mesh_lines._beside_harmonic({"harmonic": 2, "turns": {"carrier": -1.0}}) == "2f_m-1f_c"
     assert mesh_lines._beside_harmonic({"cause": "1× shaft"}) == "1× shaft"
