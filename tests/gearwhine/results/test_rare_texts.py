@@ -414,7 +414,8 @@ def test_how_far_lines_and_sidebands_are_followed() -> None:
         "Mesh frequency of c → d: 633.25 Hz; higher ones are left out.",
         f"Mesh frequency of e → f: 9876 Hz; 1× {left_out}",
         f"Sidebands by carrier, 12.5 Hz, are followed up to k = ±7 {forced} ±5, have 3.75 % of the highest line.",
-        f"Sidebands by other, 3.75 Hz, are followed up to k = ±2 {forced} ±2, have less than 0.01 % of the highest line.",
+        f"Sidebands by other, 3.75 Hz, are followed up to k = ±2 {forced} ±2, have less than 0.01 % of the highest "
+        "line.",
     ]
     assert mesh_lines._beside_harmonic({"harmonic": 2, "turns": {"carrier": -1.0}}) == "2f_m-1f_c"
     assert mesh_lines._beside_harmonic({"cause": "1× shaft"}) == "1× shaft"
