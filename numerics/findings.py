@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import numbers
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -27,7 +28,8 @@ class Finding:
     part : tuple of str
         Kind and name of the part; the name is empty where there is one of the kind.
     attribute : str
-        Attribute of the part, with dots to one inside it: ``tip_relief.amount``; empty for the part as a whole.
+        Attribute of the part, with dots to one inside it: ``tip_relief.amount``, ``faults.0.tooth``; empty for the part
+        as a whole.
     value
         Value of the attribute in SI; None where no single value is at fault.
     expected : str
@@ -44,10 +46,11 @@ class Finding:
 
     @property
     def label(self) -> str:
-        """Kind and name of the part, and the attribute."""
+        """Kind and name of the part, and the attribute as Python writes it: ``faults[0].tooth``."""
         kind, name = self.part
         of = f"{kind} {name!r}" if name else kind
-        return f"{of}: {self.attribute}" if self.attribute else of
+        attribute = re.sub(r"\.(\d+)", r"[\1]", self.attribute)
+        return f"{of}: {attribute}" if attribute else of
 
     def __str__(self) -> str:
         """Return part, attribute, value and expectation as a sentence."""

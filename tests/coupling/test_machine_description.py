@@ -132,7 +132,7 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
         "an input torque of 0; expected the torque that drives them",
     ),
     ("some torques", {"outputs": [Output("slow", 96.0), Output("middle")]}, "expected all or none"),
-    ("nowhere", {"outputs": [Output("x", 96.0)]}, "outputs.0.shaft is 'x'; expected the name of a shaft"),
+    ("nowhere", {"outputs": [Output("x", 96.0)]}, r"outputs\[0\].shaft is 'x'; expected the name of a shaft"),
     ("no shafts", {"shafts": []}, "expected at least one shaft"),
     (
         "pair twice",
@@ -160,7 +160,7 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
     (
         "output off the end",
         {"outputs": [Output("slow", 96.0, 0.3)]},
-        "outputs.0.at is 0.3; expected a station on rotor",
+        r"outputs\[0\].at is 0.3; expected a station on rotor",
     ),
     ("input off the end", {"torque_at": -0.01}, "torque_at is -0.01; expected a station on rotor"),
 ]

@@ -76,7 +76,7 @@ def test_rotor_sums_its_parts_and_merges_its_stations() -> None:
         (lambda: Segment(0.1, 0.03, 0.0, STEEL, "timoshenko"), "'cowper', 'hutchinson' or a number"),  # type: ignore[arg-type]
         (lambda: Disc(0.1, -1.0), "disc: mass is -1"),
         (lambda: Rotor("r", []), "expected at least one segment"),
-        (lambda: Rotor("r", [BAR], [Disc(0.5, 1.0)]), "rotor 'r': discs.0.at is 0.5; expected a station on rotor"),
+        (lambda: Rotor("r", [BAR], [Disc(0.5, 1.0)]), "rotor 'r': discs[0].at is 0.5; expected a station on rotor"),
         (lambda: Rotor("r", [BAR], mass_model="point"), "'distributed' or 'lumped'"),  # type: ignore[arg-type]
         (lambda: Rotor("r", [Segment(1.0, 0.1, 0.0, ShaftMaterial(2e11, 8e10, 0.0))]), "a positive mass"),
         (lambda: RadialSupport(0.0, -1.0), "support stiffness is -1.0"),

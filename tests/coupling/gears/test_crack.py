@@ -148,5 +148,5 @@ def test_a_crack_beyond_half_the_foot_is_doubted_and_one_through_it_refused(gear
 
     assert found(0.98 * half) == []
     assert found(1.02 * half) == [("faults.0.depth", "warning")]
-    with pytest.raises(GearError, match=r"gear 'cracked': faults.0.depth is .*: it goes through the foot"):
+    with pytest.raises(GearError, match=r"gear 'cracked': faults\[0\].depth is .*: it goes through the foot"):
         found(2.1 * half)

@@ -144,7 +144,7 @@ def test_faults_and_pitch_deviations_are_on_the_teeth_of_a_ring() -> None:
     worn = GearPairGeometry(pinion(), ring(faults=(Wear(5e-6, shape="uniform"), MissingTooth(59))))
     contact = tooth_contact(worn, MODEL, corner_contact=True)
     assert contact.hunting_period == 60
-    with pytest.raises(ValueError, match="numbered 0 to 59"):
+    with pytest.raises(ValueError, match=r"faults\[0\].tooth is 60; expected a tooth from 0 to 59"):
         ring(faults=(MissingTooth(60),))
 
 

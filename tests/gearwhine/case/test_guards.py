@@ -177,22 +177,22 @@ TRAPS: dict[str, Trap] = {
         (("gear.0.at", "300 mm"),), "gear[0].at", 'a station on rotor "input", which is 200 mm long',
     ),
     "unbalance off the shaft": Trap(
-        lambda: shaft(unbalances=[Unbalance(0.5, 1e-5)]), "shaft 'input': unbalance.0.at",
+        lambda: shaft(unbalances=[Unbalance(0.5, 1e-5)]), "shaft 'input': unbalance[0].at",
         (("rotor.0.unbalance.0.at", "500 mm"),), "rotor[0].unbalance[0].at",
         'a station on rotor "input", which is 200 mm long',
     ),
     "disc off the shaft": Trap(
-        lambda: Rotor("input", [segment()] * 2, [Disc(0.5, 1.0)]), "rotor 'input': discs.0.at",
+        lambda: Rotor("input", [segment()] * 2, [Disc(0.5, 1.0)]), "rotor 'input': discs[0].at",
         (("rotor.0.discs", [{"at": "500 mm", "mass": "1 kg"}]),), "rotor[0].discs[0].at",
         'a station on rotor "input", which is 200 mm long',
     ),
     "force off the shaft": Trap(
-        lambda: machine(forces=[ShaftForce("input", 0.5, (1.0, 0.0, 0.0))]), "machine: forces.0.at",
+        lambda: machine(forces=[ShaftForce("input", 0.5, (1.0, 0.0, 0.0))]), "machine: forces[0].at",
         (("operation.force", [{"rotor": "input", "at": "500 mm", "x": "1 N"}]),), "operation.force[0].at",
         'a station on rotor "input", which is 200 mm long',
     ),
     "output off the shaft": Trap(
-        lambda: machine(outputs=[Output("output", 71.77, 0.5)]), "machine: outputs.0.at",
+        lambda: machine(outputs=[Output("output", 71.77, 0.5)]), "machine: outputs[0].at",
         (("operation.output", [{"rotor": "output", "torque": "71.77 N*m", "at": "500 mm"}]),),
         "operation.output[0].at", 'a station on rotor "output", which is 200 mm long',
     ),
@@ -201,7 +201,7 @@ TRAPS: dict[str, Trap] = {
         (("operation.at", "500 mm"),), "operation.at", 'a station on rotor "input", which is 200 mm long',
     ),
     "output where the torque comes in": Trap(
-        lambda: machine(outputs=[Output("input", 71.77)]), "machine: outputs.0.shaft",
+        lambda: machine(outputs=[Output("input", 71.77)]), "machine: outputs[0].shaft",
         (("operation.output", [{"rotor": "input", "torque": "71.77 N*m"}]),), "operation.output[0].rotor",
         'a rotor other than "input", where the torque comes in',
     ),
@@ -269,10 +269,10 @@ WITHOUT_A_KEY: dict[str, tuple[Callable[[], object], str]] = {
     "mass of a text": (lambda: LumpedMass("m", "1 kg", position=(0.0, 0.0, 0.0)), "mass 'm': mass"),  # type: ignore[arg-type]
     "support that pushes": (lambda: Support("b", "bottom", stiffness=(-1e6, 1.0, 1.0)), "support 'b': stiffness"),
     "segment of a text": (lambda: segment("0.1"), "segment: length"),
-    "rotor of texts": (lambda: Rotor("r", ["x"]), "rotor 'r': segments.0"),  # type: ignore[list-item]
+    "rotor of texts": (lambda: Rotor("r", ["x"]), "rotor 'r': segments[0]"),  # type: ignore[list-item]
     "half a mode": (lambda: shaft(mode_count=2.5), "shaft 'input': mode_count"),
     "law of a bearing that is none": (lambda: bearing("b", "input", 0.1, law="gap"), "bearing 'b': law"),
-    "ripple of a text": (lambda: machine(ripple=["x"]), "machine: ripple.0"),
+    "ripple of a text": (lambda: machine(ripple=["x"]), "machine: ripple[0]"),
     "motor of a number": (lambda: machine(motor=3.0), "machine: motor"),
     "bearing on no shaft": (
         lambda: machine(bearings=bearings(bearing("input-back", "inptu", 0.02))), "bearing 'input-back': rotor"
@@ -281,7 +281,7 @@ WITHOUT_A_KEY: dict[str, tuple[Callable[[], object], str]] = {
     "run that never starts": (lambda: SpeedRun([0.0, 1.0], [0.0, 0.0]), "run: times"),
     "shaking at no frequency": (lambda: BaseHarmonic(0.0, np.ones(6)), "base motion: frequency"),
     "shaking of NaN": (lambda: BaseHistory(np.array([0.0, 1.0]), np.full((2, 6), NAN)), "base motion: values"),
-    "motion that is none": (lambda: BaseMotion(("x",)), "base motion: parts.0"),  # type: ignore[arg-type]
+    "motion that is none": (lambda: BaseMotion(("x",)), "base motion: parts[0]"),  # type: ignore[arg-type]
     "gamma of NaN": (lambda: settings(gamma=NAN), "time integration: gamma"),
     "duration of a text": (lambda: settings(duration="1 s"), "time integration: duration"),
     "nothing recorded": (lambda: TransientPlan(4, discard=4), "transient: discard"),

@@ -127,7 +127,7 @@ IN_PYTHON: dict[str, tuple[Callable[[], object], str]] = {
     "speed that is none": (lambda: spur(speed=math.nan), "machine: speed is nan"),
     "infinite speed": (lambda: spur(speed=math.inf), "machine: speed is inf"),
     "torque as a word": (lambda: spur(torque="much"), "machine: torque is 'much'"),
-    "gear in place of a mounted one": (lambda: spur(gears=[GEAR]), "machine: gears.0"),
+    "gear in place of a mounted one": (lambda: spur(gears=[GEAR]), "machine: gears[0]"),
     "housing as a name": (lambda: spur(housing="box"), "machine: housing is 'box'"),
     "bursting gears": (lambda: spur(speed=5e4), "expected a pitch-line speed at which no rim bursts"),
     "gear on a bearing": (
