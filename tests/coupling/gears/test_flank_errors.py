@@ -221,7 +221,7 @@ def test_both_damaged_teeth_meet_once_in_the_hunting_period() -> None:
             lambda: replace(PINION, root_relief=RootRelief(1e-5, FORM - 0.01)),
             "root_relief.start_roll_angle is .*; expected a start between",
         ),
-        (lambda: replace(PINION, faults=(MissingTooth(20),)), r"faults\[0\].tooth is 20; expected a tooth from 0 to 19"),
+        (lambda: replace(PINION, faults=(MissingTooth(20),)), r"faults\[0\].tooth is 20; expected a tooth from 0 to"),
         (lambda: MissingTooth(-1), "whole number from 0"),
         (lambda: Spall(1, 0.3, 0.2, 1e-5), "end_roll_angle must be above"),
         (lambda: Wear(1e-5, shape="round"), "'sliding' or 'uniform'"),  # type: ignore[arg-type]
