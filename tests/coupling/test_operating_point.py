@@ -323,10 +323,10 @@ def test_a_pedestal_sinks_by_its_own_weight_and_that_of_its_shaft(moving: bool) 
 
 def test_forces_off_the_shafts_or_that_nothing_holds_are_refused() -> None:
     with pytest.raises(
-        CouplingError, match=r"forces\.0\.rotor is 'belt'; expected the name of a shaft of this machine .'in', 'out'"
+        CouplingError, match=r"forces\[0\].rotor is 'belt'; expected the name of a shaft of this machine .'in', 'out'"
     ):
         one_stage(forces=[ShaftForce("belt", 0.0, (1.0, 0.0, 0.0))])
-    with pytest.raises(CouplingError, match=r"forces\.0\.at is 0.5; expected a station on rotor"):
+    with pytest.raises(CouplingError, match=r"forces\[0\].at is 0.5; expected a station on rotor"):
         one_stage(forces=[ShaftForce("in", 0.5, (1.0, 0.0, 0.0))])
     pushed = belt_drive((0.0, 0.0, 50.0))
     with pytest.raises(CouplingError, match="a force of 50 N along z on rotor 'shaft', which no bearing holds"):

@@ -33,7 +33,7 @@ def add_gears(case: Case, shafts: Shafts) -> dict[str, int]:
     """
     wide = [(gear, gear.face_width) for gear in case.gear if gear.face_width is not None]
     problems = [
-        Problem(f"gear.{place}.face_width", gear.name, "a face width, which every gear of a REXS file has")
+        Problem(f"gear[{place}].face_width", gear.name, "a face width, which every gear of a REXS file has")
         for place, gear in enumerate(case.gear)
         if gear.face_width is None
     ]

@@ -95,10 +95,10 @@ def add_shafts(rotors: Sequence[Rotor], materials: Mapping[str, Material], shaft
 def _cannot_be_shafts(place: int, rotor: Rotor) -> Problem | None:
     if rotor.file is not None:
         expected = "segments of the case: a rotor of a file is not exported"
-        return Problem(f"rotor.{place}.file", str(rotor.file), expected)
+        return Problem(f"rotor[{place}].file", str(rotor.file), expected)
     kinds = [isinstance(segment, CouplingSegment) for segment in rotor.segments]
     if kinds[0] or kinds[-1] or any(one and other for one, other in itertools.pairwise(kinds)):
-        return Problem(f"rotor.{place}.segments", rotor.name, "a piece of shaft on either side of each coupling")
+        return Problem(f"rotor[{place}].segments", rotor.name, "a piece of shaft on either side of each coupling")
     return None
 
 

@@ -279,7 +279,7 @@ def test_phases_over_several_periods_are_the_one_period_repeated() -> None:
 def test_one_deviation_for_each_tooth() -> None:
     with pytest.raises(GearError, match="expected one deviation for each of 20 teeth, or none"):
         replace(PLAIN_DRIVER, pitch_deviations=(0.0,) * 19)
-    with pytest.raises(GearError, match=r"pitch_deviations\.3 is nan; expected a finite number"):
+    with pytest.raises(GearError, match=r"pitch_deviations\[3\] is nan; expected a finite number"):
         replace(PLAIN_DRIVER, pitch_deviations=(0.0,) * 3 + (math.nan,) + (0.0,) * 16)
     with pytest.raises(GearError, match="pitch_gaps must be a row of finite numbers"):
         replace(CONTACT, pitch_gaps=np.zeros((2, 2)))

@@ -489,7 +489,7 @@ def test_a_coupling_without_a_shaft_behind_it_is_refused() -> None:
         "torsional_stiffness": "1e4 N*m/rad",
     }
     document["rotor"][0]["segments"].append({"length": "20 mm", "coupling": stiff})
-    with pytest.raises(CaseError, match=r"rotor\.0\.segments: expected a piece of shaft on either side"):
+    with pytest.raises(CaseError, match=r"rotor\[0\].segments: expected a piece of shaft on either side"):
         rexs_of(parse_case(document))
 
 
