@@ -185,11 +185,8 @@ class EarlyPictures:
     """
 
     def __init__(self, process: _DrawingProcess, folder: Path) -> None:
-        self._process, self._folder, self._reserve = process, folder / "drawn", folder / "reserve"
-        self._folder.mkdir()
-        self._reserve.mkdir()
+        self._process, self._folder = process, folder
         self._drawings: list[Future[Any]] = []
-        self._reserved: list[Future[Any]] = []
         # Figures take the interpreter, which the drawings of the process do not.
         self._figures = ThreadPoolExecutor(1)
         self._is_ended = False
@@ -231,29 +228,16 @@ class EarlyPictures:
         drawing = self._process.beside(draw, *arguments, place=self._folder, progress=silent, **named)
         self._drawings.append(drawing)
 
-    def draw_in_reserve(self, draw: Callable[..., Any], *arguments: Any, **named: Any) -> None:
-        """As :meth:`draw`, of pictures that may be wanted later: until :meth:`end_reserve`, after all that is."""
-        drawing = self._process.beside(draw, *arguments, place=self._reserve, progress=silent, **named)
-        self._reserved.append(drawing)
-
-    def end_reserve(self) -> None:
-        """Draw none in reserve but those in hand."""
-        self._reserved = [drawing for drawing in self._reserved if not drawing.cancel()]
-
-    def move_to(self, place: Path, from_reserve: Collection[str] = ()) -> set[str]:
+    def move_to(self, place: Path) -> set[str]:
         """Wait for the pictures, and move them into a folder; their names without ending.
-
-        Of those in reserve the ones named ``from_reserve`` are moved.
 
         Raises
         ------
         RendererUnavailableError, OSError
             As :func:`draw_in_process`.
         """
-        self.end_reserve()
-        self._drawings += self._reserved
         self.wait()
-        files = [*self._folder.glob("*"), *(file for file in self._reserve.glob("*") if file.stem in from_reserve)]
+        files = list(self._folder.glob("*"))
         for file in files:
             shutil.move(file, place / file.name)
         return {file.stem for file in files}

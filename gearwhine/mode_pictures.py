@@ -133,7 +133,7 @@ def draw_modes(
     if which == "all":
         numbers = list(range(1, count + 1))
     elif which == "dominant":
-        numbers = dominant_modes(housing, comparison)
+        numbers = sorted(notes) if notes else housing.strongest_modes(_DOMINANT)
     else:
         numbers = parse_numbers(which, count)
     numbers = sorted({*numbers, *besides})
@@ -148,12 +148,6 @@ def draw_modes(
     shapes = drawn_modes(surface, housing.modes, numbers, notes)
     sheet = "modes.png" if with_sheet and len(numbers) > 1 and mode_format == "png" else None
     return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet, drawn=drawn)
-
-
-def dominant_modes(housing: HousingModes, comparison: "Comparison | None") -> list[int]:
-    """Numbers of the modes with a measured partner, from 1; of the strongest ones where none has any."""
-    paired = [] if comparison is None else sorted(pair.mode for pair in comparison.pairs)
-    return paired or housing.strongest_modes(_DOMINANT)
 
 
 def draw_lines(

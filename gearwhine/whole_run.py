@@ -19,14 +19,7 @@ from gearwhine.coupling.analyses.condition_record import bearing_tones
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.drawing_process import EarlyPictures, early_pictures, one_process
 from gearwhine.housing.modal_test import comparison_warnings
-from gearwhine.housing.pictures.drawn_shapes import drawn_name
-from gearwhine.mode_pictures import (
-    dominant_modes,
-    draw_load_pictures,
-    draw_modes,
-    draw_operating_shapes,
-    draw_sound_pictures,
-)
+from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging
 from gearwhine.output.checkpoints import stored_record
@@ -48,7 +41,6 @@ if TYPE_CHECKING:
     from gearwhine.studied_machine import StudiedMachine
 
 _DRAWN_LINES = 6  # operating shapes of a run
-_RESERVE, _RESERVE_AT_ONCE = 24, 6  # modes drawn in reserve, and those of them that are not stopped once begun
 
 
 class WholeRun:
@@ -118,8 +110,6 @@ class WholeRun:
             if document is not None:
                 self.document = joined(self.document, document)
                 self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - begin
-        if self._early is not None:
-            self._early.end_reserve()
         if self.solution.transient is not None:
             self._seconds["time_stepping"] = self.solution.transient.result.seconds
         self.document["seconds"] = self._seconds | {"total": time.perf_counter() - self._started}
@@ -171,27 +161,13 @@ class WholeRun:
         return document
 
     def _draw_early(self) -> None:
-        """Have figures, modes that are shown in any case and the housing under load drawn beside other work.
-
-        While the motion is integrated, further modes are drawn in reserve: its lines will name some of them.
-        """
-        solution, early, housing, comparison = (
-            self.solution,
-            self._early,
-            self.solution.housing,
-            self.solution.comparison,
-        )
-        if early is None or housing is None:
+        """Have figures, modes that are shown in any case and the housing under load drawn beside other work."""
+        solution, early = self.solution, self._early
+        if early is None or solution.housing is None:
             return
-        draw = partial(draw_modes, housing, comparison, view="auto", mode_format="png", with_sheet=False)
-        early.draw(draw, "dominant")
+        early.draw(draw_modes, solution.housing, solution.comparison, "dominant", "auto", "png", with_sheet=False)
         if solution.load is not None:
-            early.draw(draw_load_pictures, housing, solution.load)
-        if self.plan is not None:
-            shown = dominant_modes(housing, comparison)
-            others = [mode for mode in housing.strongest_modes(len(shown) + _RESERVE) if mode not in shown]
-            for first in range(0, len(others), _RESERVE_AT_ONCE):
-                early.draw_in_reserve(draw, ",".join(map(str, others[first : first + _RESERVE_AT_ONCE])))
+            early.draw(draw_load_pictures, solution.housing, solution.load)
         early.draw_figures(partial(solution.figures_before_motion, self.study.origin.title, silent))
         self._has_early_figures = True
 
@@ -304,11 +280,11 @@ def _draw_pictures(
     housing, comparison = solved.housing, solved.comparison
     if housing is None:
         return
-    # The tables of lines name modes, and the report links their pictures.
-    lines_told = leading_lines(document.get("sensors", ()), "peaks")
-    named = {row["by_mode"] for row in lines_told if row["by_mode"] is not None}
-    drawn = set() if early is None else early.move_to(place, {drawn_name(housing.modes, mode) for mode in named})
+    drawn = set() if early is None else early.move_to(place)
     with one_process():
+        # The tables of lines name modes, and the report links their pictures.
+        lines_told = leading_lines(document.get("sensors", ()), "peaks")
+        named = {row["by_mode"] for row in lines_told if row["by_mode"] is not None}
         draw_modes(housing, comparison, "dominant", "auto", "png", place, progress, named, drawn=drawn)
         if solved.load is not None and "load-housing" not in drawn:
             draw_load_pictures(housing, solved.load, place, progress)

@@ -100,27 +100,6 @@ def test_early_pictures_are_drawn_while_other_work_goes_on(tmp_path: Path) -> No
         assert early.move_to(tmp_path) == set()
 
 
-def test_of_pictures_in_reserve_those_named_are_taken_and_no_more_are_begun(tmp_path: Path) -> None:
-    begun, ended, drawn = threading.Event(), threading.Event(), list[str]()
-
-    def draw(*names: str, place: Path, progress: Any) -> None:
-        begun.set()
-        assert ended.wait(20.0)
-        drawn.extend(names)
-        for name in names:
-            (place / f"{name}.png").write_text(name)
-
-    with early_pictures() as early:
-        early.draw_in_reserve(draw, "mode-02", "mode-03")
-        early.draw_in_reserve(draw, "mode-04")
-        assert begun.wait(20.0)
-        early.end_reserve()
-        ended.set()
-        assert early.move_to(tmp_path, {"mode-03", "mode-04"}) == {"mode-03"}
-    assert drawn == ["mode-02", "mode-03"]
-    assert [file.name for file in tmp_path.glob("*.png")] == ["mode-03.png"]
-
-
 def test_an_error_among_early_pictures_is_told_where_they_are_taken(tmp_path: Path) -> None:
     def draw(*, place: Path, progress: Any) -> None:
         raise OSError(28, "No space left on device")
