@@ -10,7 +10,11 @@ import pytest
 from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.gears.stiffness.models import SquareStiffness
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.machine.loads import ShaftForce
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.coupling.time.transient import simulate
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.rotors import Bearing, ShaftMaterial
 from tests.machines.plane_planetary_set import INERTIA, MASS, MODULE, RING_SUPPORT, plane_set
@@ -25,13 +29,15 @@ BODIES = ("sun", "carrier", "ring", "planet", "planet", "planet")
 LIMIT = 2.0 * np.pi * 1300.0
 RING = TEETH[0] + 2 * TEETH[1]
 STIFF = ShaftMaterial(youngs_modulus=2e13, shear_modulus=8e12, density=1.0)
+SOFTER = ShaftMaterial(youngs_modulus=2e12, shear_modulus=8e11, density=10.0)
+"""Of shafts whose first modes let a motion take longer steps."""
 
 
 @cache
-def machine(push: float) -> CoupledMachine:
+def machine(push: float, material: ShaftMaterial = STIFF, **modes: int) -> CoupledMachine:
     """A set on short stiff shafts whose carrier a force pulls down at its end."""
-    of_set = {"pressure_angle": PRESSURE_ANGLE, "with_ring": True, "damping": LAG, "material": STIFF, "diameter": 0.05}
-    parts = plane_set(ANGLES, **of_set, teeth=TEETH)
+    of_set = {"pressure_angle": PRESSURE_ANGLE, "with_ring": True, "damping": LAG, "material": material} | modes
+    parts = plane_set(ANGLES, **of_set, diameter=0.05, teeth=TEETH)
     law = 0.5 * np.diag([BEARING, BEARING, BEARING, 2e3, 2e3])
     parts["bearings"] = [
         replace(
@@ -186,3 +192,22 @@ def test_lines_of_flanks_that_swing_are_those_of_an_integration() -> None:
             assert np.abs(without.get(order, np.zeros(2))).max() < 0.01 * np.abs(expected[order]).max()
         parts = mechanisms.parts(order * carrier)
         assert [parts[name].together for name in "xy"] == pytest.approx(np.abs(found[order]).tolist(), rel=5e-3)
+
+
+@pytest.mark.slow
+def test_motion_has_the_lines_of_flanks_that_swing() -> None:
+    """Over the third turn of the carrier; its contact law knows neither lines nor orders."""
+    assembled, count = machine(PUSH, SOFTER, mode_count=1), 4096
+    carrier = assembled.speeds["carrier"]
+    turn = 2.0 * np.pi / carrier
+    of_turn = {"record_from": 2.0 * turn, "sample_interval": turn / count, "largest_step": 0.5 * turn / count}
+    settings = TransientSettings(duration=3.0 * turn, **of_turn)
+    motion = histories(assembled, simulate(assembled.system, settings, transient_outputs(assembled)))
+    spectra = np.array([2.0 * np.fft.rfft(motion.sensor_acceleration[name]) / count for name in "xy"])
+    rows = np.array([assembled.sensor_rows[name] for name in "xy"])
+    lines = {
+        round(one.frequency / carrier): -(one.frequency**2) * (rows @ one.motion)
+        for one in MeshHarmonicModel(assembled).parts(LIMIT)
+    }
+    for order in range(RING - 3, RING + 4):
+        assert np.abs(spectra[:, order] - lines[order]).max() < 0.06 * np.abs(lines[order]).max()
