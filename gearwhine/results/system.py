@@ -822,7 +822,9 @@ def _stability(stability: Document) -> Iterator[str]:
         sentence = "Stable: no mode grows."
         if least is not None:
             sentence += (
-                f" Least damped: {least['damping_ratio']:.4f} at {least['frequency_hz']:.1f} Hz ({_named(least)})."
+                # Rounding leaves a mode without damping as much below zero as above.
+                f" Least damped: {max(least['damping_ratio'], 0.0):.2g} at {least['frequency_hz']:.1f} Hz "
+                f"({_named(least)})."
             )
         yield sentence
         return

@@ -7,6 +7,7 @@ import pytest
 
 from gearwhine.meshes import (
     Bore,
+    Boss,
     BoxGeometry,
     Cover,
     CoverBolts,
@@ -132,16 +133,25 @@ def test_bolts_stand_in_rows_round_the_rim_with_a_patch_on_each_side() -> None:
             assert np.hypot(*(nodes - bolt.position)[:, [0, 2]].T).max() == pytest.approx(0.008, rel=1e-6)
 
 
-def test_a_seat_in_the_cover_is_bored_through_the_plate() -> None:
-    bores = (Bore("lid", (0.0, 0.08, 0.12), 0.05), Bore("wall", (0.0, 0.08, -0.12), 0.04))
+def test_a_seat_in_the_cover_is_bored_through_plate_and_boss() -> None:
+    bores = (Bore("lid", (0.0, 0.08, 0.12), 0.05, Boss(0.07, 0.009)), Bore("wall", (0.0, 0.08, -0.12), 0.04))
+    rib = Rib("front", "y", at=0.06, height=0.02, thickness=0.008)
     cover = Cover("front", Flange(0.018, 0.014), CoverBolts(0.006, (2, 2)))
-    mesh = mesh_box(BoxGeometry(SIZE, WALL, bores, cover=cover), 0.03, order=2)
+    mesh = mesh_box(BoxGeometry(SIZE, WALL, bores, cover=cover, ribs=(rib,)), 0.02, order=2)
     (block,) = mesh.blocks
-    assert np.isin(facet_nodes(mesh.surface("lid")), block.nodes[mesh.volumes["cover"]]).all()
+    plate = mesh.volumes["cover"]
+    assert np.isin(facet_nodes(mesh.surface("lid")), block.nodes[plate]).all()
     assert [(bore.diameter, bore.length) for bore in find_bores(mesh)] == [
-        pytest.approx((0.05, 0.014)),
+        pytest.approx((0.05, 0.023)),
         pytest.approx((0.04, 0.013)),
     ]
+    # The rib runs over the whole plate, the flange's part too.
+    expected = (
+        (SIZE[0] + 0.036) * (SIZE[1] + 0.036) * WALL.front
+        + math.pi / 4 * (0.07**2 * 0.009 - 0.05**2 * 0.023)
+        + 0.02 * 0.008 * (SIZE[1] + 0.036)
+    )
+    assert mesh.element_volumes[plate].sum() == pytest.approx(expected, rel=1e-4)
 
 
 def test_feet_carry_the_circles_of_their_bolts() -> None:
