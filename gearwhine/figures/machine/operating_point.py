@@ -392,6 +392,7 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
     figure = sheet(HEAD + height + FOOT, title, note)
     axes = panel(figure, FOOT, height, left=_NAMES, width=SHEET_WIDTH - _NAMES - _SUMS)
     axes.grid(visible=False, axis="y")
+    axes.use_sticky_edges = False  # a bar of no length would end the axis at the longest one
     handles: list[Artist] = []
     for number, cause in enumerate(CAUSES):
         color = SERIES[number]

@@ -124,6 +124,8 @@ def test_bars_of_the_causes_add_up(loaded: Result[SolvedLoad], figures: dict[str
     assert min(map(min, ends)) == pytest.approx(sum(width for width in widths if width < 0.0))
     assert max(map(max, ends)) == pytest.approx(sum(width for width in widths if width > 0.0))
     assert axes.get_xlabel() == "misalignment [µrad]"
+    low, high = axes.get_xlim()
+    assert all(low < end < high for bar in axes.patches for end in (bar.get_x(), bar.get_x() + bar.get_width()))
     # Causes that there are, and no others: this machine has no housing.
     (legend,) = figures["load-misalignment"].legends
     assert [text.get_text() for text in legend.get_texts()] == ["shafts", "bearings", "bodies", "sum"]
