@@ -7,7 +7,7 @@
 - Orbits of gears: the mean position of each centre, and its motion about it.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -60,6 +60,7 @@ _HEIGHT, _BETWEEN, _RIGHT = 34.0, 6.5, 14.0  # height of a panel, gap above it, 
 _ABOVE = 4.5  # height above the first panel for the name of its sensor [mm]
 _MOST_NAMED_LINES = 5  # named lines of a sensor
 _LEAST_NAMED_LINE = 1e-4  # part of the highest line below which no line is named
+_SAME_LINE = 1.0  # difference between the frequencies that two sensors' spectra give one line, at most [Hz]
 
 
 def draw_sensor_spectra(
@@ -94,10 +95,11 @@ def draw_sensor_spectra(
         ]
         for name, sensor_lines in lines.items()
     }
-    # A line stands at the same frequency for all sensors: its name stands once, above them all.
-    once = {_text(line): line for sensor_lines in named.values() for line in sensor_lines}
     colors = {"mesh": RED}
-    labels = [Label(text, line.frequency, 1.0, colors.get(line.named.kind, INK)) for text, line in once.items()]
+    labels = [
+        Label(_text(line), line.frequency, 1.0, colors.get(line.named.kind, INK))
+        for line in _each_once(line for sensor_lines in named.values() for line in sensor_lines)
+    ]
     row = arrange(labels, [label.x / limit * width for label in labels], width)
     count = len(solved.sensor_spectra)
     height = HEAD + FOOT + row.height + count * _HEIGHT + (count - 1) * _BETWEEN + _ABOVE
@@ -112,8 +114,9 @@ def draw_sensor_spectra(
             for harmonic in range(1, int(limit / base * (1.0 + 1e-9)) + 1):
                 axes.axvline(harmonic * base, color=RED, lw=0.7, ls=(0, (4, 3)), zorder=0)
         inside = marked[marked <= limit]
-        places = np.full(inside.size, 0.02)
-        axes.plot(inside, places, marker=6, color=GREY, ms=4, ls="", transform=axes.get_xaxis_transform())
+        places = np.full(inside.size, 0.04)
+        across = axes.get_xaxis_transform()
+        axes.plot(inside, places, marker="^", color=INK, mec="white", mew=0.4, ms=4, ls="", transform=across, zorder=4)
         for label in row.labels:
             axes.axvline(label.x, color=GREY, lw=0.4, zorder=0)
         leading = [(line.frequency, abs(line.value)) for line in named[name]]
@@ -139,9 +142,20 @@ def draw_sensor_spectra(
     if len(mesh_frequencies):
         handles.append(Line2D([], [], color=RED, lw=0.7, ls=(0, (4, 3)), label="mesh harmonic"))
     if marked.size:
-        handles.append(Line2D([], [], color=GREY, marker=6, ms=4, ls="", label=marked_as))
+        handles.append(Line2D([], [], color=INK, marker="^", ms=4, ls="", label=marked_as))
     legend(figure, handles)
     return figure
+
+
+def _each_once(lines: Iterable[TracedLine]) -> list[TracedLine]:
+    """Return lines without those of the same name at the same frequency, as all sensors have them."""
+    once: list[TracedLine] = []
+    for line in lines:
+        if not any(
+            line.named.name == one.named.name and abs(line.frequency - one.frequency) < _SAME_LINE for one in once
+        ):
+            once.append(line)
+    return once
 
 
 def _text(line: TracedLine) -> str:

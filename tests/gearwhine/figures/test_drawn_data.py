@@ -1,5 +1,6 @@
 """What figures of a motion and of made-up curves draw: the data, their order and units, names beside their own."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
 from gearwhine.figures.machine.system import draw_transmissibility
+from gearwhine.figures.machine.transient import draw_sensor_spectra
 from gearwhine.figures.style import BLUE, GREY
 from gearwhine.from_case.machine import solve_gears
 from gearwhine.rotors import Campbell
@@ -112,6 +114,19 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
         # A tone of two sensors has one name.
         assert all(min(abs(line.frequency - place) for place in named) < 0.1 * spectrum.spacing for line in told)
     assert shown[-1].get_xlabel() == "frequency [Hz]"
+
+
+def test_a_line_of_two_sensors_is_named_once_where_their_spectra_round_it_to_two_hertz(drawn: Drawn) -> None:
+    first, second = drawn.signature.lines
+    lines = drawn.signature.lines[first][:3]
+    rounded = [np.floor(line.frequency) + 0.5 for line in lines]
+    near = {
+        first: tuple(replace(line, frequency=at - 0.1) for line, at in zip(lines, rounded, strict=True)),
+        second: tuple(replace(line, frequency=at + 0.1) for line, at in zip(lines, rounded, strict=True)),
+    }
+    figure = draw_sensor_spectra("Names", drawn.solved, near, marked=np.zeros(0))
+    (row,) = (axes for axes in figure.axes if axes.texts)
+    assert len(row.texts) == len(lines)
 
 
 def test_each_pair_s_force_stands_in_its_own_row(drawn: Drawn) -> None:
