@@ -15,8 +15,6 @@ from gearwhine.figures import draw_sound, draw_sweep
 from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def solved() -> SolvedSound:
