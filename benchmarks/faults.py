@@ -37,7 +37,7 @@ from traced_lines import ROOMS
 
 ROOT = Path(__file__).parent.parent
 LISTS = ROOT / "tests" / "faults"
-# pytest's exit codes for its own failure, wrong usage and no tests; a process that another ended, as where memory is short
+# pytest's exit codes for its own failure, wrong usage and no tests; of a process that is ended for want of memory
 _NO_VERDICT = (3, 4, 5, -signal.SIGKILL, -signal.SIGTERM)
 
 
