@@ -17,7 +17,9 @@ import argparse
 import ast
 import os
 import random
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -35,7 +37,8 @@ from traced_lines import ROOMS
 
 ROOT = Path(__file__).parent.parent
 LISTS = ROOT / "tests" / "faults"
-_NOTHING_RAN = (3, 4, 5)  # pytest's exit codes for its own failure, wrong usage and no tests
+# pytest's exit codes for its own failure, wrong usage and no tests; of a process that is ended for want of memory
+_NO_VERDICT = (3, 4, 5, -signal.SIGKILL, -signal.SIGTERM)
 
 
 @dataclass(frozen=True)
@@ -167,25 +170,24 @@ def environment(root: Path) -> dict[str, str]:
     }
 
 
-def run_tests(root: Path, tests: list[str], *options: str, timeout: float | None = None) -> tuple[int, str]:
+def run_tests(root: Path, tests: list[str], *options: str, limit: int | None = None) -> tuple[int, str]:
     """Run tests on a copy until the first fails: the exit code and the end of what they print.
 
-    Tests that do not end within the timeout [s] fail.
+    Tests that do not end within the limit of processor time [s], that of each process that they start, fail.
     """
     command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=line"]
     command += [*options, *tests]
-    surroundings = environment(root)
-    try:
-        outcome = subprocess.run(
-            command, cwd=root, env=surroundings, capture_output=True, text=True, check=False, timeout=timeout
-        )
-    except subprocess.TimeoutExpired:
-        return 1, f"no end within {timeout:.0f} s"
-    return outcome.returncode, outcome.stdout[-1500:]
+    process = subprocess.Popen(command, cwd=root, env=environment(root), stdout=subprocess.PIPE, text=True)
+    if limit is not None:
+        resource.prlimit(process.pid, resource.RLIMIT_CPU, (limit, limit + 5))
+    text = process.communicate()[0][-1500:]
+    if process.returncode == -signal.SIGXCPU:
+        return 1, f"no end within {limit} s of processor time"
+    return process.returncode, text
 
 
 def caught(
-    root: Path, fault: Fault, tests: list[list[str]], *options: str, timeout: float | None = None
+    root: Path, fault: Fault, tests: list[list[str]], *options: str, limit: int | None = None
 ) -> tuple[bool, str]:
     """Whether tests fail with a fault in the copy, and the end of what they print.
 
@@ -195,12 +197,12 @@ def caught(
     before = fault.put_into(root)
     try:
         for names in tests:
-            code, text = run_tests(root, names, *options, timeout=timeout)
+            code, text = run_tests(root, names, *options, limit=limit)
             if code != 0:
                 break
     finally:
         (root / fault.file).write_text(before, encoding="utf-8")
-    if code in _NOTHING_RAN:
+    if code in _NO_VERDICT:
         raise RuntimeError(f"fault {fault.number}: pytest ended with {code}\n{text}")
     return code != 0, text
 

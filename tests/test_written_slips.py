@@ -5,6 +5,7 @@ declared columns are in ``tests/gearwhine/results/test_units_of_declarations.py`
 """
 
 import ast
+import gc
 import re
 import sys
 from collections import Counter, defaultdict
@@ -55,12 +56,16 @@ Slips = Iterator[tuple[int, str]]
 @cache
 def sources() -> dict[str, Source]:
     """Files of the rooms by path; a room's link in ``gearwhine`` is not followed."""
-    return {
-        str(path.relative_to(ROOT)): Source(path.read_text(encoding="utf-8"))
-        for room in ROOMS
-        for path in sorted((ROOT / room).rglob("*.py"))
-        if not any(place.is_symlink() for place in (path, *path.parents))
-    }
+    gc.disable()  # two million nodes are made that all stay
+    try:
+        return {
+            str(path.relative_to(ROOT)): Source(path.read_text(encoding="utf-8"))
+            for room in ROOMS
+            for path in sorted((ROOT / room).rglob("*.py"))
+            if not any(place.is_symlink() for place in (path, *path.parents))
+        }
+    finally:
+        gc.enable()
 
 
 def slips(check: Callable[[Source], Iterable[tuple[int, str]]]) -> list[str]:
@@ -470,3 +475,68 @@ def unscaled(source: Source) -> Slips:
 def test_values_of_the_inside_are_scaled_to_the_unit_behind_them() -> None:
     assert slips(unscaled) == []
     assert slips(unnamed) == []
+
+
+_ATTRIBUTE = re.compile(r" +(\w+(?:, \w+)*) : ")
+_BRACKETS = re.compile(r"\[([^]1]+)\]")
+UNRULED = {("NodeSpring", "stiffness"), ("NodeSpring", "damping"), ("RingSupport", "count")}
+"""Attributes of two units, and one that is checked where it is given."""
+
+
+def documented_units(node: ast.ClassDef) -> dict[str, str]:
+    """Units in the docstring of a class by attribute: the first in brackets behind its name."""
+    found, names = dict[str, str](), list[str]()
+    for line in (ast.get_docstring(node, clean=False) or "").splitlines():
+        if begins := _ATTRIBUTE.match(line):
+            names = begins[1].split(", ")
+        if unit := _BRACKETS.search(line):
+            found |= {name: unit[1] for name in names if name not in found}
+    return found
+
+
+def _calls(node: ast.AST, name: str) -> bool:
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == name
+
+
+def rules_of(node: ast.ClassDef) -> Iterator[tuple[str, dict[str, str], bool]]:
+    """Attribute, arguments and whether it is a row, of each `Number` that a class demands by name."""
+    inside = [*ast.walk(node)]
+    named = {ast.unparse(one.targets[0]): one.value for one in inside if isinstance(one, ast.Assign)}
+    for one in inside:
+        match one:
+            case ast.Dict(keys=keys, values=values):
+                entries = [
+                    (key.value, rule) for key, rule in zip(keys, values, strict=True) if isinstance(key, ast.Constant)
+                ]
+            case ast.Call(keywords=keywords):
+                entries = [(keyword.arg, keyword.value) for keyword in keywords]
+            case _:
+                continue
+        for name, given in entries:
+            rule = named.get(given.id, given) if isinstance(given, ast.Name) else given
+            is_row = _calls(rule, "Numbers") and len(rule.args) == 2  # type: ignore[attr-defined]
+            rule = rule.args[1] if is_row else rule  # type: ignore[attr-defined]
+            if _calls(rule, "Number"):
+                yield str(name), {str(one.arg): ast.unparse(one.value) for one in rule.keywords}, is_row
+
+
+def undocumented_rules(source: Source) -> Slips:
+    """Numbers whose unit is not that of the docstring, or which may be None where the annotation has none."""
+    for node in source.of(ast.ClassDef) if any(_calls(call, "Number") for call in source.of(ast.Call)) else ():
+        units = documented_units(node)
+        kinds = {
+            ast.unparse(one.target): ast.unparse(one.annotation) for one in node.body if isinstance(one, ast.AnnAssign)
+        }
+        for name, given, is_row in rules_of(node):
+            if name not in kinds or (node.name, name) in UNRULED:
+                continue
+            if units and ast.literal_eval(given.get("unit", "''")) != units.get(name, ""):
+                yield node.lineno, f"{node.name}.{name} in {given.get('unit')}, documented in {units.get(name)}"
+            if not is_row and (given.get("optional") == "True") != ("None" in kinds[name]):
+                yield node.lineno, f"{node.name}.{name} of {kinds[name]}, optional: {given.get('optional')}"
+
+
+def test_numbers_are_demanded_in_the_units_of_their_docstrings() -> None:
+    assert slips(undocumented_rules) == []
+    (pins,) = (node for node in sources()["coupling/machine/pins.py"].of(ast.ClassDef) if node.name == "PinBeam")
+    assert {name: given.get("unit") for name, given, _ in rules_of(pins)} == {"diameter": "'m'", "bore": "'m'"}

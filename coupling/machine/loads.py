@@ -153,10 +153,14 @@ class Ripple:
 
     def __post_init__(self) -> None:
         """Require finite numbers, and either an order or a frequency."""
-        positive = Number(above=0.0, optional=True)
-        rules: dict[str, Rule] = {"amplitude": Number(unit="N m"), "phase": Number(unit="rad")}
+        rules: dict[str, Rule] = {
+            "amplitude": Number(unit="N m"),
+            "phase": Number(unit="rad"),
+            "order": Number(above=0.0, optional=True),
+            "frequency": Number(above=0.0, optional=True, unit="rad/s"),
+        }
         part = ("ripple", "")
-        findings = list(attribute_findings(part, self, **rules, order=positive, frequency=positive))
+        findings = list(attribute_findings(part, self, **rules))
         if (self.order is None) == (self.frequency is None):
             findings.append(Finding(part, "order", None, "either an 'order' of the shaft's rotation or a 'frequency'"))
         refuse(findings, CouplingError)

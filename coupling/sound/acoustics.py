@@ -132,7 +132,7 @@ class Acoustics:
             "method": Choice(("boundary-elements", "rayleigh", "erp")),
             **positive,
             "caps": Choice(("move", "rest")),
-            "floor": Number(optional=True),
+            "floor": Number(optional=True, unit="m"),
             "lines": Number(at_least=1, at_most=MOST_LINES, whole=True),
             "still": Instance(tuple, "a list of names of surfaces"),
             "faces": Instance(tuple, "a list of names of surfaces"),

@@ -50,13 +50,12 @@ class Support:
 
     def __post_init__(self) -> None:
         """Check that the support is given in exactly one way and holds something, and its amounts."""
-        amounts = Numbers(3, Number(at_least=0.0))
         rules: dict[str, Rule] = {
             "name": Text(),
             "surface": Text(optional=True),
             "fixed": Flags(3),
-            "stiffness": amounts,
-            "damping": amounts,
+            "stiffness": Numbers(3, Number(at_least=0.0, unit="N/m")),
+            "damping": Numbers(3, Number(at_least=0.0, unit="N s/m")),
         }
         refuse(attribute_findings(("support", str(self.name)), self, **rules), HousingError)
         keep_tuples(self, "box", "fixed", "stiffness", "damping", "plane")

@@ -154,7 +154,7 @@ class RotorSettings:
     Attributes
     ----------
     operation : float or None
-        Speed of operation; None for a rotor without one.
+        Speed of operation [rad/s]; None for a rotor without one.
     whirl_speeds : sequence of float
         Further speeds at which the whirl modes are solved.
     diagram_speeds : sequence of float

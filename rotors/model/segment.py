@@ -78,7 +78,7 @@ class Coupling:
             ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"), positive
         )
         rules |= dict.fromkeys(("mass", "polar_inertia", "diametral_inertia", *DAMPINGS), not_negative)
-        refuse(attribute_findings(("coupling", ""), self, **rules, axial_force=Number()), RotorError)
+        refuse(attribute_findings(("coupling", ""), self, **rules, axial_force=Number(unit="N")), RotorError)
 
     @property
     def clamped_buckling_load(self) -> float:

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
+from gearwhine.coupling.gears import Gear, GearPairGeometry, SquareStiffness, tooth_contact
+from gearwhine.coupling.gears.loaded.transmission_error import loaded_transmission_error
+from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh, _secant
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, LinesOfMeshes, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import ContactState
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -120,3 +122,26 @@ def test_lines_between_differ_from_the_motion_by_the_square_of_the_errors(mesh: 
         differences.append(np.linalg.norm(found.between[:, chosen] - expected) / np.linalg.norm(expected))
     assert differences[1] < 2e-3
     assert differences[1] == pytest.approx(0.1 * differences[0], rel=0.2)
+
+
+@pytest.mark.parametrize("pitch", [0.0, 1e-12])
+def test_the_stiffness_at_each_phase_is_that_of_the_pairs_in_touch(pitch: float) -> None:
+    """Teeth of one stiffness 2e8 N/m each: one pair or two; teeth that differ by a pm are solved another way."""
+    gears = [
+        Gear(
+            str(teeth),
+            teeth,
+            4e-3,
+            np.radians(20.0),
+            12e-3,
+            pitch_deviations=(pitch, *[0.0] * (teeth - 1)) if pitch else (),
+        )
+        for teeth in (20, 23)
+    ]
+    law = tooth_contact(GearPairGeometry(*gears), SquareStiffness(2e8))
+    phases = np.arange(0.05, 1.0, 0.1)
+    assert (law.hunting_period == 1) is (pitch == 0.0)
+    mesh = loaded_transmission_error(law, 2000.0, phases)
+    stiffness = _secant(law, mesh)
+    np.testing.assert_allclose(stiffness, 2e8 * (mesh.pair_forces > 0.0).sum(axis=1), rtol=1e-3)
+    assert set(np.round(stiffness / 2e8)) == {1.0, 2.0}

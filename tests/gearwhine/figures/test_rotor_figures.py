@@ -309,7 +309,12 @@ def test_static_deflection_and_its_loads() -> None:
     assert drawn == pytest.approx(1e6 * sag)
     assert not lines(axes, "x")  # nothing moves there
     assert {"480 N", "120 N"} <= set(texts(figure))
-    arrows = [(note.xy[1], note.xyann[1]) for note in axes.texts if note.arrow_patch is not None]
+    drawn_arrows = [note for note in axes.texts if note.arrow_patch is not None]
+    for note, bearing in zip(drawn_arrows, TWO_DISCS.bearings, strict=True):
+        assert (note.xy[0], note.xyann[0]) == pytest.approx((1e3 * bearing.at, 1e3 * bearing.at))
+        (size,) = [one for one in axes.texts if one.arrow_patch is None and one.xy == note.xyann]
+        assert size.get_text() in ("480 N", "120 N")
+    arrows = [(note.xy[1], note.xyann[1]) for note in drawn_arrows]
     (up_tip, up_tail), (down_tip, down_tail) = arrows
     assert (down_tail - down_tip) / (up_tip - up_tail) == pytest.approx(120.0 / 480.0)
     with pytest.raises(ValueError, match="bearing loads"):

@@ -15,8 +15,6 @@ from gearwhine.figures import draw_sound, draw_sweep
 from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def solved() -> SolvedSound:
@@ -123,11 +121,14 @@ def test_intensities_are_drawn_where_they_are(solved: SolvedSound, tmp_path: Pat
     share = np.bincount(surface.triangles.ravel(), np.repeat(areas, 3) / 3.0, len(surface.rest))
     for line in loudest:
         shape = shapes[f"sound-faces-{line.frequency_hz:.1f}Hz"]
-        assert shape.quantity == "Intensity [mW/m²]"
+        assert (shape.title, shape.quantity) == (f"Sound intensity at {line.frequency_hz:.0f} Hz", "Intensity [mW/m²]")
+        level = 10.0 * np.log10(line.sound.power / 1e-12)
+        assert shape.note == f"{level:.1f} dB re 1 pW; red radiates, blue absorbs. 2 % lie beyond the scale."
         assert shape.values is not None
         assert 1e-3 * shape.values @ share == pytest.approx(line.sound.surface_power)
         assert not shape.at(0.0).any()
     every = shapes["sound-faces-all"]
+    assert (every.title, every.note[:5]) == ("Sound intensity, all lines", f"{solved.total_db:.1f}")
     assert every.values is not None
     assert 1e-3 * every.values @ share == pytest.approx(sum(line.sound.surface_power for line in solved.lines))
     # Nothing radiates where no lines do, and nothing is drawn.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwhine.failures import MissingExtraError
-from gearwhine.optimisation.search import Space, Trials, balanced, pareto_front, search, tried_whole
+from gearwhine.optimisation.search import Space, Trials, _are_far, balanced, pareto_front, search, tried_whole
 
 
 def _none(points: np.ndarray) -> np.ndarray:
@@ -155,3 +155,16 @@ def test_the_front_keeps_what_nothing_beats_and_the_balanced_point_is_nearest_to
     assert pareto_front(aims) == [0, 1, 2]
     assert balanced(aims[[0, 1, 2]]) == 1
     assert pareto_front(np.array([[3.0], [1.0], [2.0], [1.0]])) == [1]
+
+
+def test_starts_are_far_apart_in_what_is_continuous_or_another_choice() -> None:
+    continuous = np.array([True, False, True])
+    point = np.array([0.5, 0.25, 0.75])
+    for step, far in (
+        ((0.0, 0.0, 0.0), False),
+        ((0.5, 0.0, 0.5), True),
+        ((0.0, -0.25, 0.0), True),
+        ((1e-3, 0.0, 0.0), False),
+    ):
+        assert _are_far(point, point + step, continuous) is far
+        assert _are_far(point + step, point, continuous) is far

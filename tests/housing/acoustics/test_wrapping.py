@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from solids import cubes, hollow_box, spherical_shell
 
+from gearwhine.housing.acoustics import wrapping
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.surface_velocity import surface_velocity
 from gearwhine.housing.acoustics.wrapping import _collapse, _divided, least_angles, wrap
 from gearwhine.housing.errors import HousingError
+from gearwhine.housing.pictures.drawn_shapes import outer_skin
 from gearwhine.meshes import Mesh
 
 
@@ -152,3 +154,59 @@ def test_an_edge_beside_a_flat_triangle_collapses_without_dividing_by_its_area()
     with np.errstate(divide="raise", invalid="raise"):
         gone = _collapse(points, corners, around, 0, 5, 1.0)
     assert set(gone) <= {5, 11}
+
+
+@pytest.fixture
+def plate() -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of a plate of 0.6 m by 0.6 m by 0.1 m, by squares of 0.1 m in two triangles."""
+    mesh = cubes(np.ones((6, 6, 1), dtype=bool), (0.1, 0.1, 0.1))
+    skin = outer_skin(mesh)
+    return mesh.points[skin.nodes], skin.triangles
+
+
+def _vertex(points: np.ndarray, *place: float) -> int:
+    return int(np.linalg.norm(points - np.array(place), axis=1).argmin())
+
+
+def test_a_folded_vertex_goes_back_between_its_neighbours(
+    plate: tuple[np.ndarray, np.ndarray], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All vertices of folded triangles go half the way to the mean of their neighbours, the others stay."""
+    points, triangles = plate
+    vertex = _vertex(points, 0.3, 0.3, 0.1)
+    folded = points.copy()
+    folded[vertex, 0] += 0.14  # beyond the next vertex
+    once = folded.copy()
+    neighbours = {n: {int(m) for row in triangles if n in row for m in row if m != n} for n in range(len(points))}
+    normals = np.cross(
+        folded[triangles[:, 1]] - folded[triangles[:, 0]], folded[triangles[:, 2]] - folded[triangles[:, 0]]
+    )
+    upside = [n for n, row in enumerate(triangles) if normals[n, 2] < 0.0 and folded[row, 2].min() > 0.05]
+    beside = [n for n, row in enumerate(triangles) for m in upside if len({*row} & {*triangles[m]}) == 2]
+    moved = {int(n) for row in (*upside, *(n for n in beside if normals[n, 2] > 0.0)) for n in triangles[row]}
+    for n in moved:
+        once[n] += 0.5 * (folded[list(neighbours[n])].mean(axis=0) - folded[n])
+    assert vertex in moved
+    monkeypatch.setattr(wrapping, "_UNFOLDINGS", 1)
+    np.testing.assert_allclose(wrapping._unfolded(folded, triangles), once, atol=1e-15)
+    monkeypatch.undo()
+    flat = wrapping._unfolded(folded, triangles)
+    after = np.cross(flat[triangles[:, 1]] - flat[triangles[:, 0]], flat[triangles[:, 2]] - flat[triangles[:, 0]])
+    assert (after[flat[triangles][:, :, 2].min(axis=1) > 0.05][:, 2] > 0.0).all()
+    np.testing.assert_array_equal(wrapping._unfolded(points, triangles), points)
+
+
+@pytest.mark.parametrize("moved", [(0.088, 0.0), (-0.044, 0.05)])
+def test_a_needle_in_a_flat_face_is_mended(plate: tuple[np.ndarray, np.ndarray], moved: tuple[float, float]) -> None:
+    """A short edge collapses, a long one is flipped: area, volume and closure stay, and no triangle is a needle."""
+    points, triangles = plate
+    needles = points.copy()
+    needles[_vertex(points, 0.3, 0.3, 0.1), :2] += moved
+    before, after = (
+        RadiatingSurface(*surface) for surface in ((needles, triangles), wrapping._mended(needles, triangles, 0.1))
+    )
+    assert _least_angle(before) < 8.0
+    assert _least_angle(after) > 15.0
+    assert (after.area, after.volume) == pytest.approx((before.area, before.volume), rel=1e-12)
+    edges = np.sort(np.concatenate([after.triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
