@@ -71,7 +71,7 @@ from gearwhine.coupling.machine.planets import (
     turning_rims,
 )
 from gearwhine.coupling.machine.rotating_inertia import rotating_inertia
-from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, internal_damping, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from gearwhine.coupling.statics.flank_swing import (
@@ -406,6 +406,10 @@ def _connectors_of_shafts(
         rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), relative, speed_range)
         yield replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T)
     for rotor in rotors:
+        if rotor.internal_damping.any():
+            relative = coordinates.speeds[rotor.name] - frames.of(rotor.name)
+            connector = internal_damping(rotor, relative, speed_range)
+            yield replace(connector, directions=coordinates.rows(rotor.name, connector.directions.T).T)
         yield from _transports(coordinates, rotor, coordinates.speeds[rotor.name], frames.of(rotor.name), speed_range)
     yield from (pin_in_walls(coordinates, rotor) for rotor in rotors if rotor.pin is not None)
 

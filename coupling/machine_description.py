@@ -1156,6 +1156,7 @@ class Machine:
             bodies=[body for body in self.gear_bodies if body.gear in names],
             carrier=shaft.carrier,
             pin=self._displaced_pin(shaft),
+            internal_damping=shaft.internal_damping,
         )
 
     def _mounted_pin(self, shaft: Shaft) -> MountedPin | None:

@@ -82,6 +82,8 @@ class Shaft:
         Offset of a planet's pin from ``axis``, away from the carrier's axis and counter-clockwise about it [m].
     pin : PinBeam or PinSprings, optional
         Elastic pin of a planet, on which its bearings sit; by default it is rigid.
+    internal_damping : float
+        Viscous damping of the shaft over its stiffness, which rotates with it [s].
     """
 
     rotor: Rotor
@@ -96,6 +98,7 @@ class Shaft:
     pin_error: tuple[float, float] = (0.0, 0.0)
     rim_seat: str | None = None
     pin: Pin | None = None
+    internal_damping: float = 0.0
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
@@ -106,6 +109,7 @@ class Shaft:
             "axis": Numbers(2),
             "start": Number(unit="m"),
             "damping_ratio": Number(at_least=0.0, below=1.0),
+            "internal_damping": Number(at_least=0.0, at_most=1e-2, unit="s"),
             "frequency_limit": Number(above=0.0, optional=True, unit="rad/s"),
             "mode_count": Number(at_least=1, optional=True, whole=True),
             "bow": Instance(Bow, "a bow, or None", optional=True),

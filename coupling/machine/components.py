@@ -259,6 +259,8 @@ class RotorComponent(Component):
         Rotor with which the shaft's axis turns, of a planet; ``axis`` is its place at t = 0.
     pin : MountedPin or None
         Elastic pin between the carrier and the bearings of a planet; None of a rigid one.
+    internal_damping : ndarray, shape (n,)
+        Damping by the shaft's deformation, which rotates with the shaft [1/s].
     """
 
     modal: ModalRotor
@@ -271,6 +273,7 @@ class RotorComponent(Component):
     damping_ratio: float = 0.0
     carrier: str | None = None
     pin: MountedPin | None = None
+    internal_damping: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -669,6 +672,7 @@ def rotor_component(
     bodies: Sequence[GearBody] = (),
     carrier: str | None = None,
     pin: MountedPin | None = None,
+    internal_damping: float = 0.0,
 ) -> RotorComponent:
     """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
@@ -715,6 +719,8 @@ def rotor_component(
         Rotor with which the shaft's axis turns.
     pin : MountedPin, optional
         Elastic pin of a planet in its carrier.
+    internal_damping : float
+        Viscous damping over stiffness of the shaft's material, C = η K, in the rotating shaft [s].
     """
     lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
@@ -760,6 +766,7 @@ def rotor_component(
         damping_ratio=damping_ratio,
         carrier=carrier,
         pin=pin,
+        internal_damping=internal_damping * np.concatenate([damped[: n - len(plates)], 0.0 * plates]) ** 2,
     )
 
 

@@ -1,4 +1,4 @@
-"""Dashpots of flexible shaft couplings: internal damping, which rotates with the shaft.
+"""Dashpots of flexible shaft couplings, and of a shaft's material: internal damping, which rotates with the shaft.
 
 A coupling of length L yields by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the
 axis, by the tilt φ_r - φ_l, and along and about the axis by the differences of its ends. Dashpots resist their
@@ -7,9 +7,11 @@ velocities in the rotating shaft. Across the axis that is, in the frame at rest 
     f = c (δ' + Ω (δ_y, -δ_x)),
 
 damping and a circulatory stiffness: internal damping, which feeds forward whirl above its natural frequency (Genta,
-Dynamics of Rotating Systems, 2005, section 4.4).
+Dynamics of Rotating Systems, 2005, section 4.4). A shaft of viscoelastic material, σ = E (ε + η ε'), has c = η k
+in each of its free modes (Zorzi & Nelson, J. Eng. Power 99, 71, 1977).
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,11 +68,47 @@ def shaft_dashpots(
     damping = np.diag(
         [dashpots.lateral, dashpots.lateral, dashpots.tilt, dashpots.tilt, dashpots.torsional, dashpots.axial]
     )
-    circulating = np.zeros((6, 6))
-    for first, value in ((0, dashpots.lateral), (2, dashpots.tilt)):
-        circulating[first, first + 1], circulating[first + 1, first] = speed * value, -speed * value
+    pairs = [(0, 1, dashpots.lateral), (2, 3, dashpots.tilt)]
+    return rows, _rotating(dashpots.name, rows.T, damping, pairs, speed, speed_range)
+
+
+def internal_damping(rotor: RotorComponent, speed: float, speed_range: tuple[float, float]) -> LinearConnector:
+    """Law of the damping of a shaft's material over the coordinates of its rotor that deform it, as a connector.
+
+    Parameters
+    ----------
+    rotor : RotorComponent
+    speed : float
+        Ω, signed [rad/s].
+    speed_range : tuple of float
+        Lowest and highest speed of the run, as parts of Ω.
+    """
+    damped = np.flatnonzero(rotor.internal_damping)
+    values = rotor.internal_damping[damped]
+    own = {int(number): place for place, number in enumerate(damped)}
+    pairs = [
+        (place, own[number + rotor.plane_size], float(values[place]))
+        for number, place in own.items()
+        if number < rotor.plane_size
+    ]
+    name = f"internal damping of {rotor.name}"
+    return _rotating(name, np.eye(rotor.size)[:, damped], np.diag(values), pairs, speed, speed_range)
+
+
+def _rotating(
+    name: str,
+    directions: FloatArray,
+    damping: FloatArray,
+    pairs: Iterable[tuple[int, int, float]],
+    speed: float,
+    speed_range: tuple[float, float],
+) -> LinearConnector:
+    """Dashpots as a connector; ``pairs`` are directions along x and y with the damping that rotates."""
+    circulating = np.zeros_like(damping)
+    for x, y, value in pairs:
+        circulating[x, y], circulating[y, x] = speed * value, -speed * value
     table = None
     if speed_range[0] != speed_range[1] and np.any(circulating):
         ends = np.array(speed_range)
         table = SpeedTable(ends, ends[:, None, None] * circulating, np.stack([damping, damping]))
-    return rows, LinearConnector(dashpots.name, rows.T, circulating, damping, over_speed=table)
+    return LinearConnector(name, directions, circulating, damping, over_speed=table)

@@ -182,6 +182,7 @@ class Parts:
                 pin_error=rotor.pin_error,
                 pin=rotor.build_pin(self.material),
                 rim_seat=rotor.rim_seat,
+                internal_damping=rotor.internal_damping,
             )
             for rotor in self.rotor
         )

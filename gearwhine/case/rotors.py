@@ -398,6 +398,9 @@ class Rotor(Table):
     """Mass of the shaft, distributed or lumped at the ends of the segments, at which its bearings should stand then."""
     damping_ratio: DampingRatio = 0.005
     """Damping ratio of the shaft's own modes, in the coupled system."""
+    internal_damping: Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e-2)] = 0.0
+    """Internal viscous damping of the shaft over its stiffness, in the coupled system. It rotates with the shaft, and
+    feeds forward whirl at speeds above the whirl's frequency; `damping_ratio` does not."""
     shear_coefficient: ShearCoefficient = "cowper"
     """Shear coefficient: the formula of Cowper or of Hutchinson, or the number itself."""
     axial_force: Force = 0.0

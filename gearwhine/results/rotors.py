@@ -124,6 +124,7 @@ WHIRL = (
     in_file("whirl_state", "", lambda row: f"{row.solved.rotor.name} at {row.whirl.speed * RPM:.6g} rpm"),
     Quantity("speed_rpm", "whirl.speed", "whirl_speed"),
     Quantity("frequency_hz", "whirl.frequencies", "whirl_frequency", ("whirl_number",)),
+    Quantity("damped_frequency_hz", "whirl.damped_frequencies"),
     Quantity("damping_ratio", "whirl.damping_ratios"),
     Quantity("log_decrement", "whirl.log_decrements"),
     Quantity("direction", "whirl.direction"),

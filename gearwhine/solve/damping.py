@@ -59,6 +59,8 @@ def part_dampings(case: Case) -> tuple[PartDamping, ...]:
         parts.append(PartDamping("housing", "housing.damping_ratio", text, _gives(reduced, "damping_ratio")))
     for number, rotor in enumerate(case.rotor):
         text = f"{100.0 * rotor.damping_ratio:.3g} % of critical"
+        if rotor.internal_damping > 0.0:
+            text += f", and internal damping of {1e6 * rotor.internal_damping:.3g} µs times its stiffness"
         key = f"rotor[{number}].damping_ratio"
         parts.append(PartDamping(f"rotor {rotor.name}", key, text, _gives(rotor, "damping_ratio")))
     for number, bearing in enumerate(case.bearing):

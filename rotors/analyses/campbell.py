@@ -1,4 +1,4 @@
-"""Campbell diagram: whirl eigenvalues over a range of speeds, and their crossings with orders of the speed.
+"""Campbell diagram: whirl eigenvalues over a range of speeds, crossings with orders of the speed, stability limit.
 
 Starting values at every speed come from one modal projection, reduced once; the roots are then refined on the exact
 equations, all speeds in one batch. Branches are followed from speed to speed, through the places where they cross, by
@@ -10,8 +10,8 @@ Without damping the number of roots is proved at every speed (`gearwhine.rotors.
 proof costs a contour integral at each speed: it is made at a few speeds, or at all on request.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -272,36 +272,6 @@ class Crossing:
         return float(-2.0 * np.pi * self.eigenvalue.real / self.eigenvalue.imag)
 
 
-def stability_onset(speeds: FloatArray, damping_ratios: FloatArray) -> tuple[float, int] | None:
-    """Lowest speed from which a branch is unstable, between the speeds of a diagram, and that branch.
-
-    Parameters
-    ----------
-    speeds : ndarray, shape (s,)
-        Speeds, ascending in size [rad/s].
-    damping_ratios : ndarray, shape (s, m)
-        Damping ratios of the branches, taken as linear between two speeds; NaN where a branch does not exist.
-
-    Returns
-    -------
-    (float, int) or None
-        None where all are stable.
-    """
-    onsets: list[tuple[float, int]] = []
-    for branch, ratios in enumerate(damping_ratios.T):
-        unstable = np.flatnonzero(np.nan_to_num(ratios) < -NEUTRAL)
-        if not unstable.size:
-            continue
-        first = int(unstable[0])
-        if first == 0 or np.isnan(ratios[first - 1]):
-            onsets.append((float(speeds[first]), branch))
-            continue
-        before, after = max(float(ratios[first - 1]), 0.0), float(ratios[first])
-        step = float(speeds[first] - speeds[first - 1])
-        onsets.append((float(speeds[first - 1]) + step * before / (before - after), branch))
-    return min(onsets, default=None)
-
-
 @dataclass(frozen=True)
 class Campbell(ComplexFrequencies):
     """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is outside the range.
@@ -318,6 +288,9 @@ class Campbell(ComplexFrequencies):
         Share of motion along the axis in the kinetic energy of whirl.
     proved : ndarray of bool, shape (s,)
         Speeds at which the number of roots was proved.
+    onset : (float, int) or None
+        Stability limit: lowest speed of rotation, without its sense, from which a branch grows [rad/s], and that
+        branch; None where all are stable.
     """
 
     speeds: FloatArray
@@ -327,16 +300,12 @@ class Campbell(ComplexFrequencies):
     proved: BoolArray
     solver: WhirlSolver = field(repr=False)
     blocks: tuple[tuple[int, ...], ...] = field(repr=False)
+    onset: tuple[float, int] | None = None
 
     @property
     def unstable_from(self) -> float | None:
-        """Lowest speed of the diagram, without its sense, at which a mode grows [rad/s]; None where none does.
-
-        The onset between two speeds is :func:`stability_onset`.
-        """
-        # Branches that do not oscillate at a speed are NaN there, which compares as stable.
-        grows = (self.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
-        return float(np.abs(self.speeds[grows]).min()) if grows.any() else None
+        """Lowest speed of rotation, without its sense, from which a mode grows [rad/s]; None where none does."""
+        return None if self.onset is None else self.onset[0]
 
     def crossings(self, order: float = 1.0) -> tuple[Crossing, ...]:
         """Where branches cross Im λ = order · |Ω| within the range, each refined on the exact equations.
@@ -352,7 +321,52 @@ class Campbell(ComplexFrequencies):
         return tuple(sorted(crossings, key=lambda crossing: (abs(crossing.speed), crossing.branch)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
-        """Find the crossing between two neighbouring speeds, every λ on the way refined on the exact equations."""
+        """Find the crossing between two neighbouring speeds."""
+        found = self._zero(branch, left, lambda value, speed: value.imag - order * abs(speed))
+        if found is None:
+            raise IncompleteModesError(
+                f"the crossing of order {order:g} between {self.speeds[left]:g} and {self.speeds[left + 1]:g} rad/s "
+                "does not settle; ask for more speeds about there"
+            )
+        return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
+
+    def stability_onset(self) -> tuple[float, int] | None:
+        """Find the lowest speed from which a branch grows, Re λ = 0, refined on the exact equations, and that branch.
+
+        A branch that grows at the lowest speed of the diagram, or from the first speed at which it oscillates, has its
+        onset there. One that neither decays nor grows at the speed before has it at that speed.
+        """
+        # Branches that do not oscillate at a speed are NaN there, which compares as stable.
+        ratios = -self.eigenvalues.real / np.abs(self.eigenvalues)
+        rows, branches = np.nonzero(ratios < -NEUTRAL)
+        if not rows.size:
+            return None
+        sizes = np.abs(self.speeds)
+        first = sizes[rows].min()
+        onsets = [
+            (self._onset(row, branch), branch)
+            for row, branch in zip(rows.tolist(), branches.tolist(), strict=True)
+            if sizes[row] == first
+        ]
+        return min(onsets)
+
+    def _onset(self, row: int, branch: int) -> float:
+        """Speed without its sense from which a branch grows that does so at one speed, and at none nearer to rest."""
+        before = row - 1 if self.speeds[row] > 0.0 else row + 1
+        speed = float(abs(self.speeds[row]))
+        if not 0 <= before < self.speeds.size or np.isnan(self.eigenvalues[before, branch]):
+            return speed
+        value = complex(self.eigenvalues[before, branch])
+        if value.real >= -NEUTRAL * abs(value):
+            return float(abs(self.speeds[before]))
+        found = self._zero(branch, min(row, before), lambda value, speed: value.real)
+        return speed if found is None else abs(found.speed)
+
+    def _zero(self, branch: int, left: int, gap: Callable[[complex, float], float]) -> Point | None:
+        """Find where a gap of λ and Ω vanishes between two neighbouring speeds, every λ refined on the exact equations.
+
+        None where it does not settle.
+        """
         speeds, ends = self.speeds[left : left + 2].tolist(), self.eigenvalues[left : left + 2, branch]
         equations = self._equations(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
 
@@ -365,19 +379,13 @@ class Campbell(ComplexFrequencies):
             if root.residuals[0] > ACCEPTED or abs(value - start[0]) > CROSSING_JUMP * abs(value):
                 return None
             direction, along = characters(own_equations, root, np.array([speed]))[0].tolist()
-            return BranchPoint(speed, value, value.imag - order * abs(speed), (direction, along))
+            return BranchPoint(speed, value, gap(value, speed), (direction, along))
 
         points = [
-            BranchPoint(speed, complex(value), float(value.imag - order * abs(speed)), (np.nan, np.nan))
-            for speed, value in zip(speeds, ends, strict=True)
+            BranchPoint(speed, value, gap(value, speed), (np.nan, np.nan))
+            for speed, value in zip(speeds, ends.tolist(), strict=True)
         ]
-        crossing = refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
-        if crossing is None:
-            raise IncompleteModesError(
-                f"the crossing of order {order:g} between {speeds[0]:g} and {speeds[1]:g} rad/s does "
-                "not settle; ask for more speeds about there"
-            )
-        return Crossing(crossing.speed, crossing.eigenvalue, order, crossing.shape[0], branch, crossing.shape[1])
+        return refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
 
     def _equations(self, branch: int, highest: float, speed: float) -> WhirlEquations:
         sets = self.blocks[branch]
@@ -462,7 +470,7 @@ def campbell(
                 owners.append(blocks)
     order = sorted(range(len(branches)), key=lambda k: branches[k].first_frequency)
     empty = np.zeros((turning.size, 0))
-    return Campbell(
+    diagram = Campbell(
         speeds=turning,
         eigenvalues=np.stack([branches[k].eigenvalues for k in order], axis=1) if order else empty.astype(complex),
         direction=np.stack([branches[k].direction for k in order], axis=1) if order else empty,
@@ -471,6 +479,7 @@ def campbell(
         solver=shared,
         blocks=tuple(owners[k] for k in order),
     )
+    return replace(diagram, onset=diagram.stability_onset())
 
 
 def _inside(bearing: Bearing, speed: float) -> float:

@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+import gearwhine as gw
 from gearwhine.coupling import CoupledMachine, MountedBearing, assemble_machine, coupled_modes
 from gearwhine.coupling.machine.components import rotor_component
-from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, internal_damping, shaft_dashpots
 from gearwhine.rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
@@ -82,3 +83,43 @@ def test_what_circulates_goes_with_the_speed_of_a_run() -> None:
         stiffness, damping = law.over_speed.at(rate)
         np.testing.assert_allclose(stiffness, there.stiffness, atol=1e-9)
         np.testing.assert_allclose(damping, there.damping)
+
+
+@pytest.mark.parametrize("part", [-2.0, 0.5, 2.99, 3.01])
+def test_a_jeffcott_rotor_with_internal_damping_loses_stability_at_the_published_speed(part: float) -> None:
+    """λ² + 2 (ζ_e + ζ_i) ω λ + ω² = 2 i ζ_i ω Ω: stable up to Ω = ω (1 + ζ_e / ζ_i), three times ω here."""
+    mass, length, diameter, external, internal = 20.0, 1.0, 0.04, 0.02, 0.01
+    light = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 1.0)
+    segment = Segment(length / 2.0, diameter, 0.0, light, shear_coefficient=0.9)
+    second_moment, area = math.pi * diameter**4 / 64.0, math.pi * diameter**2 / 4.0
+    bending = length**3 / (48.0 * 2.1e11 * second_moment)
+    omega = 1.0 / math.sqrt(mass * (bending + length / (4.0 * 0.9 * light.shear_modulus * area)))
+    rotor = Rotor("jeffcott", [segment] * 2, [Disc(length / 2.0, mass)])
+    dashpot = 2.0 * external * omega * mass * np.eye(2)
+    held = [
+        *(Bearing.isotropic(f"at {at}", at, 1e12) for at in (0.0, length)),
+        Bearing("at the disc", length / 2.0, np.zeros((2, 2)), dashpot),
+    ]
+    shaft = gw.Shaft(rotor, damping_ratio=0.0, internal_damping=2.0 * internal / omega)
+    mounted = [MountedBearing(bearing, "jeffcott", None) for bearing in held]
+    modes = gw.Machine([shaft], mounted, speed=part * omega).modes()
+    found = modes.eigenvalues[[kind == "rotor" for kind in modes.kinds]][:2]
+    equation = [1.0, 2.0 * (external + internal) * omega, omega**2 - 2j * internal * omega * abs(part) * omega]
+    expected = np.roots(equation)
+    by_damping = np.argsort(expected.real)
+    np.testing.assert_allclose(np.sort(found.real), expected.real[by_damping], atol=2e-6 * omega)
+    np.testing.assert_allclose(found.imag[np.argsort(found.real)], np.abs(expected.imag[by_damping]), rtol=5e-5)
+    assert (found.real.max() > 0.0) == (part > 3.0)
+
+
+def test_internal_damping_goes_with_the_speed_of_a_run() -> None:
+    rotor = Rotor("shaft", [Segment(0.3, 0.03, 0.0, STEEL)])
+    held = [Bearing.isotropic(f"at {at}", at, 1e8) for at in (0.0, 0.3)]
+    component = rotor_component("shaft", modal_rotor(rotor, held, count=4), start=0.0, internal_damping=1e-5)
+    law = internal_damping(component, 300.0, (0.0, 1.5))
+    assert law.over_speed is not None
+    for rate in (0.0, 0.4, 1.5):
+        stiffness, damping = law.over_speed.at(rate)
+        expected = internal_damping(component, rate * 300.0, (1.0, 1.0))
+        np.testing.assert_allclose(stiffness, expected.stiffness, atol=1e-9 * np.abs(law.stiffness).max())
+        np.testing.assert_array_equal(damping, expected.damping)

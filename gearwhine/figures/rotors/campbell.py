@@ -36,7 +36,6 @@ from gearwhine.figures.style import (
 )
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors import Campbell
-from gearwhine.rotors.analyses.campbell import stability_onset
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, NEUTRAL
 
 # Below this part of a circular whirl a mode as a whole has no sense.
@@ -145,14 +144,14 @@ def draw_campbell(
 
     multiples = np.broadcast_to(critical_orders, np.shape(np.atleast_1d(critical_speeds)))
     criticals = _criticals(critical_speeds, critical_directions, multiples, low, high, top)
-    onset = stability_onset(turning, ratios)
     labels = [
         Label(f"{RPM * speed:.4g}", RPM * speed, multiple * speed / HERTZ, sense.color)
         for speed, sense, multiple in criticals
     ]
+    onset = diagram.onset
     if onset is not None:
         speed, branch = onset
-        height = float(np.interp(speed, turning, values[:, branch])) / HERTZ
+        height = float(np.interp(speed, turning, diagram.frequencies[order, branch])) / HERTZ
         labels.append(Label(f"unstable above {RPM * speed:.4g}", RPM * speed, min(height, top / HERTZ)))
     row = arrange(labels, [(label.x / RPM - low) / (high - low) * PANEL_WIDTH for label in labels], PANEL_WIDTH)
     is_damped = bool((np.abs(np.nan_to_num(ratios)) > NEUTRAL).any())

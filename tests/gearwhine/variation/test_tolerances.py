@@ -90,6 +90,25 @@ def test_random_pitches_are_within_the_class_and_close_over_the_turn() -> None:
         ("P9", 40, -88, -26),
         ("JS7", 40, -12.5, 12.5),
         ("k8", 40, 0, 39),
+        ("j5", 52, -7, 6),
+        ("j6", 100, -9, 13),
+        ("j7", 40, -10, 15),
+        ("J6", 62, -6, 13),
+        ("J7", 52, -12, 18),
+        ("K4", 30, -6, 0),
+        ("N5", 52, -28, -15),
+        ("H3", 52, 0, 5),
+        ("k3", 52, 0, 5),
+        ("c11", 40, -280, -120),
+        ("d9", 40, -142, -80),
+        ("r6", 65, 41, 60),
+        ("r6", 75, 43, 62),
+        ("R7", 75, -62, -32),
+        ("s6", 50, 43, 59),
+        ("S7", 50, -59, -34),
+        ("t6", 30, 41, 54),
+        ("u6", 20, 41, 54),
+        ("u6", 30, 48, 61),
     ],
 )
 def test_zones_as_handbooks_print_them(zone: str, millimetres: float, low: float, high: float) -> None:
@@ -97,7 +116,10 @@ def test_zones_as_handbooks_print_them(zone: str, millimetres: float, low: float
     assert (1e6 * found[0], 1e6 * found[1]) == pytest.approx((low, high))
 
 
-@pytest.mark.parametrize(("zone", "length"), [("z9", 0.05), ("H3", 0.05), ("Js7", 0.05), ("7H", 0.05), ("H7", 0.6)])
+@pytest.mark.parametrize(
+    ("zone", "length"),
+    [("z9", 0.05), ("H2", 0.05), ("j8", 0.05), ("t6", 0.024), ("Js7", 0.05), ("7H", 0.05), ("H7", 0.6)],
+)
 def test_other_zones_are_refused(zone: str, length: float) -> None:
     with pytest.raises(ToleranceZoneError, match="expected"):
         limit_deviations(zone, length)
