@@ -64,13 +64,18 @@ if TYPE_CHECKING:
     from gearwhine.housing.modal_test import ModalTest as ModalTest
     from gearwhine.housing_study import HousingStudy as HousingStudy
     from gearwhine.meshes import GeometryError as GeometryError
+    from gearwhine.numerics.distributions import Discrete as Discrete
+    from gearwhine.numerics.distributions import Normal as Normal
+    from gearwhine.numerics.distributions import Triangular as Triangular
+    from gearwhine.numerics.distributions import Uniform as Uniform
+    from gearwhine.optimisation.scatter import Scatter as Scatter
     from gearwhine.rotors import Bearing as Bearing
     from gearwhine.rotors import Disc as Disc
     from gearwhine.rotors import Rotor as Rotor
     from gearwhine.rotors import RotorError as RotorError
     from gearwhine.rotors import Segment as Segment
     from gearwhine.rotors import ShaftMaterial as ShaftMaterial
-    from gearwhine.studied_machine import Settings as Settings
+    from gearwhine.settings import Settings as Settings
     from gearwhine.study import Study as Study
 
 try:
@@ -99,7 +104,7 @@ _HOMES = {
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
     "gearwhine.case_study": ("CaseStudy", "build", "load"),
-    "gearwhine.studied_machine": ("Settings",),
+    "gearwhine.settings": ("Settings",),
     "gearwhine.study": ("Study",),
     "gearwhine.housing": (
         "Housing",
@@ -118,6 +123,8 @@ _HOMES = {
     "gearwhine.analyses.optimisation_result": ("optimise",),
     "gearwhine.analyses.variation_result": ("vary",),
     "gearwhine.meshes": ("GeometryError",),
+    "gearwhine.numerics.distributions": ("Discrete", "Normal", "Triangular", "Uniform"),
+    "gearwhine.optimisation.scatter": ("Scatter",),
     "gearwhine.rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
 
 from gearwhine.commands import COMMANDS
-from gearwhine.numerics.findings import Number
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.studied_machine import Settings
-from gearwhine.study import Study, require_either
+from gearwhine.settings import Settings
+from gearwhine.study import AT_LEAST_ONE, NOT_NEGATIVE, Study, require_either
 from gearwhine.study_folder import FolderOptions, StudyFolder
 from gearwhine.view_names import GearPart, View
 
@@ -57,8 +56,6 @@ if TYPE_CHECKING:
 
 # Tables of a case that some options of a command need besides.
 _NEEDS_BESIDES = {"system --mesh-phase": ("gear_pair",), "simulate": ("transient",)}
-_AtLeastOne = Number(at_least=1, whole=True)
-_NotNegative = Number(at_least=0, whole=True)
 
 
 def load(
@@ -361,7 +358,7 @@ class CaseStudy(Study):
         return compare_result(housing, compared, self.origin)
 
     def survey(
-        self, sensors: Annotated[int, _AtLeastOne], modes: Annotated[int | None, _AtLeastOne] = None
+        self, sensors: Annotated[int, AT_LEAST_ONE], modes: Annotated[int | None, AT_LEAST_ONE] = None
     ) -> "Result[PlannedSurvey]":
         """Plan a modal survey: sensor and hammer positions, as files.
 
@@ -392,7 +389,7 @@ class CaseStudy(Study):
             ) from error
         return survey_result(housing, planned, self.origin)
 
-    def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
+    def update(self, *, null: Annotated[int, NOT_NEGATIVE] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
         """Fit the parameters of [update] to the measured modes, and write the case with them as updated.toml.
 
         Parameters
@@ -642,13 +639,13 @@ class CaseStudy(Study):
 
         return solve_sweep(self.origin, self._source, swept_keys(self.case, over), self._study_folder(**options))
 
-    def vary(
+    def vary(  # type: ignore[override]  # a case has distributions of its keys
         self,
-        samples: Annotated[int | None, _AtLeastOne] = None,
+        samples: Annotated[int | None, AT_LEAST_ONE] = None,
         *,
         indices: bool = False,
         widen: float | None = None,
-        seed: Annotated[int | None, _NotNegative] = None,
+        seed: Annotated[int | None, NOT_NEGATIVE] = None,
         **options: Unpack[FolderOptions],
     ) -> "Result[VariedResult]":
         """Many gearboxes as production makes them, by the distributions of [variation]: scatter, causes and yield.
@@ -689,7 +686,9 @@ class CaseStudy(Study):
             seed=seed,
         )
 
-    def detect(self, **options: Unpack[FolderOptions]) -> "Result[DetectionResult]":
+    def detect(  # type: ignore[override]  # a case has its fault under [detection]
+        self, **options: Unpack[FolderOptions]
+    ) -> "Result[DetectionResult]":
         """Which sensor sees the fault of [detection] by which indicator, and from which size on, with what probability.
 
         Healthy gearboxes give the threshold, those with the fault the probability of detection.
@@ -715,12 +714,12 @@ class CaseStudy(Study):
 
         return solve_detection(self._source, self._study_folder(**options))
 
-    def optimise(
+    def optimise(  # type: ignore[override]  # a case has ranges of its keys
         self,
-        evaluations: Annotated[int | None, _AtLeastOne] = None,
+        evaluations: Annotated[int | None, AT_LEAST_ONE] = None,
         *,
         method: Literal["search", "grid"] | None = None,
-        seed: Annotated[int | None, _NotNegative] = None,
+        seed: Annotated[int | None, NOT_NEGATIVE] = None,
         **options: Unpack[FolderOptions],
     ) -> "Result[Optimised]":
         """Which design is best, by the keys, aims and limits of [optimisation]; several aims have a Pareto front.

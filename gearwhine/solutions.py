@@ -48,24 +48,20 @@ def failure_of(error: Exception) -> Failure:
     return Failure(message or str(error))
 
 
-def solution_key(case: Case, unread: Container[str], **more: Any) -> str:
-    """Return the key of the content that a solution depends on: case, files, libraries and our code.
-
-    Parameters
-    ----------
-    case : Case
-    unread : container of str
-        Tables of the case that the solution does not depend on.
-    **more
-        What else it depends on.
-    """
+def case_content(case: Case, unread: Container[str]) -> dict[str, Any]:
+    """Return the content of a case and of its files, without the tables that a solution does not depend on."""
     document = {name: table for name, table in case_document(case).items() if name not in unread}
+    content: dict[str, Any] = with_contents(document, case.input_files.contents)
+    return content
+
+
+def solution_key(**content: Any) -> str:
+    """Return the key of all that a solution depends on: its content, libraries and our code."""
     return content_key(
         {
-            "case": with_contents(document, case.input_files.contents),
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
             "source": code_digest(),
-            **more,
+            **content,
         }
     )
 

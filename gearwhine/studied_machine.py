@@ -1,4 +1,4 @@
-"""Machine of a study, the settings of its analyses, and what these ask of the study.
+"""Machine of a study, and what its analyses ask of the study.
 
 A study of a case answers some of it otherwise, see :mod:`gearwhine.case_study`.
 """
@@ -6,12 +6,12 @@ A study of a case answers some of it otherwise, see :mod:`gearwhine.case_study`.
 import math
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.settings import Settings
 
 if TYPE_CHECKING:
     from gearwhine.analyses.machine_results import MachineUnderLoad
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
-    from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
@@ -33,61 +32,6 @@ if TYPE_CHECKING:
     from gearwhine.housing.modal_test import ComparedTest
     from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What analyses of a machine take beside it.
-
-    Attributes
-    ----------
-    title : str
-        Title of the results.
-    transient : TransientPlan, optional
-        Stretch of the motion over time; without one ``run`` has no motion.
-    tracking : OrderTracking, optional
-        Windows of the orders along a run.
-    speeds : sequence of float
-        Signed speeds of the first driver's shaft for analyses over speed [rad/s].
-    acoustics : Acoustics, optional
-        Method and medium, floor and microphones of the sound.
-    sound_in_run : bool, optional
-        Whether ``run`` finds the sound of its motion with these acoustics; by default unless they are boundary
-        elements, which take minutes.
-    """
-
-    title: str = ""
-    transient: "TransientPlan | None" = None
-    tracking: "OrderTracking | None" = None
-    speeds: Sequence[float] = ()
-    acoustics: "Acoustics | None" = None
-    sound_in_run: bool | None = None
-
-    def __post_init__(self) -> None:
-        """Keep own copies, and check each of them."""
-        from gearwhine.coupling.analyses.recording import TransientPlan
-        from gearwhine.coupling.analyses.run_up import OrderTracking
-        from gearwhine.coupling.errors import CouplingError
-        from gearwhine.coupling.sound import Acoustics
-        from gearwhine.numerics.own_copies import keep_tuples
-
-        keep_tuples(self, "speeds")
-        rules: dict[str, Rule] = {
-            "title": Instance(str, "a text"),
-            "transient": Instance(TransientPlan, "a TransientPlan, or None", optional=True),
-            "tracking": Instance(OrderTracking, "an OrderTracking, or None", optional=True),
-            "speeds": Numbers(each=Number(unit="rad/s")),
-            "acoustics": Instance(Acoustics, "an Acoustics, or None", optional=True),
-            "sound_in_run": Instance(bool, "a truth value, or None", optional=True),
-        }
-        refuse(attribute_findings(("settings", self.title), self, **rules), CouplingError)
-
-    @property
-    def is_sound_in_run(self) -> bool:
-        """Whether ``run`` finds the sound of its motion."""
-        if self.acoustics is None:
-            return False
-        return self.acoustics.method != "boundary-elements" if self.sound_in_run is None else self.sound_in_run
 
 
 class StudiedMachine:

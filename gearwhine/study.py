@@ -7,8 +7,9 @@ import os
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, argument_findings, refuse
 from gearwhine.numerics.result_warnings import warning
@@ -18,6 +19,7 @@ from gearwhine.view_names import GearPart
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run_solution import RunSolution
+    from gearwhine.case.optimisation import Aim
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
     from gearwhine.coupling.analyses.recording import TransientPlan
@@ -26,15 +28,22 @@ if TYPE_CHECKING:
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.detection.detectability import DetectionResult
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.numerics.distributions import Discrete, Distribution, Uniform
+    from gearwhine.optimisation.optimised import Optimised
+    from gearwhine.optimisation.scatter import Scatter
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.sweep.grid import SweptPoint
     from gearwhine.sweep.points import GridPoint
+    from gearwhine.variation.statistics import VariedResult
 
 
 SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
 HARMONICS = Number(at_least=1, at_most=50, whole=True)
 POINTS = Number(at_least=2, at_most=2000, whole=True)
+AT_LEAST_ONE = Number(at_least=1, whole=True)
+NOT_NEGATIVE = Number(at_least=0, whole=True)
 _SPEEDS = Numbers(each=Number(unit="rad/s"))
 
 
@@ -349,6 +358,194 @@ class Study(StudiedMachine):
         return solve_speed_sweep(
             self.machine, tuple(speeds) or self.settings.speeds, plan, self.origin, warnings, self.progress
         )
+
+    def changed(self, changes: Mapping[str, object]) -> "Study":
+        """Return a study of the same machine with other values of some attributes; this one stays as it is.
+
+        Parameters
+        ----------
+        changes : mapping of str to object
+            Values, in SI, or parts by the paths of attributes of the machine, with names of parts in brackets:
+            ``{"torque": 80.0, "gears[pinion].gear.bore": 0.02}``.
+
+        Raises
+        ------
+        ValueError
+            Where a path leads nowhere, or the machine cannot be.
+        """
+        from gearwhine.coupling.description.changed import changed
+
+        return Study(changed(self.machine, changes), self.settings, self.progress)
+
+    def vary(
+        self,
+        laws: "Mapping[str, Distribution]",
+        samples: Annotated[int, AT_LEAST_ONE] = 256,
+        *,
+        analyses: Sequence[str] | None = None,
+        quantities: Sequence[str] = (),
+        limits: "Mapping[str, tuple[float | None, float | None]] | None" = None,
+        indices: bool = False,
+        widen: float | None = None,
+        seed: Annotated[int, NOT_NEGATIVE] = 1,
+        folder: str | os.PathLike[str] | None = None,
+        workers: Annotated[int | None, AT_LEAST_ONE] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> "Result[VariedResult]":
+        """Many machines as production makes them, by the distributions of attributes: scatter, causes and yield.
+
+        The speeds of levels, the transient and the acoustics are those of the settings. :func:`gearwhine.vary` varies
+        machines that a function makes.
+
+        Parameters
+        ----------
+        laws : mapping of str to Distribution
+            Distributions of :mod:`gearwhine.numerics.distributions` in SI, by paths as of :meth:`changed`.
+        samples : int
+            Number of machines.
+        analyses, quantities, limits, indices, widen, seed, folder, workers, scheduler, fresh
+            As of :func:`gearwhine.vary`. Processes are started where they are worth it, as many as cores.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where a path leads nowhere, or an analysis is none of the machine.
+        CaseError
+            Where a limit is of a quantity that the machines do not have.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.variation_result import Drawn, inputs_of_laws, study_folder, vary_machine
+        from gearwhine.coupling.description.changed import changed
+        from gearwhine.variation.machines import made
+
+        _require_arguments("vary", samples=(samples, AT_LEAST_ONE), seed=(seed, NOT_NEGATIVE))
+        inputs, make = inputs_of_laws("vary", laws), partial(changed, self.machine)
+        made(make, {one.name: one.value(0.5) for one in inputs})
+        origin = replace(self.origin, housing=self.solved_housing())
+        with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
+            return vary_machine(
+                make, self.machine, inputs, Drawn(samples, seed, indices, widen), self.settings, place,
+                origin=origin, analyses=analyses, quantities=quantities, limits=limits,
+            )  # fmt: skip
+
+    def detect(
+        self,
+        fault: str,
+        sizes: Sequence[float],
+        laws: "Mapping[str, Distribution] | None" = None,
+        *,
+        folder: str | os.PathLike[str] | None = None,
+        workers: Annotated[int | None, AT_LEAST_ONE] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+        **keys: Any,
+    ) -> "Result[DetectionResult]":
+        """Which sensor sees a fault by which indicator, and from which size on, with what probability.
+
+        Healthy machines give the threshold, those with the fault the probability of detection. The motion is that of
+        the settings' transient.
+
+        Parameters
+        ----------
+        fault : str
+            Path of the fault's size as of :meth:`changed`, such as ``gears[pinion].gear.faults[0].depth``. Of a damage
+            of a tooth or of a bearing a healthy machine is without it; else it has the value of the machine.
+        sizes : sequence of float
+            Sizes of the fault in SI, ascending.
+        laws : mapping of str to Distribution, optional
+            Distributions of varied attributes by path; without any all machines are alike, and records differ by noise.
+        folder, workers, scheduler, fresh
+            As of :meth:`vary`.
+        **keys
+            Keys of `[detection]` in SI: ``sensor_noise=0.1, healthy=64, faulty=8, indicators=["fm4"]``; ``between``
+            has paths.
+
+        Raises
+        ------
+        CaseError
+            Where a key cannot be, a size is beyond what the model allows, there is no such sensor or gear, or the
+            record holds too few turns.
+        gearwhine.coupling.CouplingError
+            Where a path leads nowhere or to no number, there is no transient, or the machine has no record.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.detection_result import detect_in_machine
+        from gearwhine.analyses.variation_result import inputs_of_laws, study_folder
+        from gearwhine.coupling.description.changed import changed
+        from gearwhine.variation.machines import made
+
+        inputs = inputs_of_laws("detect", laws) if laws else ()
+        make = partial(changed, self.machine)
+        made(make, {one.name: one.value(0.5) for one in inputs})
+        origin = replace(self.origin, housing=self.solved_housing())
+        with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
+            return detect_in_machine(
+                make, self.machine, fault, sizes, inputs, self.settings, place, origin, **keys
+            )  # fmt: skip
+
+    def optimise(
+        self,
+        laws: "Mapping[str, Uniform | Discrete]",
+        aims: "Mapping[str, str | Aim]",
+        evaluations: Annotated[int, AT_LEAST_ONE] = 100,
+        *,
+        limits: "Mapping[str, tuple[float | None, float | None]] | None" = None,
+        analyses: Sequence[str] | None = None,
+        scatter: "Scatter | None" = None,
+        method: Literal["search", "grid"] = "search",
+        levels: int = 5,
+        seed: Annotated[int, NOT_NEGATIVE] = 1,
+        folder: str | os.PathLike[str] | None = None,
+        workers: Annotated[int | None, AT_LEAST_ONE] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> "Result[Optimised]":
+        """Which machine is best, by ranges of attributes, aims and limits; several aims have a Pareto front.
+
+        The search starts from the values of the machine. The speeds of levels, the transient and the acoustics are
+        those of the settings. :func:`gearwhine.optimise` designs machines that a function makes.
+
+        Parameters
+        ----------
+        laws : mapping of str to Uniform or Discrete
+            Ranges or lists of values in SI, by paths as of :meth:`changed`.
+        aims : mapping of str to str or Aim
+            "least" or "most" by the name of a quantity.
+        evaluations : int
+            Largest number of designs that a search tries.
+        limits, analyses, scatter, method, levels, seed, folder, workers, scheduler, fresh
+            As of :func:`gearwhine.optimise`. Processes are started where they are worth it, as many as cores.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where a path leads nowhere or to no number, or an aim, a limit or a range cannot be.
+        CaseError
+            Where an aim or a limit is of a quantity that the machines do not have.
+        gearwhine.failures.MissingExtraError
+            Where several aims need a package that is not installed.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.optimisation_result import SearchSettings, designed_inputs, optimise_machine
+        from gearwhine.analyses.variation_result import study_folder
+        from gearwhine.coupling.description.changed import changed, number_at
+        from gearwhine.variation.machines import made
+
+        _require_arguments("optimise", evaluations=(evaluations, AT_LEAST_ONE), seed=(seed, NOT_NEGATIVE))
+        inputs, make = designed_inputs(laws, levels), partial(changed, self.machine)
+        first = {path: number_at(self.machine, path) for path in laws}
+        made(make, first | ({} if scatter is None else scatter.medians))
+        with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
+            search = SearchSettings(method, evaluations, seed)
+            return optimise_machine(
+                make, self.machine, inputs, first, aims, search, self.settings, place,
+                origin=replace(self.origin, housing=self.solved_housing()),
+                limits=limits, analyses=analyses, scatter=scatter,
+            )  # fmt: skip
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.

@@ -3,42 +3,49 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
-from gearwhine.analyses.variation_result import in_solved_housing, sampled_points
+from gearwhine.analyses.variation_result import drawn_points, in_solved_housing, sampled_points
 from gearwhine.case import Case, CaseError, CaseSource, Problem, case_document, require
 from gearwhine.case.bearings import Bearing, BearingFault, CageSlip
 from gearwhine.case.detection import MOST_GEARBOXES, Detection
 from gearwhine.case.errors import UNSAID, key_of, look_up
+from gearwhine.case.load import findings_of
 from gearwhine.case.model import lacking
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.variation import Variation
-from gearwhine.coupling import CouplingError
+from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.condition_record import LEAST_TURNS
 from gearwhine.coupling.analyses.gear_condition import INDICATORS, OF_ONE_RECORD
 from gearwhine.coupling.analyses.recording import TransientPlan
-from gearwhine.coupling.gears import GearError
+from gearwhine.coupling.description.changed import number_at, path_steps, value_at
+from gearwhine.coupling.gears import Gear, GearError
 from gearwhine.detection.detectability import DetectionResult, Monitor, Observation, detected_parts
-from gearwhine.detection.samples import Design, DetectionCase, detection_design
+from gearwhine.detection.samples import Design, DetectionCase, DetectionMachine, Watched, detection_design
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.results.detection import DETECTION, detection_document
 from gearwhine.rotors.rolling_bearings import BearingDamage
+from gearwhine.settings import Settings
 from gearwhine.solutions import Failure
 from gearwhine.solve.machine import plan_of
+from gearwhine.solve.radiated_power import Radiations
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
+from gearwhine.variation.machines import Maker, VariedMachine
 from gearwhine.variation.quantities import Evaluation, Wanted
 from gearwhine.variation.run import run_samples
-from gearwhine.variation.samples import Outcome, VariedCase
+from gearwhine.variation.samples import Outcome, Sampled, VariedCase
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -93,15 +100,12 @@ class PlannedDetection:
     @property
     def written(self) -> dict[float, str]:
         """Sizes of the fault as the case writes them, by their value in SI."""
-        return {size: _text(text) for size, text in zip(self.settings.sizes, self.settings.severities, strict=True)}
+        return _written(self.settings)
 
     def study(self, varied: VariedCase) -> DetectionCase:
         """Return the gearboxes of a case with its varied inputs."""
-        averaged = any(not INDICATORS[name].of_time for name in self.monitor.indicators)
-        fault = self.settings.fault
-        return DetectionCase(
-            varied, fault, self.without, self.written, self.gear, self.spall, self.slips, is_averaged=averaged
-        )
+        watched = _watched(self.monitor, self.gear, self.spall)
+        return DetectionCase(varied, self.settings.fault, self.without, self.written, watched, self.slips)
 
 
 def plan_detection(source: CaseSource) -> PlannedDetection:
@@ -127,9 +131,7 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     inputs = varied_inputs(source, variation)
     correlation_matrix(inputs, variation)
     slips = _slips(source.document)
-    if not (inputs or slips) and settings.sensor_noise == 0.0:
-        expected = "noise above 0, or distributions under [variation.vary]: without scatter there is no threshold"
-        raise CaseError([Problem("detection.sensor_noise", 0.0, expected)])
+    _require_scatter(settings, is_varied=bool(inputs or slips))
     table = case.housing or case.reduced_housing
     sensors = _sensors(() if table is None else tuple(sensor.name for sensor in table.sensor), settings)
     shafts = {one.name: one.rotor for one in case.gear}
@@ -142,16 +144,7 @@ def plan_detection(source: CaseSource) -> PlannedDetection:
     plain = source.without("detection", "variation")
     _require_severities(plain, settings, without)
     _require_turns(plan_of(case), shafts[gear] or "", case.parts.train.ratios)
-    monitor = Monitor(
-        sensors,
-        settings.indicators or _indicators(settings, of_bearing=bearing is not None),
-        settings.sensor_noise,
-        settings.averages,
-        settings.false_alarm,
-        settings.threshold,
-        settings.seed,
-        settings.baseline == "own",
-    )
+    monitor = _monitor(settings, sensors, of_bearing=bearing is not None)
     between = _between(source, variation, settings, inputs)
     struck = None if bearing is None or spall is None else (bearing.name, spall)
     return PlannedDetection(case, settings, plain, inputs, variation, between, without, gear, monitor, struck, slips)
@@ -187,13 +180,159 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
     case, settings, monitor = planned.case, planned.settings, planned.monitor
     varied = VariedCase(planned.source, planned.inputs, Wanted(("motion",)))
     varied, housing = in_solved_housing(varied, folder, "detect")
-    written, study = planned.written, planned.study(varied)
+    cube = _cube(planned, _records(settings, is_varied=planned.is_varied))
+    study, between = planned.study(varied), planned.between
+    detected = _detected(study, settings, monitor, planned.gear, cube, between, folder, is_varied=planned.is_varied)
+    return _result(Origin(case.title, case=case, housing=housing), detected, start, varied.start_warnings)
+
+
+def detect_in_machine(
+    make: Maker,
+    machine: Machine,
+    fault: str,
+    sizes: Sequence[float],
+    inputs: tuple[Input, ...],
+    settings: Settings,
+    folder: StudyFolder,
+    origin: Origin,
+    **keys: Any,
+) -> Result[DetectionResult]:
+    """Find where a fault in a machine of Python is seen; see :meth:`gearwhine.study.Study.detect`.
+
+    Parameters
+    ----------
+    make : callable
+        Makes a machine of values by the paths of attributes.
+    machine : Machine
+    fault : str
+        Path of the fault's size.
+    sizes : sequence of float
+    inputs : tuple of Input
+        Varied attributes; none where all machines are alike.
+    settings : Settings
+        With the stretch of the motion.
+    folder : StudyFolder
+    origin : Origin
+    **keys
+        Keys of `[detection]`.
+    """
+    start, plan = time.perf_counter(), settings.transient
+    if plan is None or not machine.gear_pairs:
+        raise CouplingError("detect: expected a machine with a gear pair, and settings with a transient")
+    detection = _detection_of(fault, sizes, keys)
+    steps, fault = path_steps(fault), detection.fault
+    number_at(machine, fault)
+    slips = tuple(
+        (f'bearings."{one.bearing.name}".law.slip.seed', one.slip.seed)
+        for one in machine.bearings
+        if one.slip.scatter > 0.0
+    )
+    _require_scatter(detection, is_varied=bool(inputs or slips))
+    component = machine.housing_component
+    sensors = _sensors(() if component is None else tuple(component.sensors), detection)
+    # As in a case, a healthy machine is without the tooth's or bearing's damage.
+    damages = next((place for place, step in enumerate(steps) if step in ("faults", "spalls")), None)
+    without = dict[str, object]()
+    damaged: Any = None
+    if damages is not None:
+        table = _dotted(steps[: damages + 1])
+        damaged = value_at(machine, _dotted(steps[: damages + 2]))
+        without = {table: tuple(one for one in value_at(machine, table) if one is not damaged)}
+    for number, size in enumerate(detection.sizes):
+        _require_size(make, fault, size, number)
+    bearing = None
+    if steps[0] == "bearings" and damages is not None:
+        bearing = value_at(machine, _dotted(steps[:2]))
+    spall = None if bearing is None else (bearing.bearing.name, damaged)
+    shafts = {one.gear.name: one.shaft for one in machine.gears}
+    beside = [name for name, shaft in shafts.items() if bearing is not None and shaft == bearing.rotor]
+    of_fault = [value_at(machine, _dotted(steps[:2])).gear.name] if steps[0] == "gears" else beside
+    gear = _gear_of(list(shafts), next(iter(of_fault), machine.gear_pairs[0].driver), detection)
+    _require_turns(plan, shafts[gear], machine.train.ratios)
+    monitor = _monitor(detection, sensors, of_bearing=bearing is not None)
+    names = [_dotted(path_steps(one.name)) for one in inputs]
+    _require_between(detection, names)
+    between = tuple(number for number, name in enumerate(names) if name in detection.between)
+    varied = VariedMachine(make, inputs, Wanted(("motion",), plan=plan), Radiations(), machine)
+    study = DetectionMachine(varied, fault, without, _watched(monitor, gear, spall), slips, plan)
+    is_varied = bool(inputs or slips)
+    count = _records(detection, is_varied=is_varied)
+    cube = drawn_points(len(inputs), count, detection.seed) if inputs else np.empty((count, 0))
+    detected = _detected(study, detection, monitor, gear, cube, between, folder, is_varied=is_varied)
+    return _result(origin, detected, start, varied.start_warnings)
+
+
+def _detection_of(fault: str, sizes: Sequence[float], keys: Mapping[str, Any]) -> Detection:
+    """Return the settings of a study by the keys of `[detection]`, with paths as key paths.
+
+    Raises
+    ------
+    CaseError
+        With all that is wrong.
+    """
+    keys = dict(keys) | {"fault": _dotted(path_steps(fault)), "severities": list(sizes)}
+    if "between" in keys:
+        keys["between"] = [_dotted(path_steps(one)) for one in keys["between"]]
+    try:
+        found = Case.model_validate({"detection": keys}).detection
+    except ValidationError as error:
+        raise CaseError(Problem(key_of(one.location), UNSAID, one.expected) for one in findings_of(error)) from None
+    assert found is not None
+    return found
+
+
+def _dotted(steps: Sequence[str]) -> str:
+    return ".".join(step if step.isidentifier() or step.isdecimal() else f'"{step}"' for step in steps)
+
+
+def _require_size(make: Maker, fault: str, size: float, number: int) -> None:
+    """Refuse a size of a fault that the machine or the model of a damaged tooth does not allow.
+
+    Raises
+    ------
+    CaseError
+    """
+    try:
+        machine = make({fault: size})
+        assert isinstance(machine, Machine)
+        _require_sound_teeth([one.gear for one in machine.gears])
+    except ValueError as error:
+        expected = f"a size that the machine takes: {error}"
+        raise CaseError([Problem(key_of(("detection", "severities", number)), size, expected)]) from None
+
+
+def _detected(
+    study: Sampled,
+    settings: Detection,
+    monitor: Monitor,
+    gear: str,
+    cube: FloatArray,
+    between: Sequence[int],
+    folder: StudyFolder,
+    *,
+    is_varied: bool,
+) -> DetectionResult:
+    """Solve the gearboxes of a study, of a case or of Python, and find where their fault is seen.
+
+    Parameters
+    ----------
+    study : Sampled
+    settings : Detection
+    monitor : Monitor
+    gear : str
+    cube : ndarray, shape (n, d)
+        Point of the unit cube of each gearbox.
+    between : sequence of int
+        Numbers of the inputs that differ between two records of one gearbox.
+    folder : StudyFolder
+    is_varied : bool
+        Whether records differ by more than noise.
+    """
+    written = _written(settings)
     # Gearboxes that are all alike have one record, and as many noises.
-    is_varied = planned.is_varied
     healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
-    cube = _cube(planned, healthy + faulty * len(written))
-    between = planned.between if is_varied and monitor.has_own_baseline else None
-    design = detection_design(cube, settings.sizes, healthy, faulty, between)
+    baselines = between if is_varied and monitor.has_own_baseline else None
+    design = detection_design(cube, settings.sizes, healthy, faulty, baselines)
     points = design.points
     folder.progress("the gearbox without the fault")
     first = run_samples(study, points[:1], replace(folder, workers=1, scheduler=None, progress=silent), FOLDER)
@@ -203,9 +342,9 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
     outcomes = solved.outcomes
     folder.progress("thresholds and probabilities of detection")
     parts = detected_parts(monitor, list(_observations(design, outcomes, settings, is_varied=is_varied)))
-    result = DetectionResult(
+    return DetectionResult(
         fault=settings.fault,
-        gear=planned.gear,
+        gear=gear,
         severities=written,
         monitor=monitor,
         is_varied=is_varied,
@@ -217,15 +356,54 @@ def solve_detection(source: CaseSource, folder: StudyFolder) -> Result[Detection
         resumed=solved.resumed - (0 if first.resumed else 1),
     )
 
+
+def _result(
+    origin: Origin, found: DetectionResult, start: float, warnings: Sequence[ResultWarning]
+) -> Result[DetectionResult]:
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures.detection import draw_detection
 
-        return draw_detection(case.title, result)
+        return draw_detection(origin.title, found)
 
-    origin = Origin(case.title, case=case, housing=housing)
-    return origin.study_result(
-        "detect", result, detection_document(result), DETECTION, figures, start, warnings=varied.start_warnings
+    document = detection_document(found)
+    return origin.study_result("detect", found, document, DETECTION, figures, start, warnings=warnings)
+
+
+def _records(settings: Detection, *, is_varied: bool) -> int:
+    """Return the number of gearboxes without and with the fault; those that are all alike have one record each."""
+    healthy, faulty = (settings.healthy, settings.faulty) if is_varied else (1, 1)
+    count = healthy + faulty * len(settings.sizes)
+    if count > MOST_GEARBOXES:
+        raise CaseError([Problem("detection.faulty", settings.faulty, f"{MOST_GEARBOXES} gearboxes in all")])
+    return count
+
+
+def _written(settings: Detection) -> dict[float, str]:
+    """Return the sizes of a fault as they are written, by their value in SI."""
+    return {size: _text(text) for size, text in zip(settings.sizes, settings.severities, strict=True)}
+
+
+def _watched(monitor: Monitor, gear: str, spall: tuple[str, BearingDamage] | None) -> Watched:
+    return Watched(gear, spall, is_averaged=any(not INDICATORS[name].of_time for name in monitor.indicators))
+
+
+def _monitor(settings: Detection, sensors: tuple[str, ...], *, of_bearing: bool) -> Monitor:
+    return Monitor(
+        sensors,
+        settings.indicators or _indicators(settings, of_bearing=of_bearing),
+        settings.sensor_noise,
+        settings.averages,
+        settings.false_alarm,
+        settings.threshold,
+        settings.seed,
+        settings.baseline == "own",
     )
+
+
+def _require_scatter(settings: Detection, *, is_varied: bool) -> None:
+    if not is_varied and settings.sensor_noise == 0.0:
+        expected = "noise above 0, or distributions under [variation.vary]: without scatter there is no threshold"
+        raise CaseError([Problem("detection.sensor_noise", 0.0, expected)])
 
 
 def _observations(
@@ -243,8 +421,6 @@ def _observations(
 
 def _cube(planned: PlannedDetection, count: int) -> FloatArray:
     """Return a point of the unit cube for each gearbox, shape (n, d)."""
-    if count > MOST_GEARBOXES:
-        raise CaseError([Problem("detection.faulty", planned.settings.faulty, f"{MOST_GEARBOXES} gearboxes in all")])
     if not planned.inputs:
         return np.empty((count, 0))
     return sampled_points(planned.inputs, planned.variation, count, planned.settings.seed)
@@ -256,20 +432,25 @@ def _text(written: str | float) -> str:
 
 def _between(source: CaseSource, variation: Variation, settings: Detection, inputs: Sequence[Input]) -> tuple[int, ...]:
     """Return the numbers of the inputs that differ between two records of one gearbox."""
+    _require_between(settings, list(variation.vary))
+    chosen = variation.model_copy(update={"vary": {key: variation.vary[key] for key in settings.between}})
+    names = {one.name for one in varied_inputs(source, chosen)}
+    return tuple(number for number, one in enumerate(inputs) if one.name in names)
+
+
+def _require_between(settings: Detection, varied: Sequence[str]) -> None:
+    """Refuse keys that differ between two records and are not varied."""
     problems = [
         Problem(
             key_of(("detection", "between", number)),
             key,
-            f"a key of [variation.vary], as it stands there{did_you_mean(key, variation.vary)}",
+            f"a key of [variation.vary], as it stands there{did_you_mean(key, varied)}",
         )
         for number, key in enumerate(settings.between)
-        if key not in variation.vary
+        if key not in varied
     ]
     if problems:
         raise CaseError(problems)
-    chosen = variation.model_copy(update={"vary": {key: variation.vary[key] for key in settings.between}})
-    names = {one.name for one in varied_inputs(source, chosen)}
-    return tuple(number for number, one in enumerate(inputs) if one.name in names)
 
 
 def _sensors(names: tuple[str, ...], settings: Detection) -> tuple[str, ...]:
@@ -292,7 +473,12 @@ def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
     of_fault = steps[1] if len(steps) > 1 and steps[0] == "gear" else ""
     if of_fault.isdecimal() and of_fault not in names and int(of_fault) < len(names):
         of_fault = names[int(of_fault)]
-    chosen = settings.gear or (of_fault if of_fault in names else driver)
+    return _gear_of(names, of_fault if of_fault in names else driver, settings)
+
+
+def _gear_of(names: Sequence[str], usual: str, settings: Detection) -> str:
+    """Return the gear that is asked for, by default the usual one."""
+    chosen = settings.gear or usual
     if chosen not in names:
         expected = f"the name of a gear: {', '.join(names)}{did_you_mean(chosen, names)}"
         raise CaseError([Problem("detection.gear", chosen, expected)])
@@ -371,16 +557,26 @@ def _require_severities(source: CaseSource, settings: Detection, without: str) -
         key = key_of(("detection", "severities", number))
         try:
             changed = source.changed_case([f"{settings.fault}={_text(written)}"])
-            for gear in changed.parts.gears.values():
-                ends = np.array([gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)])
-                for fault in gear.faults:
-                    fault.extra_compliance(gear, ends)
+            _require_sound_teeth(changed.parts.gears.values())
         except CaseError as error:
             problems += [Problem(key, written, f"a size that the case takes: {one.expected}") for one in error.problems]
         except GearError as error:
             problems.append(Problem(key, written, f"a size that the model takes: {error}"))
     if problems:
         raise CaseError(problems)
+
+
+def _require_sound_teeth(gears: Iterable[Gear]) -> None:
+    """Refuse damage of teeth that its model does not allow.
+
+    Raises
+    ------
+    gearwhine.coupling.gears.GearError
+    """
+    for gear in gears:
+        ends = np.array([gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)])
+        for fault in gear.faults:
+            fault.extra_compliance(gear, ends)
 
 
 def _require_turns(plan: TransientPlan, shaft: str, ratios: Mapping[str, Fraction]) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -19,7 +19,9 @@ from gearwhine.analyses.variation_result import (
     limits_of,
     name_problems,
     sampled_points,
+    study_folder,
     wanted_of,
+    wanted_of_machine,
 )
 from gearwhine.case import CaseError, CaseSource, Problem, case_document, dump_case
 from gearwhine.case.errors import NOTHING, UNSAID, Refusal
@@ -49,19 +51,21 @@ from gearwhine.optimisation.design import (
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
 from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, statistic_problems
 from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
+from gearwhine.optimisation.proposed_machine import ProposedMachine
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
-from gearwhine.optimisation.verification import Motion, Verification, checked_speeds, motion_of
+from gearwhine.optimisation.verification import Motion, Moving, Verification, checked_speeds, motion_of
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
+from gearwhine.settings import Settings
 from gearwhine.solutions import Failure, StudyProgress
-from gearwhine.solve.machine import plan_of
 from gearwhine.solve.radiated_power import Radiations
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.cost import cost_of_study
 from gearwhine.variation.inputs import varied_inputs
+from gearwhine.variation.machines import Made, Maker, made
 from gearwhine.variation.named_quantities import analysis_of, plain_pattern, statistic_of
-from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
-from gearwhine.variation.samples import outcome_of
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted
+from gearwhine.variation.samples import Varied
 from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:
@@ -102,7 +106,7 @@ def solve_optimisation(
     optimisation = case.optimisation
     if optimisation is None:
         raise lacking(case, "optimisation", command="optimise")
-    settings = _Settings(
+    settings = SearchSettings(
         optimisation.method if method is None else method,
         optimisation.evaluations if evaluations is None else evaluations,
         optimisation.seed if seed is None else seed,
@@ -114,52 +118,19 @@ def solve_optimisation(
     variation = None if optimisation.robust is None else case.variation
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
-    folder.progress("the case as it is written")
-    nominal = proposed.evaluation(proposed.case(None))
-    goals = goals_of(optimisation.aim, optimisation.limit, list(nominal.numbers), optimisation.robust, good)
-    coordinates = start_point(plain, inputs)
-    evaluated = Evaluations(proposed, folder)
-
-    def tried(points: FloatArray, to_come: int) -> list[Design]:
-        rows = np.vstack([_with_scatter(point, scatter) for point in points])
-        outcomes = evaluated.of(rows, to_come * len(scatter))
-        groups = [outcomes[place : place + len(scatter)] for place in range(0, len(rows), len(scatter))]
-        found = [[one.numbers for one in group if isinstance(one, Evaluation)] for group in groups]
-        return [
-            design_of(point, numbers, failure_of(group), goals)
-            for point, numbers, group in zip(points, found, groups, strict=True)
-        ]
-
-    count = _most_designs(inputs, settings) * len(scatter)
-    as_written = np.full((1, len(inputs)), AS_WRITTEN)
-    with evaluated.opened():
-        (start,) = tried(as_written, 0)
-        first = evaluated.of(_with_scatter(as_written[0], scatter[:1]))[0]
-        if isinstance(first, Evaluation) and folder.scheduler is None:
-            taken = sum(first.seconds.values()) * count / (folder.workers or default_workers())
-            if text := cost_of_study(first, taken, count, "gearboxes at most", "optimisation"):
-                folder.progress(f"{text}\n")
-        designs, ended = _searched(inputs, goals, settings, coordinates, tried, folder.progress)
+    aimed = _Aimed(optimisation.aim, optimisation.limit, optimisation.robust, good)
     document = case_document(plain.changed_case())
-    optimised = Optimised(
-        inputs=inputs,
-        goals=goals,
-        method=settings.words(goals, inputs),
-        start=start,
-        written=tuple(_written(document, one) for one in inputs),
-        designs=tuple(designs),
-        ended=ended,
-        gearboxes=len(scatter),
-        resumed=evaluated.resumed,
-    )
-    if optimisation.verify:
-        optimised = replace(optimised, verification=_verification(proposed, optimised, folder.progress))
+    first = _First(start_point(plain, inputs), tuple(_written(document, one) for one in inputs))
+    optimised = _optimised(proposed, inputs, aimed, settings, scatter, first, folder)
+    transient, operation = case.transient, case.operation
+    if optimisation.verify and operation is not None and transient is not None and transient.run is None:
+        optimised = _verified(proposed, optimised, operation.speed, len(scatter[0]), folder.progress)
     origin = Origin(case.title, case=case, housing=housing)
 
     def design_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
         """Write the best design and those of the front as cases."""
         for stem, number in _written_designs(optimised).items():
-            made = proposed.case(_as_designed(optimised.designs[number], proposed))
+            made = proposed.case(_as_designed(optimised.designs[number], len(scatter[0])))
             title = f"{origin.title}: design {number + 1}".strip(": ")
             # With its scatter and its aims, so that it can be varied, and searched from.
             kept = {"title": title, "variation": case.variation, "optimisation": case.optimisation}
@@ -188,8 +159,12 @@ def optimise(
     seed: int = 1,
     title: str = "",
     progress: Progress = silent,
+    folder: str | os.PathLike[str] | None = None,
+    workers: int | None = 1,
+    scheduler: str | None = None,
+    fresh: bool = False,
 ) -> Result[Optimised]:
-    """Find the best of the machines that a function makes of designed values, one after the other in this process.
+    """Find the best of the machines that a function makes of designed values.
 
     Parameters
     ----------
@@ -224,6 +199,8 @@ def optimise(
     seed : int
     title : str
     progress : callable
+    folder, workers, scheduler, fresh
+        As of :func:`gearwhine.vary`.
 
     Raises
     ------
@@ -248,103 +225,161 @@ def optimise(
     >>> round(best.sides["area_m2"][0], 3)
     0.2
     """
-    begin = time.perf_counter()
-    _require_values(laws, levels, evaluations)
-    named = tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
-    senses = _senses(aims)
-    ranges = limits_of("optimise", limits)
-    good = {} if scatter is None else limits_of("optimise, scatter", scatter.good)
-    robust = None if scatter is None else scatter.robust
-    if analyses is None:
-        analyses = tuple(dict.fromkeys(filter(None, map(analysis_of, _quantities_named(senses, ranges, good)))))
-    if unknown := [name for name in analyses if name not in ANALYSES]:
-        raise CouplingError(f"optimise: analyses {unknown}; expected some of {', '.join(ANALYSES)}")
-    wanted = Wanted(tuple(analyses), tuple(speeds), plan)
-    first = start or {
+    inputs = designed_inputs(laws, levels)
+    middles = {
         name: law.values[0] if isinstance(law, Discrete) else 0.5 * (law.low + law.high) for name, law in laws.items()
     }
+    first = dict(start or middles)
     if set(first) != set(laws):
         raise CouplingError(f"optimise: a start with {', '.join(first)}; expected a value of each of {', '.join(laws)}")
+    machine = made(make, ({} if scatter is None else scatter.medians) | first)
+    settings = Settings(title, plan, speeds=speeds, acoustics=acoustics)
+    search_settings = SearchSettings(method, evaluations, seed)
+    with study_folder(progress, folder, workers, scheduler, fresh=fresh) as place:
+        return optimise_machine(
+            make, machine, inputs, first, aims, search_settings, settings, place,
+            limits=limits, analyses=analyses, scatter=scatter,
+        )  # fmt: skip
 
-    radiations = Radiations(acoustics, progress)
 
-    def made(values: Mapping[str, float]) -> Machine | Mapping[str, float]:
-        try:
-            return make(values)
-        except ValueError as error:
-            raise CouplingError(str(error)) from error
-
-    def found(values: Mapping[str, float]) -> Evaluation:
-        machine = made(values)
-        if isinstance(machine, Machine):
-            return evaluate(machine, wanted, radiations.of(machine) if wanted.has_sound else None)
-        if not isinstance(machine, Mapping):
-            raise CouplingError(
-                f"optimise: {make!r} returned {machine!r}; expected a gearwhine.Machine or numbers by name"
-            )
-        return Evaluation({name: float(value) for name, value in machine.items()})
-
-    medians = {} if scatter is None else scatter.medians
-
-    def values_of(point: FloatArray) -> Mapping[str, float]:
-        if point[0] == AS_WRITTEN:
-            return medians | dict(first)
-        return medians | {one.name: one.value(float(at)) for one, at in zip(named, point, strict=True)}
-
-    progress("the start")
-    as_written = np.full(len(named), AS_WRITTEN)
-    nominal = found(values_of(as_written))
-    if problems := list(statistic_problems(senses, ranges, robust, good)):
+def optimise_machine(
+    make: Maker,
+    machine: Made,
+    inputs: tuple[DesignInput, ...],
+    first: Mapping[str, float],
+    aims: Mapping[str, str | Aim],
+    search_settings: SearchSettings,
+    settings: Settings,
+    folder: StudyFolder,
+    *,
+    origin: Origin | None = None,
+    limits: Mapping[str, tuple[float | None, float | None]] | None = None,
+    analyses: Sequence[str] | None = None,
+    scatter: Scatter | None = None,
+) -> Result[Optimised]:
+    """Find the best of the machines that a function makes, beside one with its values; see :func:`optimise`."""
+    begin = time.perf_counter()
+    search_settings.require_count()
+    good = {} if scatter is None else limits_of("optimise, scatter", scatter.good)
+    robust = None if scatter is None else scatter.robust
+    aimed = _Aimed(_senses(aims), limits_of("optimise", limits), robust, good)
+    if analyses is None:
+        named = map(analysis_of, _quantities_named(aimed.aims, aimed.limits, good))
+        analyses = tuple(dict.fromkeys(filter(None, named)))
+    wanted = wanted_of_machine("optimise", machine, settings, analyses)
+    if problems := list(statistic_problems(aimed.aims, aimed.limits, robust, good)):
         raise CaseError(problems)
-    if not nominal.numbers:
-        raise CouplingError(f"optimise: no analysis finds {', '.join(senses)}; expected names as machine.mass_kg")
-    goals = goals_of(senses, ranges, list(nominal.numbers), robust, good)
-    settings = _Settings(method, evaluations, seed)
-    settings.require_library(senses)
-
-    def design_at(point: FloatArray) -> Design:
-        about = [values_of(point)] if scatter is None else scatter.about(values_of(point))
-        outcomes = [outcome_of(partial(found, values)) for values in about]
-        numbers = [one.numbers for one in outcomes if isinstance(one, Evaluation)]
-        return design_of(point, numbers, failure_of(outcomes), goals)
-
-    def tried(points: FloatArray, to_come: int) -> list[Design]:
-        return [design_at(point) for point in points]
-
-    begun = design_at(as_written)
-    coordinates = [one.coordinate_of(float(first[one.name])) for one in named]
-    designs, ended = _searched(named, goals, settings, coordinates, tried, progress)
-    written = tuple(f"{float(first[one.name]):.6g}" for one in named)
-    count = 1 if scatter is None else scatter.samples
-    words = settings.words(goals, named)
-    optimised = Optimised(named, goals, words, begun, written, tuple(designs), ended, gearboxes=count)
-    if plan is not None and plan.run is None and isinstance(machine := made(values_of(as_written)), Machine):
-        at = tuple(wanted.speeds or (machine.speed,))
-
-        def motion(values: Mapping[str, float]) -> Motion | Failure:
-            one = made(values)
-            return _motion_or_failure(lambda: motion_of(_as_machine(one), plan, at, wanted.speeds, needs_load=False))
-
-        proposals = [values_of(designs[number].point) for number in optimised.chosen]
-        found_motions = tuple(motion(values) for values in proposals)
-        checked = Verification(at, motion(values_of(as_written)), found_motions, _given_levels(optimised))
-        optimised = replace(optimised, verification=checked if proposals else None)
-    return _result(Origin(title), optimised, begin)
+    search_settings.require_library(aimed.aims)
+    radiations, plan = Radiations(settings.acoustics, folder.progress), settings.transient
+    proposed = ProposedMachine(make, inputs, wanted, radiations, machine, first=first, scatter=scatter, plan=plan)
+    points = np.zeros((1, 0)) if scatter is None else scatter.points
+    coordinates = [one.coordinate_of(float(first[one.name])) for one in inputs]
+    start = _First(coordinates, tuple(f"{float(first[one.name]):.6g}" for one in inputs))
+    optimised = _optimised(proposed, inputs, aimed, search_settings, points, start, folder)
+    if isinstance(machine, Machine) and plan is not None and plan.run is None:
+        optimised = _verified(proposed, optimised, machine.speed, len(points[0]), folder.progress)
+    return _result(origin or Origin(settings.title), optimised, begin, warnings=proposed.start_warnings)
 
 
-def _as_machine(made: Machine | Mapping[str, float]) -> Machine:
-    if not isinstance(made, Machine):
-        raise CouplingError("optimise: expected a machine of the best values, as of the start")
-    return made
+class _Proposed(Varied, Protocol):
+    """Designs by their points, of a case or as a function makes them."""
+
+    def moving(self, point: FloatArray | None, /) -> Moving:
+        """Return the machine of a design, of None that of the start, and how its motion is found."""
 
 
 @dataclass(frozen=True)
-class _Settings:
+class _Aimed:
+    """Aims and limits by the names that are given, how the scatter counts, and the limits of a yield."""
+
+    aims: Mapping[str, Aim]
+    limits: Mapping[str, Limit]
+    robust: Robust | None
+    good: Mapping[str, Limit]
+
+
+@dataclass(frozen=True)
+class _First:
+    """Start: its coordinate of each input, None of a value that the design does not have, and its values in words."""
+
+    coordinates: Sequence[float | None]
+    written: tuple[str, ...]
+
+
+def _optimised(
+    proposed: _Proposed,
+    inputs: tuple[DesignInput, ...],
+    aimed: _Aimed,
+    settings: SearchSettings,
+    scatter: FloatArray,
+    first: _First,
+    folder: StudyFolder,
+) -> Optimised:
+    """Search the designs of a case or of Python, with those of a generation in parallel.
+
+    Parameters
+    ----------
+    proposed : _Proposed
+    inputs : tuple of DesignInput
+    aimed : _Aimed
+    settings : SearchSettings
+    scatter : ndarray, shape (n, v)
+        Points of the scatter about each design.
+    first : _First
+    folder : StudyFolder
+    """
+    folder.progress("the start")
+    nominal = proposed.evaluation(None)
+    if not nominal.numbers:
+        raise CouplingError(f"optimise: no analysis finds {', '.join(aimed.aims)}; expected names as machine.mass_kg")
+    goals = goals_of(aimed.aims, aimed.limits, list(nominal.numbers), aimed.robust, aimed.good)
+    evaluated = Evaluations(proposed, folder)
+
+    def tried(points: FloatArray, to_come: int) -> list[Design]:
+        rows = np.vstack([_with_scatter(point, scatter) for point in points])
+        outcomes = evaluated.of(rows, to_come * len(scatter))
+        groups = [outcomes[place : place + len(scatter)] for place in range(0, len(rows), len(scatter))]
+        found = [[one.numbers for one in group if isinstance(one, Evaluation)] for group in groups]
+        return [
+            design_of(point, numbers, failure_of(group), goals)
+            for point, numbers, group in zip(points, found, groups, strict=True)
+        ]
+
+    count = _most_designs(inputs, settings) * len(scatter)
+    as_written = np.full((1, len(inputs)), AS_WRITTEN)
+    with evaluated.opened():
+        (start,) = tried(as_written, 0)
+        one = evaluated.of(_with_scatter(as_written[0], scatter[:1]))[0]
+        if isinstance(one, Evaluation) and folder.scheduler is None:
+            taken = sum(one.seconds.values()) * count / (folder.workers or default_workers())
+            if text := cost_of_study(one, taken, count, "gearboxes at most", "optimisation"):
+                folder.progress(f"{text}\n")
+        designs, ended = _searched(inputs, goals, settings, first.coordinates, tried, folder.progress)
+    return Optimised(
+        inputs=inputs,
+        goals=goals,
+        method=settings.words(goals, inputs),
+        start=start,
+        written=first.written,
+        designs=tuple(designs),
+        ended=ended,
+        gearboxes=len(scatter),
+        resumed=evaluated.resumed,
+    )
+
+
+@dataclass(frozen=True)
+class SearchSettings:
     """How designs are searched for."""
 
     method: Method
     evaluations: int
     seed: int
+
+    def require_count(self) -> None:
+        """Refuse a number of designs that is none."""
+        if not is_count(self.evaluations):
+            raise CouplingError(f"optimise: {self.evaluations!r} evaluations; expected a whole number of 1 or more")
 
     def require_library(self, aims: Mapping[str, Aim]) -> None:
         """Refuse a search for a Pareto front where its library is not installed."""
@@ -365,7 +400,7 @@ class _Settings:
 def _searched(
     inputs: Sequence[DesignInput],
     goals: Goals,
-    settings: _Settings,
+    settings: SearchSettings,
     coordinates: Sequence[float | None],
     tried: Callable[[FloatArray, int], list[Design]],
     progress: Progress,
@@ -389,7 +424,7 @@ def _searched(
     return designs, search(trials, start, settings.seed, goals.count)
 
 
-def _most_designs(inputs: Sequence[DesignInput], settings: _Settings) -> int:
+def _most_designs(inputs: Sequence[DesignInput], settings: SearchSettings) -> int:
     """Return the largest number of designs that are tried."""
     if settings.method != "grid":
         return settings.evaluations
@@ -490,7 +525,13 @@ def _with_what_is_named(optimisation: Optimisation, good: Mapping[str, Limit]) -
     return optimisation.model_copy(update=changes)
 
 
-def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int, evaluations: int) -> None:
+def designed_inputs(laws: Mapping[str, Uniform | Discrete], levels: int) -> tuple[DesignInput, ...]:
+    """Return the inputs of a design by ranges and lists of values, in SI.
+
+    Raises
+    ------
+    CouplingError
+    """
     if not laws:
         raise CouplingError("optimise: no laws; expected the range of one value or more")
     for name, law in laws.items():
@@ -498,8 +539,7 @@ def _require_values(laws: Mapping[str, Uniform | Discrete], levels: int, evaluat
             raise CouplingError(f"optimise: {name} has {law!r}; expected Uniform(low, high) or Discrete(values)")
     if levels < 2:
         raise CouplingError(f"optimise: {levels} levels; expected 2 or more")
-    if not is_count(evaluations):
-        raise CouplingError(f"optimise: {evaluations!r} evaluations; expected a whole number of 1 or more")
+    return tuple(DesignInput(name, law, "", (), ((name, 1.0),), levels=levels) for name, law in laws.items())
 
 
 def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:
@@ -517,27 +557,35 @@ def _senses(aims: Mapping[str, str | Aim]) -> dict[str, Aim]:
     return senses
 
 
-def _verification(proposed: ProposedCase, optimised: Optimised, progress: Progress) -> Verification | None:
-    """Solve the transient of the case and of the proposed designs; None without a design, or a steady transient."""
-    case = proposed.case(None)
+def _verified(proposed: _Proposed, optimised: Optimised, speed: float, scatter: int, progress: Progress) -> Optimised:
+    """Return an optimisation with the transient of its start and of the proposed designs, where there are such.
+
+    Parameters
+    ----------
+    proposed : _Proposed
+    optimised : Optimised
+    speed : float
+        Signed speed of the start [rad/s].
+    scatter : int
+        Number of the scatter's coordinates.
+    progress : callable
+    """
     proposals = [optimised.designs[number] for number in optimised.chosen]
-    if not proposals or case.operation is None or case.transient is None or case.transient.run is not None:
-        return None
+    if not proposals:
+        return optimised
     loudest = [
         value / (30.0 / np.pi)
         for design in (optimised.start, *proposals)
         for name, (value, _) in design.sides.items()
         if name.endswith("loudest_speed_rpm")
     ]
-    speeds = checked_speeds(proposed.wanted.speeds or (case.operation.speed,), loudest)
+    given = proposed.wanted.speeds
+    speeds = checked_speeds(given or (speed,), loudest)
 
     def motion(point: FloatArray | None) -> Motion | Failure:
         def solved() -> Motion:
-            made = proposed.case(point)
-            needs_load = made.parts.needs_operating_point
-            return motion_of(
-                proposed.machine(made), plan_of(made), speeds, proposed.wanted.speeds, needs_load=needs_load
-            )
+            machine, plan, needs_load = proposed.moving(point)
+            return motion_of(machine, plan, speeds, given, needs_load=needs_load)
 
         return _motion_or_failure(solved)
 
@@ -546,8 +594,8 @@ def _verification(proposed: ProposedCase, optimised: Optimised, progress: Progre
     found = list[Motion | Failure]()
     for design, label in zip(proposals, optimised.chosen.values(), strict=True):
         progress(f"the transient of the design {label!r} at {len(speeds)} speeds")
-        found.append(motion(_as_designed(design, proposed)))
-    return Verification(speeds, start, tuple(found), _given_levels(optimised))
+        found.append(motion(_as_designed(design, scatter)))
+    return replace(optimised, verification=Verification(speeds, start, tuple(found), _given_levels(optimised)))
 
 
 def _given_levels(optimised: Optimised) -> dict[str, tuple[float, ...]]:
@@ -561,10 +609,9 @@ def _given_levels(optimised: Optimised) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _as_designed(design: Design, proposed: ProposedCase) -> FloatArray:
-    """Return the point of a design without scatter."""
-    count = 0 if proposed.variation is None else len(varied_inputs(proposed.source, proposed.variation))
-    return np.concatenate([design.point, np.full(count, AS_WRITTEN)])
+def _as_designed(design: Design, scatter: int) -> FloatArray:
+    """Return the point of a design without scatter, by the number of the scatter's coordinates."""
+    return np.concatenate([design.point, np.full(scatter, AS_WRITTEN)])
 
 
 def _motion_or_failure(solved: Callable[[], Motion]) -> Motion | Failure:

@@ -1,13 +1,15 @@
-"""Result of a varied case: its gearboxes, solved in parallel, with their statistics."""
+"""Result of a variation, of a case or of machines of Python: gearboxes, solved in parallel, with their statistics."""
 
 from __future__ import annotations
 
 import fnmatch
+import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from functools import partial
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -34,16 +36,18 @@ from gearwhine.output import file_stems, staging
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, varied_document
+from gearwhine.settings import Settings
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.radiated_power import Radiations, radiated_power_of
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
+from gearwhine.variation.machines import Made, Maker, VariedMachine, made
 from gearwhine.variation.named_quantities import analysis_of, matches, possible_quantities, statistic_of
-from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, evaluate
+from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, usual_analyses
 from gearwhine.variation.run import run_samples
-from gearwhine.variation.samples import VariedCase, outcome_of
+from gearwhine.variation.samples import Varied, VariedCase
 from gearwhine.variation.statistics import VariedResult, WorstGearbox, known_limits
 
 if TYPE_CHECKING:
@@ -92,54 +96,155 @@ def solve_variation(
     if variation is None:
         raise lacking(case, "variation", command="vary")
     inputs, wanted = plan_variation(case, source)
-    plain, refusal = source.without("variation"), Refusal()
-    count = variation.samples if samples is None else samples
-    wider = _wider(inputs, widen)
-    seed = variation.seed if seed is None else seed
-    points, design = _points(inputs, variation, count, seed, indices=indices, wider=wider)
-    varied, housing = in_solved_housing(VariedCase(plain, inputs, wanted, wider=wider), folder, "vary")
-    folder.progress("the gearbox without changes")
-    nominal = varied.evaluation(varied.case(None))
-    with refusal:
-        _require_quantities(wanted, nominal)
-    with refusal:
-        limits = known_limits(variation.limit, list(nominal.numbers))
-    refusal.require_none()
-    if design is not None:
-        aim = "Sobol' indices" if indices else "what wider ones cost"
-        folder.progress(f"{design.rows} rows of {len(design.inputs)} inputs for {aim}: {len(points)} gearboxes")
-    if "gears" in wanted.analyses and not wanted.names and any(isinstance(one.law, Pitches) for one in inputs):
-        folder.progress(
-            "pitch deviations make all mesh periods of a gearbox differ: its transmission error over all of them may "
-            'take most of the time; [variation] quantities = ["*.transmission_error_peak_to_peak_m", …] leaves it out\n'
-        )
-    solved = run_samples(varied, points, folder)
-    speeds = np.array(wanted.speeds or ([] if case.operation is None else [case.operation.speed]))
-    result = VariedResult(
-        inputs=inputs,
-        points=points,
-        values=values_at(inputs, points, wider),
-        nominal=nominal,
-        outcomes=solved.outcomes,
-        limits=limits,
-        speeds=speeds,
-        design=design,
-        resumed=solved.resumed,
-        widening=widen,
+    drawn = Drawn(
+        variation.samples if samples is None else samples,
+        variation.seed if seed is None else seed,
+        indices,
+        widen,
+        correlation_matrix(inputs, variation),
     )
+    design = _design(inputs, drawn)
+    plain = VariedCase(source.without("variation"), inputs, wanted, wider=design.wider)
+    varied, housing = in_solved_housing(plain, folder, "vary")
+    speed = None if case.operation is None else case.operation.speed
+    result = _solved(varied, design, variation.limit, speed, folder)
     origin = Origin(case.title, case=case, housing=housing)
 
     def worst_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
         """Write the worst gearboxes as cases."""
         for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
             for worst in result.worst_gearboxes(one):
-                drawn = varied.case(result.points[worst.number])
-                told = _told(worst, drawn.title, drawn.notes, drawn.operation if wanted.speeds else None)
-                text = dump_case(drawn.model_copy(update=told))
+                sample = varied.case(result.points[worst.number])
+                told = _told(worst, sample.title, sample.notes, sample.operation if wanted.speeds else None)
+                text = dump_case(sample.model_copy(update=told))
                 (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
         return {}
 
     return _result(origin, result, start, worst_cases, varied.start_warnings)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """How many gearboxes are drawn, and how; see :meth:`gearwhine.case_study.CaseStudy.vary`.
+
+    Attributes
+    ----------
+    samples, seed : int
+    indices : bool
+    widen : float, optional
+    correlation : ndarray, shape (d, d), optional
+        Correlation of the inputs' normal scores; None where they are independent.
+    """
+
+    samples: int
+    seed: int = 1
+    indices: bool = False
+    widen: float | None = None
+    correlation: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Design:
+    """Points of the samples of some inputs.
+
+    Attributes
+    ----------
+    drawn : Drawn
+    wider : sequence of (Input or None)
+        See :func:`gearwhine.variation.inputs.inputs_at`.
+    points : ndarray, shape (n, d)
+    plan : IndexPoints, WidenedPoints or None
+        Where indices are wanted, or what wider inputs cost.
+    """
+
+    drawn: Drawn
+    wider: Wider
+    points: FloatArray
+    plan: IndexPoints | WidenedPoints | None = None
+
+
+def _design(inputs: tuple[Input, ...], drawn: Drawn) -> _Design:
+    """Return the points of the samples.
+
+    Raises
+    ------
+    CaseError
+        Where indices are wanted beside wider or correlated inputs, no input can be wider, or the gearboxes are too
+        many.
+    """
+    wider = _wider(inputs, drawn.widen)
+    if drawn.indices and wider:
+        raise CaseError([Problem("widen", UNSAID, "one of indices and widen; each is a study of its own")])
+    widened = [number for number, one in enumerate(wider) if one is not None]
+    total = drawn.samples * (len(inputs) + 2 if drawn.indices else 1 + len(widened))
+    if total > MOST_GEARBOXES:
+        raise CaseError([Problem("the number of gearboxes", total, f"at most {MOST_GEARBOXES}")])
+    if drawn.indices:
+        if drawn.correlation is not None:
+            expected = "no correlations beside --indices: the variance splits into parts of independent inputs alone"
+            raise CaseError([Problem("variation.correlation", UNSAID, expected)])
+        plan = index_points(drawn.samples, tuple((number,) for number in range(len(inputs))), drawn.seed)
+        return _Design(drawn, wider, plan.points, plan)
+    points = drawn_points(len(inputs), drawn.samples, drawn.seed, drawn.correlation)
+    if not widened:
+        return _Design(drawn, wider, points)
+    of_wider = widened_points(points, widened)
+    return _Design(drawn, wider, of_wider.points, of_wider)
+
+
+def _solved(
+    varied: Varied, design: _Design, limit: Mapping[str, Limit], speed: float | None, folder: StudyFolder
+) -> VariedResult:
+    """Solve the gearboxes of a design, of a case or of Python.
+
+    Parameters
+    ----------
+    varied : Varied
+    design : _Design
+    limit : mapping of str to Limit
+        By the name of a quantity, which may have ``*``.
+    speed : float or None
+        Signed speed of curves without other speeds [rad/s].
+    folder : StudyFolder
+
+    Raises
+    ------
+    CaseError
+        Where a quantity or a limit is of none that the gearbox without changes has.
+    gearwhine.failures.WorkersError
+        Where the processes do not start.
+    Exception
+        What the gearbox without changes cannot be solved for.
+    """
+    refusal, wanted, points, plan = Refusal(), varied.wanted, design.points, design.plan
+    folder.progress("the gearbox without changes")
+    nominal = varied.evaluation(None)
+    with refusal:
+        _require_quantities(wanted, nominal)
+    with refusal:
+        limits = known_limits(limit, list(nominal.numbers))
+    refusal.require_none()
+    if plan is not None:
+        aim = "Sobol' indices" if design.drawn.indices else "what wider ones cost"
+        folder.progress(f"{plan.rows} rows of {len(plan.inputs)} inputs for {aim}: {len(points)} gearboxes")
+    if "gears" in wanted.analyses and not wanted.names and any(isinstance(one.law, Pitches) for one in varied.inputs):
+        folder.progress(
+            "pitch deviations make all mesh periods of a gearbox differ: its transmission error over all of them may "
+            'take most of the time; [variation] quantities = ["*.transmission_error_peak_to_peak_m", …] leaves it out\n'
+        )
+    solved = run_samples(varied, points, folder)
+    return VariedResult(
+        inputs=varied.inputs,
+        points=points,
+        values=values_at(varied.inputs, points, varied.wider),
+        nominal=nominal,
+        outcomes=solved.outcomes,
+        limits=limits,
+        speeds=np.array(wanted.speeds or ([] if speed is None else [speed])),
+        design=plan,
+        resumed=solved.resumed,
+        widening=design.drawn.widen,
+    )
 
 
 def plan_variation(case: Case, source: CaseSource) -> tuple[tuple[Input, ...], Wanted]:
@@ -190,7 +295,8 @@ def vary(
     laws: Mapping[str, Distribution],
     samples: int = 256,
     *,
-    analyses: Sequence[str] = ("gears", "load"),
+    analyses: Sequence[str] | None = None,
+    quantities: Sequence[str] = (),
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
     limits: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -200,8 +306,12 @@ def vary(
     seed: int = 1,
     title: str = "",
     progress: Progress = silent,
+    folder: str | os.PathLike[str] | None = None,
+    workers: int | None = 1,
+    scheduler: str | None = None,
+    fresh: bool = False,
 ) -> Result[VariedResult]:
-    """Solve many machines that a function makes of drawn values, one after the other in this process.
+    """Solve many machines that a function makes of drawn values, and find their scatter, its causes, and the yield.
 
     Parameters
     ----------
@@ -211,8 +321,11 @@ def vary(
         Distribution of each value, of :mod:`gearwhine.numerics.distributions`.
     samples : int
         Number of machines; with ``indices`` times the number of values and two more.
-    analyses : sequence of str
-        What is found of each: "gears", "load", "rotors", "mass", "lines", "sound", "motion".
+    analyses : sequence of str, optional
+        What is found of each: "gears", "load", "rotors", "mass", "lines", "sound", "motion". By default gears, load and
+        lines, as far as the machine has them.
+    quantities : sequence of str
+        Names of the quantities that are found, ``*`` for any part of a name; by default all of the analyses.
     speeds : sequence of float
         Signed speeds of "lines" and "sound" [rad/s]; by default that of each machine.
     plan : TransientPlan, optional
@@ -229,6 +342,15 @@ def vary(
     seed : int
     title : str
     progress : callable
+    folder : path, optional
+        Folder of the samples; those that it holds of the same function and machine are not solved again.
+    workers : int, optional
+        Number of processes; None for as many as cores where that is worth their start. They need what `make` holds on
+        to as a copy, by pickle.
+    scheduler : str, optional
+        Address of a running Dask scheduler, whose workers are used instead.
+    fresh : bool
+        Solve again what the folder holds.
 
     Raises
     ------
@@ -236,6 +358,8 @@ def vary(
         Where an analysis is none of these, or nothing is varied.
     CaseError
         Where a limit is of a quantity that the machines do not have.
+    gearwhine.failures.WorkersError
+        Where the processes do not start.
     Exception
         What `make` or an analysis raises of the machine of all medians.
 
@@ -251,43 +375,104 @@ def vary(
     >>> [one.name for one in varied.solved.quantities][:1]
     ['rotor.shaft.critical_speed_1_rpm']
     """
+    inputs = inputs_of_laws("vary", laws)
+    machine = made(make, {one.name: one.value(0.5) for one in inputs})
+    settings = Settings(title, transient=plan, speeds=speeds, acoustics=acoustics)
+    with study_folder(progress, folder, workers, scheduler, fresh=fresh) as place:
+        return vary_machine(
+            make, machine, inputs, Drawn(samples, seed, indices, widen), settings, place,
+            analyses=analyses, quantities=quantities, limits=limits,
+        )  # fmt: skip
+
+
+def vary_machine(
+    make: Maker,
+    machine: Made,
+    inputs: tuple[Input, ...],
+    drawn: Drawn,
+    settings: Settings,
+    folder: StudyFolder,
+    *,
+    origin: Origin | None = None,
+    analyses: Sequence[str] | None = None,
+    quantities: Sequence[str] = (),
+    limits: Mapping[str, tuple[float | None, float | None]] | None = None,
+) -> Result[VariedResult]:
+    """Solve the machines that a function makes of the values of inputs, about a machine; see :func:`vary`."""
     start = time.perf_counter()
-    asked = (analyses,) if isinstance(analyses, str) else tuple(analyses)
-    if unknown := [name for name in asked if name not in ANALYSES]:
-        raise CouplingError(f"vary: analyses of {unknown[0]!r}; expected some of {', '.join(ANALYSES)}")
-    if not laws or not is_count(samples):
+    if not isinstance(machine, Machine):
+        raise CouplingError(f"vary: {make!r} returned numbers; expected a gearwhine.Machine")
+    if not is_count(drawn.samples):
         raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
+    wanted = wanted_of_machine("vary", machine, settings, analyses, quantities)
+    limit = limits_of("vary", limits)
+    design = _design(inputs, drawn)
+    radiations = Radiations(settings.acoustics, folder.progress)
+    varied = VariedMachine(make, inputs, wanted, radiations, machine, design.wider)
+    result = _solved(varied, design, limit, machine.speed, folder)
+    return _result(origin or Origin(settings.title), result, start, warnings=varied.start_warnings)
+
+
+def inputs_of_laws(command: str, laws: Mapping[str, Distribution]) -> tuple[Input, ...]:
+    """Return the inputs of distributions by name, in SI.
+
+    Raises
+    ------
+    CouplingError
+    """
+    if not laws:
+        raise CouplingError(f"{command}: expected a distribution of one value or more, and one sample or more")
     for name, law in laws.items():
         if not hasattr(law, "quantile"):
-            raise CouplingError(f"vary: {name!r} is {law!r}; expected a distribution, such as Normal(1.0, 0.1)")
-    inputs = tuple(Input(name, law, "", (), ()) for name, law in laws.items())
-    wanted = Wanted(asked, tuple(speeds), plan)
-    ranges = limits_of("vary", limits)
-    wider = _wider(inputs, widen)
-    points, design = _points(inputs, Variation(), samples, seed, indices=indices, wider=wider)
-    values = values_at(inputs, points, wider)
-    radiations = Radiations(acoustics, progress)
+            raise CouplingError(f"{command}: {name!r} is {law!r}; expected a distribution, such as Normal(1.0, 0.1)")
+    return tuple(Input(name, law, "", (), ((name, 1.0),)) for name, law in laws.items())
 
-    def found(row: FloatArray) -> Evaluation:
-        try:
-            machine = make(dict(zip(laws, row.tolist(), strict=True)))
-        except ValueError as error:
-            raise CouplingError(str(error)) from error
-        if not isinstance(machine, Machine):
-            raise CouplingError(f"vary: {make!r} returned {machine!r}; expected a gearwhine.Machine")
-        return evaluate(machine, wanted, radiations.of(machine) if wanted.has_sound else None)
 
-    progress("the machine of all medians")
-    nominal = found(values_at(inputs, np.full((1, len(inputs)), 0.5))[0])
-    if not nominal.numbers:
-        raise CouplingError(f"vary: the machine has no quantity of {', '.join(asked)}; expected other analyses")
-    ranges = known_limits(ranges, list(nominal.numbers))
-    outcomes = []
-    for number, row in enumerate(values):
-        progress(f"machine {number + 1} of {len(values)}")
-        outcomes.append(outcome_of(partial(found, row)))
-    result = VariedResult(inputs, points, values, nominal, tuple(outcomes), ranges, np.array(speeds), design, 0, widen)
-    return _result(Origin(title), result, start)
+def wanted_of_machine(
+    command: str,
+    machine: Made,
+    settings: Settings,
+    analyses: Sequence[str] | None,
+    quantities: Sequence[str] = (),
+) -> Wanted:
+    """Return what is found of each machine: as asked for, else what the quantities need, else what the machine allows.
+
+    Raises
+    ------
+    CouplingError
+        Where there is no such analysis, or the machine lacks what it needs.
+    """
+    asked = _asked((analyses,) if isinstance(analyses, str) else analyses, quantities)
+    if asked is None and isinstance(machine, Machine):
+        housing = machine.housing_component
+        listens = housing is not None and bool(housing.sensors)
+        asked = usual_analyses(has_pairs=bool(machine.gear_pairs), is_loaded=machine.is_loaded, listens=listens)
+    asked = asked or ()
+    if unknown := [name for name in asked if name not in ANALYSES]:
+        raise CouplingError(f"{command}: analyses of {unknown[0]!r}; expected some of {', '.join(ANALYSES)}")
+    lacks = dict[str, bool]()
+    if isinstance(machine, Machine):
+        lacks = {"gear_pair": not machine.gear_pairs, "bearing": not machine.bearings}
+    for name in asked:
+        if missing := next((table for table in ANALYSES[name].needs if lacks.get(table)), None):
+            raise CouplingError(f"{command}: the machine has no quantity of {name}; expected a {missing} in it")
+    over_speed = {"lines", "sound"} & set(asked)
+    speeds = tuple(settings.speeds) if over_speed else ()
+    return Wanted(asked, speeds, settings.transient if "motion" in asked else None, names=tuple(quantities))
+
+
+@contextmanager
+def study_folder(
+    progress: Progress,
+    folder: str | os.PathLike[str] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    *,
+    fresh: bool = False,
+) -> Iterator[StudyFolder]:
+    """Yield the folder of a study of Python; without one, one that ends with the block."""
+    with TemporaryDirectory() if folder is None else nullcontext(folder) as place:
+        yield StudyFolder(Path(place), workers, scheduler, fresh, progress)
 
 
 def _wider(inputs: tuple[Input, ...], factor: float | None) -> Wider:
@@ -302,33 +487,14 @@ def _wider(inputs: tuple[Input, ...], factor: float | None) -> Wider:
     return wider
 
 
-def _points(
-    inputs: tuple[Input, ...], variation: Variation, samples: int, seed: int, *, indices: bool, wider: Wider
-) -> tuple[FloatArray, IndexPoints | WidenedPoints | None]:
-    """Return the points of the samples, and their design where indices are wanted, or what wider inputs cost."""
-    correlation = correlation_matrix(inputs, variation)
-    if indices and wider:
-        raise CaseError([Problem("widen", UNSAID, "one of indices and widen; each is a study of its own")])
-    widened = [number for number, one in enumerate(wider) if one is not None]
-    total = samples * (len(inputs) + 2 if indices else 1 + len(widened))
-    if total > MOST_GEARBOXES:
-        raise CaseError([Problem("the number of gearboxes", total, f"at most {MOST_GEARBOXES}")])
-    if indices:
-        if correlation is not None:
-            expected = "no correlations beside --indices: the variance splits into parts of independent inputs alone"
-            raise CaseError([Problem("variation.correlation", UNSAID, expected)])
-        design = index_points(samples, tuple((number,) for number in range(len(inputs))), seed)
-        return design.points, design
-    points = sampled_points(inputs, variation, samples, seed)
-    if not widened:
-        return points, None
-    of_wider = widened_points(points, widened)
-    return of_wider.points, of_wider
-
-
 def sampled_points(inputs: Sequence[Input], variation: Variation, samples: int, seed: int) -> FloatArray:
     """Return points of the unit cube for inputs with the correlations of a variation, shape (n, d)."""
-    points, correlation = sobol_points(samples, len(inputs), seed), correlation_matrix(inputs, variation)
+    return drawn_points(len(inputs), samples, seed, correlation_matrix(inputs, variation))
+
+
+def drawn_points(inputs: int, samples: int, seed: int, correlation: FloatArray | None = None) -> FloatArray:
+    """Return points of the unit cube for a number of inputs, shape (n, d)."""
+    points = sobol_points(samples, inputs, seed)
     return points if correlation is None else correlated(points, correlation)
 
 
@@ -376,31 +542,29 @@ def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "v
     """Return what is found of each gearbox: as asked for, else what the case allows."""
     analyses: tuple[str, ...]
     names = variation.quantities
-    asked: tuple[str, ...] | None = variation.analyses
-    needed = [analysis_of(name) for name in names]
-    if asked is None and names and None not in needed:
-        asked = tuple(name for name in ANALYSES if name in needed)
+    asked = _asked(variation.analyses, names)
     if asked is not None:
         for name in asked:
             require(case, *ANALYSES[name].needs, command=f"{command}, analyses = ['{name}']")
         analyses = asked
     else:
-        listens = case.housing is not None and bool(case.housing.sensor)
-        listens = listens or (case.reduced_housing is not None and bool(case.reduced_housing.sensor))
-        allowed = {"gears": True, "load": case.parts.is_loaded, "lines": listens and case.parts.is_loaded}
-        analyses = tuple(
-            name
-            for name, held in allowed.items()
-            if held and all(getattr(case, table) for table in ANALYSES[name].needs)
-        )
-        if not analyses and case.rotor:
-            analyses = ("rotors",)
-        if not analyses:
+        listens = any(one is not None and one.sensor for one in (case.housing, case.reduced_housing))
+        loaded = case.parts.is_loaded
+        analyses = usual_analyses(has_pairs=bool(case.gear_pair), is_loaded=loaded, listens=listens)
+        if analyses == ("rotors",) and not case.rotor:
             expected = "a gear pair or a shaft: nothing else is found of a varied case"
             raise CaseError([Problem("variation.analyses", UNSAID, expected)])
     speeds = variation.speeds or (() if case.sweep is None else case.sweep.speeds)
     over_speed = {"lines", "sound"} & set(analyses)
     return Wanted(analyses, with_sense_of(case.operation, speeds) if over_speed else (), names=names)
+
+
+def _asked(analyses: Sequence[str] | None, quantities: Sequence[str]) -> tuple[str, ...] | None:
+    """Return the analyses that are asked for, else those of the quantities; None where nothing tells."""
+    needed = [analysis_of(name) for name in quantities]
+    if analyses is None and quantities and None not in needed:
+        return tuple(name for name in ANALYSES if name in needed)
+    return None if analyses is None else tuple(analyses)
 
 
 def name_problems(case: Case, wanted: Wanted, table: Location, named: Iterable[str]) -> Iterator[Problem]:

@@ -7,15 +7,18 @@ the other sizes of a study, so that a study with a further one solves that alone
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from gearwhine.case import Case
+from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.condition_record import condition_record
 from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
@@ -23,6 +26,7 @@ from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.rotors.rolling_bearings import BearingDamage
 from gearwhine.solve.machine import plan_of
+from gearwhine.variation.machines import VariedMachine
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.samples import Outcome, VariedCase, outcome_of
 
@@ -33,6 +37,26 @@ SIGNAL, AVERAGE = "signal of ", "average of "
 """Beginnings of the names of a sample's curves, before that of the sensor."""
 _DIGITS = 9
 _SEEDS = 2**31
+
+
+@dataclass(frozen=True)
+class Watched:
+    """What a record is watched by.
+
+    Attributes
+    ----------
+    gear : str
+        Gear by whose shaft signals are averaged.
+    spall : (str, BearingDamage) or None
+        Name of the bearing, and its spall, where that is the fault.
+    is_averaged : bool
+        Whether an indicator takes the average over the turns of the gear's shaft, which those of planetary sets have
+        not.
+    """
+
+    gear: str
+    spall: tuple[str, BearingDamage] | None = None
+    is_averaged: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,25 +73,17 @@ class DetectionCase:
         Change ``key.path=value`` that makes a healthy gearbox; empty where the case is one.
     written : dict of float to str
         Sizes as the case writes them, by their value in SI.
-    gear : str
-        Gear by whose shaft signals are averaged.
-    spall : (str, BearingDamage) or None
-        Name of the bearing, and its spall, where that is the fault.
+    watched : Watched
     slips : tuple of (str, int)
         Key and value of the seed of each slip that scatters.
-    is_averaged : bool
-        Whether an indicator takes the average over the turns of the gear's shaft, which those of planetary sets have
-        not.
     """
 
     varied: VariedCase
     fault: str
     without: str
     written: dict[float, str]
-    gear: str
-    spall: tuple[str, BearingDamage] | None = None
+    watched: Watched
     slips: tuple[tuple[str, int], ...] = ()
-    is_averaged: bool = True
 
     def case(self, point: FloatArray) -> Case:
         """Return the case of a sample at a point (3 + d,).
@@ -79,7 +95,7 @@ class DetectionCase:
         """
         kind, size, record = point[:3].tolist()
         changes = [] if kind == REFERENCE else self.varied.overrides(point[3:])
-        changes += [f"{key}={(seed + round(record)) % _SEEDS}" for key, seed in self.slips]
+        changes += [f"{key}={seed}" for key, seed in _seeds(self.slips, record)]
         if kind == FAULTY:
             changes.append(f"{self.fault}={self.written[size]}")
         elif self.without:
@@ -99,39 +115,106 @@ class DetectionCase:
             Where the gear has no average that an indicator takes, or the machine cannot be solved.
         """
         case = self.case(point)
-        machine, plan = self.varied.machine(case), plan_of(case)
-        load = load_or_reason(machine, is_needed=case.parts.needs_operating_point)[0] if machine.is_loaded else None
-        loaded = load_machine(machine, None if load is None else load.point, plan.run)
-        record = condition_record(solve_transient(loaded.coupled, plan))
-        gear = next(one for one in record.gears if one.gear == self.gear)
-        if gear.undefined and self.is_averaged:
-            raise CouplingError(f"no average of gear {self.gear!r}: {gear.undefined}")
-        numbers = {
-            "limit_hz": record.limit_hz,
-            "interval_s": record.interval,
-            "turn_hz": gear.turn_hz,
-            "teeth": float(gear.teeth),
-            "steady": float(record.is_steady),
-            "turns": float(gear.turns),
-        }
-        if self.spall is not None:
-            name, spall = self.spall
-            mounted = next(one for one in machine.bearings if one.bearing.name == name)
-            if mounted.elements is not None:
-                row = mounted.elements.rows[spall.row]
-                numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted), mounted.slip) / (2.0 * np.pi)
-        numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
-        curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}
-        if self.is_averaged:
-            curves |= {f"{AVERAGE}{name}": _rounded(record.averages[gear.shaft, name]) for name in record.sensors}
-        return Evaluation(numbers, curves)
+        machine, is_needed = self.varied.machine(case), case.parts.needs_operating_point
+        return _recorded(machine, plan_of(case), self.watched, is_needed=is_needed)
 
     @cached_property
     def key(self) -> str:
         """Key of all that the samples depend on but their points."""
         return content_key(
-            {"varied": self.varied.key, "fault": [self.fault, self.without, self.gear, self.is_averaged, *self.slips]}
+            {"varied": self.varied.key, "fault": [self.fault, self.without, repr(self.watched), *self.slips]}
         )
+
+
+@dataclass(frozen=True, eq=False)
+class DetectionMachine:
+    """A machine of Python with a fault of some sizes, by the paths of its attributes, in machines that vary.
+
+    Attributes
+    ----------
+    varied : VariedMachine
+        The machine with its varied inputs, of which there may be none; it makes a machine of values by path.
+    fault : str
+        Path of the fault's size.
+    without : mapping of str to object
+        Changes that make a healthy machine; empty where it is one.
+    watched : Watched
+    slips : tuple of (str, int)
+        Path and value of the seed of each slip that scatters.
+    plan : TransientPlan
+    """
+
+    varied: VariedMachine
+    fault: str
+    without: Mapping[str, object]
+    watched: Watched
+    slips: tuple[tuple[str, int], ...]
+    plan: TransientPlan
+
+    def machine(self, point: FloatArray) -> Machine:
+        """Return the machine of a sample at a point (3 + d,).
+
+        Raises
+        ------
+        ValueError
+            Where its values make no machine.
+        """
+        kind, size, record = point[:3].tolist()
+        changes: dict[str, Any] = {} if kind == REFERENCE else dict(self.varied.values(point[3:]))
+        changes |= dict(_seeds(self.slips, record))
+        changes |= {self.fault: size} if kind == FAULTY else self.without
+        made: Machine = self.varied.make(changes)  # type: ignore[assignment]  # of a machine's paths
+        return made
+
+    def solve(self, point: FloatArray) -> Outcome:
+        """Find the record of a sample; errors are returned as failures, not raised."""
+        return outcome_of(lambda: _recorded(self.machine(point), self.plan, self.watched))
+
+    @cached_property
+    def key(self) -> str:
+        """Key of all that the samples depend on but their points."""
+        fault = [self.fault, sorted(self.without), repr(self.watched), repr(self.plan), *self.slips]
+        return content_key({"varied": self.varied.key, "fault": fault})
+
+
+def _seeds(slips: Sequence[tuple[str, int]], record: float) -> list[tuple[str, int]]:
+    """Return the seeds of the slips in a record, each by its key."""
+    return [(key, (seed + round(record)) % _SEEDS) for key, seed in slips]
+
+
+def _recorded(machine: Machine, plan: TransientPlan, watched: Watched, *, is_needed: bool | None = None) -> Evaluation:
+    """Return the record of a machine.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError
+        Where the gear has no average that an indicator takes, or the machine cannot be solved.
+    """
+    load = load_or_reason(machine, is_needed=is_needed)[0] if machine.is_loaded else None
+    loaded = load_machine(machine, None if load is None else load.point, plan.run)
+    record = condition_record(solve_transient(loaded.coupled, plan))
+    gear = next(one for one in record.gears if one.gear == watched.gear)
+    if gear.undefined and watched.is_averaged:
+        raise CouplingError(f"no average of gear {gear.gear!r}: {gear.undefined}")
+    numbers = {
+        "limit_hz": record.limit_hz,
+        "interval_s": record.interval,
+        "turn_hz": gear.turn_hz,
+        "teeth": float(gear.teeth),
+        "steady": float(record.is_steady),
+        "turns": float(gear.turns),
+    }
+    if watched.spall is not None:
+        name, spall = watched.spall
+        mounted = next(one for one in machine.bearings if one.bearing.name == name)
+        if mounted.elements is not None:
+            row = mounted.elements.rows[spall.row]
+            numbers["tone_hz"] = spall.tone(row, machine.bearing_speed(mounted), mounted.slip) / (2.0 * np.pi)
+    numbers |= {f"teeth of another gear, {place}": float(teeth) for place, teeth in enumerate(gear.others)}
+    curves = {f"{SIGNAL}{name}": _rounded(signal) for name, signal in record.signals.items()}
+    if watched.is_averaged:
+        curves |= {f"{AVERAGE}{name}": _rounded(record.averages[gear.shaft, name]) for name in record.sensors}
+    return Evaluation(numbers, curves)
 
 
 def _rounded(values: FloatArray) -> FloatArray:

@@ -17,6 +17,8 @@ from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
 from gearwhine.optimisation.search import Space
+from gearwhine.optimisation.verification import Moving
+from gearwhine.solve.machine import plan_of
 from gearwhine.variation.inputs import Input, Pitches, inputs_of, varied_inputs
 from gearwhine.variation.samples import VariedCase
 
@@ -191,6 +193,11 @@ class ProposedCase(VariedCase):
             for text in _scattered(one, float(at), {} if keeps else values)
         ]
         return [*design, *texts]
+
+    def moving(self, point: FloatArray | None) -> Moving:
+        """Return the machine of a design, and how its motion is found."""
+        case = self.case(point)
+        return self.machine(case), plan_of(case), case.parts.needs_operating_point
 
     def _scatter_about(self, own: tuple[float, ...], design: Sequence[str]) -> tuple[tuple[Input, bool], ...]:
         """Return the inputs of the scatter about a design, each with whether it lies about the designed value."""

@@ -11,12 +11,11 @@ import numpy as np
 
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.optimisation.design import ProposedCase
 from gearwhine.solutions import Failure
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.run import outcomes_as_they_end
-from gearwhine.variation.samples import Outcome, Record, solve_samples
+from gearwhine.variation.samples import Outcome, Record, Sampled, solve_samples
 from gearwhine.workers import called, code_digest, default_workers
 
 if TYPE_CHECKING:
@@ -26,11 +25,11 @@ _WORTH_WORKERS = 20.0  # time of all that may come below which workers are not s
 
 
 class Evaluations:
-    """Evaluations of a case at points of its design and scatter, each solved once and on file as it is found.
+    """Evaluations at points of its design and scatter, each solved once and on file as it is found.
 
     Parameters
     ----------
-    proposed : ProposedCase
+    proposed : Sampled
     folder : StudyFolder
 
     Attributes
@@ -39,7 +38,7 @@ class Evaluations:
         Number of evaluations that were on file.
     """
 
-    def __init__(self, proposed: ProposedCase, folder: StudyFolder) -> None:
+    def __init__(self, proposed: Sampled, folder: StudyFolder) -> None:
         self._proposed, self._folder = proposed, folder
         self._record = Record(folder.path, proposed.key)
         if folder.fresh:

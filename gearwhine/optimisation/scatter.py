@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -13,6 +13,7 @@ from gearwhine.coupling import CouplingError
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Distribution
 from gearwhine.numerics.sampling import sobol_points
+from gearwhine.optimisation.design import AS_WRITTEN
 
 
 @dataclass(frozen=True)
@@ -64,18 +65,19 @@ class Scatter:
         return Robust(samples=self.samples, deviations=self.deviations, quantile=self.quantile)
 
     @cached_property
-    def _draws(self) -> FloatArray:
-        """Deviations of the draws from the medians, shape (samples, d)."""
-        points = sobol_points(self.samples, len(self.laws), self.seed)
-        columns = [law.quantile(column) for law, column in zip(self.laws.values(), points.T, strict=True)]
-        return np.asarray(np.array(columns).T - np.array(list(self.medians.values())))
+    def points(self) -> FloatArray:
+        """Points of the machines about each design in the unit cube, shape (samples, d)."""
+        return sobol_points(self.samples, len(self.laws), self.seed)
 
     @cached_property
     def medians(self) -> dict[str, float]:
         """Median of each value."""
         return {name: float(law.quantile(np.array([0.5]))[0]) for name, law in self.laws.items()}
 
-    def about(self, values: Mapping[str, float]) -> Iterator[dict[str, float]]:
-        """Yield the values of each machine about a design, of which those that it has not are the :attr:`medians`."""
-        for draw in self._draws.tolist():
-            yield dict(values) | {name: values[name] + by for name, by in zip(self.laws, draw, strict=True)}
+    def about(self, values: Mapping[str, float], point: FloatArray) -> dict[str, float]:
+        """Return the values that scatter, about designed ones, at a point of the unit cube (d,); none as written."""
+        return {
+            name: values[name] + (float(law.quantile(np.array([at]))[0]) - self.medians[name])
+            for (name, law), at in zip(self.laws.items(), point.tolist(), strict=True)
+            if at != AS_WRITTEN
+        }

@@ -25,6 +25,9 @@ from gearwhine.solutions import Failure
 from gearwhine.variation.quantities import level_of
 
 Levels = Mapping[str, float]
+Moving = tuple[Machine, TransientPlan, bool | None]
+"""A machine, the stretch of its motion, and whether it needs an operating point, see
+:func:`gearwhine.coupling.load_analysis.load_warnings.load_or_reason`."""
 DOUBT = 1.0
 """Change of a level below which a design is neither louder nor quieter [dB]."""
 MOST_SPEEDS = 6
@@ -124,7 +127,12 @@ class Verification:
 
 
 def motion_of(
-    machine: Machine, plan: TransientPlan, speeds: Sequence[float], over: Sequence[float] = (), *, needs_load: bool
+    machine: Machine,
+    plan: TransientPlan,
+    speeds: Sequence[float],
+    over: Sequence[float] = (),
+    *,
+    needs_load: bool | None,
 ) -> Motion:
     """Solve the transient of a machine at some speeds, its lines there, and over the range of the speeds ``over``.
 

@@ -1,6 +1,6 @@
 """Radiation of a housing, by which the sound power of any motion of it is known without a further solution."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -54,8 +54,12 @@ class Radiations:
     """
 
     def __init__(self, acoustics: Acoustics | None = None, progress: Progress = silent) -> None:
-        self._acoustics, self._progress = acoustics or Acoustics(), progress
+        self.acoustics, self._progress = acoustics or Acoustics(), progress
         self._found = list["tuple[HousingModes, RadiatedPower]"]()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what goes to a worker, which is silent."""
+        return self.__dict__ | {"_progress": silent}
 
     def of(self, machine: Machine) -> "RadiatedPower | None":
         """Return the radiation of a machine's housing; None of a machine without the modes of one."""
@@ -64,6 +68,6 @@ class Radiations:
             return None
         found = next((radiated for other, radiated in self._found if other is housing), None)
         if found is None:
-            found = radiated_power_of(self._acoustics, housing, self._progress)[0]
+            found = radiated_power_of(self.acoustics, housing, self._progress)[0]
             self._found.append((housing, found))
         return found

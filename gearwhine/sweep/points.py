@@ -11,7 +11,7 @@ from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, Swep
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.output import file_stems
-from gearwhine.solutions import solution_key
+from gearwhine.solutions import case_content, solution_key
 
 _WITHOUT_EFFECT = frozenset(
     {
@@ -132,7 +132,7 @@ def axis_name(key: str) -> str:
 def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str) -> Point:
     assert case.transient is not None
     assert case.operation is not None
-    key, speed = solution_key(case, _WITHOUT_EFFECT), case.operation.speed
+    key, speed = solution_key(case=case_content(case, _WITHOUT_EFFECT)), case.operation.speed
     given = None if case.housing is None else given_housing(case)
     modes_key = None if given is None else content_key(given.cache_inputs())
     whole = None if given is None else housing_key(given)

@@ -49,8 +49,9 @@ class Wanted:
         Signed speeds of lines [rad/s].
     plan : TransientPlan, optional
         Stretch of the motion.
-    needs_load : bool
-        Whether parts of the machine are left to the operating point explicitly.
+    needs_load : bool, optional
+        Whether parts of the machine are left to the operating point explicitly; by default as
+        :func:`gearwhine.coupling.load_analysis.load_warnings.load_or_reason` has it.
     names : tuple of str
         Names of the quantities, in which ``*`` stands for any part; all of the analyses by default.
     """
@@ -58,7 +59,7 @@ class Wanted:
     analyses: tuple[str, ...]
     speeds: tuple[float, ...] = ()
     plan: TransientPlan | None = None
-    needs_load: bool = False
+    needs_load: bool | None = None
     names: tuple[str, ...] = ()
 
     @property
@@ -140,7 +141,8 @@ class _Gearbox:
         """Operating point; None where nothing loads the machine or none is found."""
         if not self.machine.is_loaded:
             return None
-        return load_or_reason(self.machine, is_needed=self.wanted.needs_load or "load" in self.wanted.analyses)[0]
+        is_needed = True if "load" in self.wanted.analyses else self.wanted.needs_load
+        return load_or_reason(self.machine, is_needed=is_needed)[0]
 
     @cached_property
     def loaded(self) -> LoadedMachine:
@@ -357,3 +359,21 @@ ANALYSES: Mapping[str, Analysis] = {
     "motion": Analysis(_of_motion, ("rotor", "operation", "transient")),
 }
 """Analyses by name, in the order of their quantities."""
+
+UNDER_LOAD = frozenset({"gears", "load", "lines", "sound", "motion"})
+"""Analyses about an operating point."""
+
+
+def usual_analyses(*, has_pairs: bool, is_loaded: bool, listens: bool) -> tuple[str, ...]:
+    """Return what is found of a gearbox by default: gears, load and lines as far as it has them, else critical speeds.
+
+    Parameters
+    ----------
+    has_pairs : bool
+        Whether there are gear pairs.
+    is_loaded : bool
+    listens : bool
+        Whether the housing has sensors.
+    """
+    held = {"gears": has_pairs, "load": is_loaded, "lines": has_pairs and is_loaded and listens}
+    return tuple(name for name in held if held[name]) or ("rotors",)

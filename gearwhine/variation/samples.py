@@ -27,13 +27,13 @@ from gearwhine.housing import HousingModes
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
-from gearwhine.solutions import Failure, failure_of, solution_key
+from gearwhine.solutions import Failure, case_content, failure_of, solution_key
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing, with_modes_of
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
 from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.variation.inputs import Input, Wider, inputs_at
-from gearwhine.variation.quantities import Evaluation, Wanted, evaluate, evaluate_pairs
+from gearwhine.variation.quantities import UNDER_LOAD, Evaluation, Wanted, evaluate, evaluate_pairs
 from gearwhine.workers import require_same_code
 
 if TYPE_CHECKING:  # with kernels of its own
@@ -41,7 +41,6 @@ if TYPE_CHECKING:  # with kernels of its own
 
 _REMARKS = frozenset({"title", "notes", "provenance"})
 _KEPT_HOUSINGS = 50  # kilobytes each
-_UNDER_LOAD = frozenset({"gears", "load", "lines", "sound", "motion"})  # analyses about an operating point
 FOLDER = "samples"
 """Folder of the record within the results folder."""
 
@@ -111,10 +110,11 @@ class VariedCase:
 
     def solve(self, point: FloatArray | None) -> Outcome:
         """Find the quantities of a sample; errors are returned as failures, not raised."""
-        return outcome_of(lambda: self.evaluation(self.case(point)))
+        return outcome_of(lambda: self.evaluation(point))
 
-    def evaluation(self, case: Case) -> Evaluation:
-        """Find the quantities of a case of the study."""
+    def evaluation(self, point: FloatArray | None) -> Evaluation:
+        """Find the quantities of a sample; of None those of the case without changes."""
+        case = self.case(point)
         if not case.rotor or case.operation is None:
             return evaluate_pairs(solve_pairs(case, None)[0], self.wanted)
         wanted = replace(self.wanted, needs_load=case.parts.needs_operating_point)
@@ -127,7 +127,7 @@ class VariedCase:
     def start_warnings(self) -> list[ResultWarning]:
         """Warnings of the operating point of the case without changes; none where no sample has one."""
         case = self.case(None)
-        if not case.rotor or case.operation is None or not _UNDER_LOAD & set(self.wanted.analyses):
+        if not case.rotor or case.operation is None or not UNDER_LOAD & set(self.wanted.analyses):
             return []
         return load_of_case(case.parts, self.machine(case))[1]
 
@@ -164,11 +164,12 @@ class VariedCase:
     def key(self) -> str:
         """Key of all that the samples depend on but their points: case, files, inputs, libraries and our code."""
         inputs = [repr(one) for one in (*self.inputs, *self.wider)]
-        return solution_key(self.case(None), _REMARKS, inputs=inputs, wanted=repr(self.wanted))
+        content = case_content(self.case(None), _REMARKS)
+        return solution_key(case=content, inputs=inputs, wanted=repr(self.wanted))
 
 
 class Sampled(Protocol):
-    """A case whose samples are solved by their points."""
+    """Gearboxes that are solved by their points."""
 
     @property
     def key(self) -> str:
@@ -176,6 +177,29 @@ class Sampled(Protocol):
 
     def solve(self, point: FloatArray, /) -> Outcome:
         """Find what is wanted of a sample; errors are returned as failures, not raised."""
+
+
+class Varied(Sampled, Protocol):
+    """Gearboxes by their inputs: of a case, or as a function makes them."""
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """Inputs, each with a coordinate of the points."""
+
+    @property
+    def wanted(self) -> Wanted:
+        """What is found of each."""
+
+    @property
+    def wider(self) -> Wider:
+        """See :func:`gearwhine.variation.inputs.inputs_at`."""
+
+    @property
+    def start_warnings(self) -> list[ResultWarning]:
+        """Warnings of the gearbox without changes."""
+
+    def evaluation(self, point: FloatArray | None, /) -> Evaluation:
+        """Find what is wanted of a sample, of None of the gearbox without changes."""
 
 
 def solve_samples(varied: Sampled, points: Sequence[tuple[int, FloatArray]], code: str) -> list[tuple[int, Outcome]]:
