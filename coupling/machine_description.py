@@ -809,7 +809,7 @@ class Machine:
         CouplingError, EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
-        points = self._over_turn(self.operating_point() if point is None else point)
+        points = self.over_turn(self.operating_point() if point is None else point)
         about = self._with_flanks_of(points) if points[0].pairs else self
         return about._linear(
             bearings=tuple(map(linearised_about, zip(*(turned.bearings for turned in points), strict=True)))
@@ -829,7 +829,7 @@ class Machine:
         their planets: forces and gaps are means over a common turn, from ``point`` on. Without a point flanks that give
         no misalignment are aligned, and shares those of equal meshes.
         """
-        return self._with_flanks_of(() if point is None else self._over_turn(point))
+        return self._with_flanks_of(() if point is None else self.over_turn(point))
 
     def _with_flanks_of(self, points: Sequence[OperatingPoint]) -> "Machine":
         open_pairs = [pair.label for pair in self.gear_pairs if pair.misalignment is None]
@@ -854,18 +854,29 @@ class Machine:
         mean = np.mean([[pair.force for pair in point.pairs] for point in points], axis=0)
         return list(np.where(np.abs(mean - equal) <= _ROUNDING * equal, equal, mean).tolist())
 
-    def _over_turn(self, point: OperatingPoint) -> tuple[OperatingPoint, ...]:
+    def over_turn(self, point: OperatingPoint) -> tuple[OperatingPoint, ...]:
         """Operating points over a common turn of all carriers, from a given one on; that alone where all are alike.
 
-        Planets are turned back to their first places: their forces and bearings are along the axes that turn with them.
+        They stand at :func:`gearwhine.coupling.machine.coupled_system.times_over_turn`. Planets are turned back to
+        their first places: their forces and bearings are along the axes that turn with them. Points that the given one
+        has with it at these angles are not solved again.
+
+        Raises
+        ------
+        CouplingError, EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
+            As :meth:`operating_point`.
         """
-        turning = {name: self.speeds[name] for name in {shaft.carrier for shaft in self.shafts} if name is not None}
+        names = dict.fromkeys(shaft.carrier for shaft in self.shafts if shaft.carrier is not None)
+        times = times_over_turn([self.speeds[name] for name in names])[1:].tolist()
+        angles = [{name: self.speeds[name] * time for name in names} for time in times]
+        if len(point.over_turn) == 1 or (angles and [one.turned_by for one in point.over_turn[1:]] == angles):
+            return point.over_turn
         points = [point]
-        for time in times_over_turn(list(turning.values()))[1:].tolist():
+        for turned_by in angles:
             turned = self
-            for carrier, speed in turning.items():
-                turned = turned.turned(speed * time, carrier)
-            points.append(turned.operating_point().in_carriers({c: speed * time for c, speed in turning.items()}))
+            for carrier, angle in turned_by.items():
+                turned = turned.turned(angle, carrier)
+            points.append(turned.operating_point().in_carriers(turned_by))
             if len(points) == 2 and points[1].is_alike(point, _ROUNDING):
                 return (point,)
         return tuple(points)

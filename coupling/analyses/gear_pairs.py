@@ -67,9 +67,11 @@ class TakenMisalignment:
     origin : str
         Origin of that misalignment: ``operating point``, ``case`` where the case gives it, or ``default``, which is 0.
     found : float or None
-        Misalignment at the operating point [rad]; None where that is not solved.
+        Misalignment at the operating point [rad], of planets at their carriers' first angle; None where that is not
+        solved.
     over_turn : tuple of float or None
-        Least and greatest over a turn of planet carriers, of which ``taken`` is the mean [rad]; None where it stays.
+        Least and greatest over a turn of planet carriers, of which ``taken`` is the mean [rad]; None where it stays,
+        and where the turn is not solved.
     """
 
     taken: float | None
@@ -92,11 +94,15 @@ def taken_misalignments(
     """
     misalignments = []
     for number, pair in enumerate(pairs):
-        found = None if point is None or not point.pairs else point.pairs[number].misalignment
+        points = () if point is None or not point.pairs else point.over_turn or (point,)
+        every = [one.pairs[number].misalignment for one in points]
+        found = every[0] if every else None
         if pair.misalignment is not None and pair.label not in aligned_by_default:
             misalignments.append(TakenMisalignment(pair.misalignment, "case", found))
         elif pair.misalignment is None and not (is_sought and found is None):
-            misalignments.append(TakenMisalignment(found, "operating point", found))
+            taken = float(np.mean(every)) if every else None
+            over_turn = (min(every), max(every)) if len(every) > 1 else None
+            misalignments.append(TakenMisalignment(taken, "operating point", found, over_turn))
         else:
             misalignments.append(TakenMisalignment(0.0, "default", found))
     return tuple(misalignments)

@@ -5,7 +5,7 @@ those of the equilibrium; and a point that is not found beside another analysis.
 """
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
 from gearwhine.coupling.load_analysis.influences import LoadSensitivity
 from gearwhine.coupling.load_analysis.solved_load import LoadedBearing, SolvedLoad, solve_load
 from gearwhine.coupling.machine_description import Machine
-from gearwhine.coupling.statics.operating_point import PairLoad
+from gearwhine.coupling.statics.operating_point import OperatingPoint, PairLoad
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
@@ -89,7 +89,7 @@ def load_or_reason(
 
 def load_warnings(solved: SolvedLoad) -> list[ResultWarning]:
     """Warnings of an operating point that is formally right and physically doubtful."""
-    machine = solved.machine
+    machine, points = solved.machine, solved.point.over_turn or (solved.point,)
     of_loads = bearing_load_warnings(
         machine.bearings, {bearing.name: bearing.force[:3] for bearing in solved.point.bearings}, "the equilibrium"
     )
@@ -102,8 +102,8 @@ def load_warnings(solved: SolvedLoad) -> list[ResultWarning]:
         *_stiffness_warnings(solved, loads),
         *(
             entry
-            for pair, carries in zip(solved.point.pairs, solved.machine.carrying_pairs, strict=False)
-            for entry in (_face_warnings(pair) if carries else ())
+            for number, carries in zip(range(len(solved.pairs)), solved.machine.carrying_pairs, strict=False)
+            for entry in (_face_warnings(number, points) if carries else ())
         ),
         *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
@@ -207,35 +207,54 @@ def _stiffness_warnings(solved: SolvedLoad, warned: set[str]) -> Iterator[Result
             )
 
 
-def _face_warnings(load: PairLoad) -> Iterator[ResultWarning]:
-    label = load.pair.label
-    if load.force == 0.0:
-        yield warning(
-            "lost contact",
+def _face_warnings(number: int, points: Sequence[OperatingPoint]) -> Iterator[ResultWarning]:
+    """Warn of the flanks of a pair that part or carry unevenly, at points over a turn of the carriers or at one."""
+    loads = [point.pairs[number] for point in points]
+    label, carriers = loads[0].pair.label, list(points[-1].turned_by)
+    gears = {"driver": loads[0].pair.driver.name, "driven": loads[0].pair.driven.name}
+    parted = [point for point, load in zip(points, loads, strict=True) if load.force == 0.0]
+    if parted:
+        message = (
             f"{label}: the mean load holds the flanks apart, and the pairs that share the torque carry its part; "
-            "linear analyses have no stiffness there",
-            driver=load.pair.driver.name,
-            driven=load.pair.driven.name,
+            "linear analyses have no stiffness there"
+            if len(parted) == len(points)
+            else f"{label}: the load holds the flanks apart with {_angles(parted, carriers)}, "
+            "and the pairs that share the torque carry its part; linear analyses and motion have the mean stiffness "
+            "and transmission error of the turn there, and lack the lines that this parting makes"
         )
+        yield warning("lost contact", message, **gears, angles_rad=[dict(point.turned_by) for point in parted])
+    if len(parted) == len(points):
         return
+    point, load = max(zip(points, loads, strict=True), key=lambda one: _greatest_load(one[1]))
     if load.k_h_beta > _UNEVEN_FACE_LOAD_FACTOR:
+        where = f" with {_angles([point], carriers)}, where its line load is greatest," if len(points) > 1 else ""
         yield warning(
             "uneven face",
-            f"{label}: the face carries unevenly, K_Hβ = {load.k_h_beta:.3g}; its flanks are "
+            f"{label}:{where} the face carries unevenly, K_Hβ = {load.k_h_beta:.3g}; its flanks are "
             f"{1e6 * load.misalignment * load.pair.geometry.face_width:.3g} µm out of line over the face: a helix "
             "modification or stiffer shafts and seats even it out",
-            driver=load.pair.driver.name,
-            driven=load.pair.driven.name,
+            **gears,
             k_h_beta=load.k_h_beta,
         )
-    if load.carrying_part < 1.0:
+    touching = np.max([one.fine.line_load.max(axis=0) for one in loads if one.force > 0.0], axis=0) > 0.0
+    if not np.all(touching):
         yield warning(
             "part of the face",
-            f"{label}: {100.0 * (1.0 - load.carrying_part):.3g} % of the face never touches under the mean load",
-            driver=load.pair.driver.name,
-            driven=load.pair.driven.name,
-            carrying_part=load.carrying_part,
+            f"{label}: {100.0 * (1.0 - touching.mean()):.3g} % of the face never touches under the mean load",
+            **gears,
+            carrying_part=float(touching.mean()),
         )
+
+
+def _greatest_load(load: PairLoad) -> float:
+    """Force by which pairs of one face compare in their greatest mean line load [N]."""
+    return load.k_h_beta * load.force if load.force > 0.0 else 0.0
+
+
+def _angles(points: Sequence[OperatingPoint], carriers: Collection[str]) -> str:
+    """Return the angles that the carriers have turned by at some points in words."""
+    rows = [[f"{math.degrees(point.turned_by.get(name, 0.0)) % 360.0:.0f}°" for name in carriers] for point in points]
+    return f"{' and '.join(carriers)} turned by {', '.join(' and '.join(row) for row in rows)}"
 
 
 def _misalignment_warnings(solved: SolvedLoad) -> Iterator[ResultWarning]:

@@ -81,6 +81,54 @@ class LoadedBearing:
         return None if state is None else np.concatenate([row.outer_load for row in state.rows])
 
 
+@dataclass(frozen=True)
+class OverTurn:
+    """A number over a common turn of the carriers.
+
+    Attributes
+    ----------
+    mean, least, most : float
+    """
+
+    mean: float
+    least: float
+    most: float
+
+    @classmethod
+    def of(cls, values: Sequence[float]) -> "OverTurn":
+        """Return the mean and the range of values at the angles of a turn."""
+        return cls(float(np.mean(values)), min(values), max(values))
+
+
+@dataclass(frozen=True, eq=False)
+class PairOverTurn:
+    """A gear pair over a common turn of the carriers.
+
+    Attributes
+    ----------
+    loads : tuple of PairLoad
+        The pair at each angle.
+    """
+
+    loads: tuple[PairLoad, ...]
+
+    @cached_property
+    def force(self) -> OverTurn:
+        """Mesh force [N]."""
+        return OverTurn.of([load.force for load in self.loads])
+
+    @cached_property
+    def misalignment(self) -> OverTurn:
+        """Misalignment of the flanks at the operating point [rad]."""
+        return OverTurn.of([load.misalignment for load in self.loads])
+
+    @cached_property
+    def k_h_beta(self) -> OverTurn | None:
+        """Face load factor K_Hβ at the angles where the flanks carry; None where they carry at none."""
+        factors = [load.k_h_beta for load in self.loads if load.force > 0.0]
+        return OverTurn.of(factors) if factors else None
+
+
 @dataclass(frozen=True, eq=False)
 class LoadedPair:
     """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take.
@@ -93,11 +141,38 @@ class LoadedPair:
     hunting : LoadedMesh or None
         Static mesh over the hunting period, of teeth with their pitch deviations and faults under the force and the gap
         of the operating point; None where all mesh periods are alike, and where it is not asked for.
+    over_turn : PairOverTurn or None
+        Loads as the carriers turn; None where nothing changes with their angle.
     """
 
     load: PairLoad
     misalignment: TakenMisalignment
     hunting: LoadedMesh | None = None
+    over_turn: PairOverTurn | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PlanetaryLoadOverTurn:
+    """Load sharing of a planetary set over a common turn of the carriers.
+
+    Attributes
+    ----------
+    loads : tuple of PlanetaryLoad
+        The set at each angle.
+    """
+
+    loads: tuple[PlanetaryLoad, ...]
+
+    @property
+    def mesh_load_factor(self) -> OverTurn:
+        """Mesh load factor K_γ at each angle."""
+        return OverTurn.of([load.mesh_load_factor for load in self.loads])
+
+    @property
+    def load_shares(self) -> tuple[OverTurn, ...]:
+        """Load share of each planet."""
+        shares = [[planet.load_share for planet in load.planets] for load in self.loads]
+        return tuple(map(OverTurn.of, zip(*shares, strict=True)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +190,9 @@ class SolvedLoad:
     sensitivity : LoadSensitivity or None
         Gradients, where they are asked for.
     planetary : tuple of PlanetaryLoad
-        Load sharing of each planetary set that carries a load.
+        Load sharing of each planetary set that carries a load, at the first angle of its carrier.
+    planetary_over_turn : tuple of PlanetaryLoadOverTurn
+        Load sharing of these sets as the carriers turn; none where nothing changes with their angle.
     carrier_turns : tuple of CarrierTurn
         Equilibria over a turn of each planet carrier, where they are asked for.
     """
@@ -127,6 +204,7 @@ class SolvedLoad:
     over_torque: dict[float, OperatingPoint]
     sensitivity: LoadSensitivity | None = None
     planetary: tuple[PlanetaryLoad, ...] = ()
+    planetary_over_turn: tuple[PlanetaryLoadOverTurn, ...] = ()
     carrier_turns: tuple[CarrierTurn, ...] = ()
 
     @property
@@ -216,6 +294,9 @@ def solve_load(
     """
     progress("static equilibrium of the machine")
     point = machine.operating_point()
+    if any(machine.speeds[shaft.carrier] != 0.0 for shaft in machine.shafts if shaft.carrier is not None):
+        progress("static equilibrium over a turn of the carriers")
+        point = replace(point, over_turn=machine.over_turn(point))
     points: dict[float, OperatingPoint] = {}
     for number, part in enumerate(TORQUES if over_torque and machine.torque != 0.0 else ()):
         progress("static equilibrium over torque", number / len(TORQUES))
@@ -235,6 +316,9 @@ def solve_load(
         for bearing in point.bearings
     )
     pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine.gear_pairs, point, aligned_by_default)))
+    if len(point.over_turn) > 1:
+        by_pair = zip(*(one.pairs for one in point.over_turn), strict=True)
+        pairs = tuple(replace(pair, over_turn=PairOverTurn(loads)) for pair, loads in zip(pairs, by_pair, strict=True))
     if over_hunting_period:
         pairs = tuple(
             replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)
@@ -244,10 +328,21 @@ def solve_load(
         for placed in machine.placed_sets
         if any(machine.carrying_pairs[one.number] and point.pairs[one.number].force > 0.0 for one in placed.meshes)
     ]
-    planetary = tuple(planetary_load(machine, placed, point) for placed in loaded_sets)
+    by_angle = [[planetary_load(machine, placed, one) for one in point.over_turn or (point,)] for placed in loaded_sets]
+    planetary = tuple(loads[0] for loads in by_angle)
+    sharing = tuple(PlanetaryLoadOverTurn(tuple(loads)) for loads in by_angle if len(loads) > 1)
     carriers = dict.fromkeys(placed.of.carrier for placed in loaded_sets) if carrier_turn else {}
     turns = tuple(over_carrier_turn(machine, carrier, progress=progress) for carrier in carriers)
-    return SolvedLoad(machine, point, bearings, pairs, points, planetary=planetary, carrier_turns=turns)
+    return SolvedLoad(
+        machine,
+        point,
+        bearings,
+        pairs,
+        points,
+        planetary=planetary,
+        planetary_over_turn=sharing,
+        carrier_turns=turns,
+    )
 
 
 def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:

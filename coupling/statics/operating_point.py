@@ -16,7 +16,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -478,6 +478,12 @@ class OperatingPoint:
         Acceleration of free fall along x, y, z [m/s²].
     supports : tuple of SupportLoad
         Loads on the torque supports.
+    turned_by : mapping of str to float
+        Angle that each carrier has turned by from its first place [rad]; empty there.
+    over_turn : tuple of OperatingPoint
+        Equilibria over a common turn of the carriers from this one on, see
+        :meth:`gearwhine.coupling.Machine.over_turn`; this one alone where all are alike, and none where they are not
+        sought.
     """
 
     shafts: tuple[ShaftDeflection, ...]
@@ -490,6 +496,8 @@ class OperatingPoint:
     tangent: StaticTangent
     gravity: tuple[float, ...] | None = None
     supports: tuple[SupportLoad, ...] = ()
+    turned_by: Mapping[str, float] = field(default_factory=dict)
+    over_turn: "tuple[OperatingPoint, ...]" = ()
 
     @cached_property
     def settled_stiffness(self) -> FloatArray:
@@ -552,7 +560,7 @@ class OperatingPoint:
             carrier = self.shaft(load.mounted.rotor).part.carrier or load.mounted.seat
             return angles.get(carrier or "", 0.0)
 
-        return replace(self, bearings=tuple(load.in_axes(angle(load)) for load in self.bearings))
+        return replace(self, bearings=tuple(load.in_axes(angle(load)) for load in self.bearings), turned_by=angles)
 
     def is_alike(self, other: "OperatingPoint", rounding: float) -> bool:
         """Whether pairs and bearings carry the same forces as at another point, but for a part of the largest."""

@@ -182,6 +182,23 @@ PAIR = (
 )
 """Quantities of a gear pair at the operating point; a row is a :class:`PairLoad`."""
 
+_OVER_TURN = (Quantity("mean"), Quantity("min", "least"), Quantity("max", "most"))
+"""Mean and range over a turn of the carriers; a row is an :class:`OverTurn`."""
+
+
+def _mean_and_range(heading: str, key: str, form: str, scale: float = 1.0) -> Column:
+    """Return the mean over a turn of the carriers with the range in brackets; empty where there is none."""
+
+    def shown(row: Document) -> str:
+        values = row["over_turn"][key]
+        if values is None:
+            return ""
+        mean, least, most = (f"{scale * values[part]:{form}}" for part in ("mean", "min", "max"))
+        return mean if least == most else f"{mean} ({least} to {most})"
+
+    return Column(heading, shown, numbers=tuple(f"over_turn.{key}.{part}" for part in ("mean", "min", "max")))
+
+
 _TAKEN_ANGLE = Quantity("misalignment_taken_rad", "misalignment.taken", "misalignment_taken")
 TAKEN = (
     _TAKEN_ANGLE,
@@ -191,8 +208,26 @@ TAKEN = (
         "hunting",
         (Quantity("mean", "mean_transmission_error"), Quantity("peak_to_peak", "peak_to_peak_transmission_error")),
     ),
+    Part(
+        "over_turn",
+        "over_turn",
+        (
+            Part("force_n", "force", _OVER_TURN),
+            Part("misalignment_rad", "misalignment", _OVER_TURN),
+            Part("k_h_beta", "k_h_beta", _OVER_TURN),
+        ),
+        optional=True,
+    ),
 )
-"""Misalignment that the motion takes of a gear pair, and its static transmission error over the hunting period."""
+"""Misalignment that the motion takes of a gear pair, its static transmission error over the hunting period, and its
+load over a turn of the carriers."""
+
+_TURN_COLUMNS = (
+    *columns_of(_GEARS),
+    _mean_and_range("force\n[N]", "force_n", ".0f"),
+    _mean_and_range("misaligned\n[µrad]", "misalignment_rad", "z.1f", _MICRO),
+    _mean_and_range("K_Hβ", "k_h_beta", ".2f"),
+)
 
 SWEPT_PAIR = (
     replace(_MISALIGNMENT, long_name=meaning_of(PairLoad, "misalignment")),
@@ -508,6 +543,13 @@ PLANETARY = (
 )
 """Quantities of a planetary set at the operating point; a row is a :class:`PlanetaryLoad`."""
 
+PLANETARY_OVER_TURN = (
+    Quantity("name", "loads.0.name"),
+    Part("mesh_load_factor", "mesh_load_factor", _OVER_TURN),
+    Rows("load_shares", "load_shares", _OVER_TURN),
+)
+"""Quantities of a planetary set over a turn of the carriers; a row is a :class:`PlanetaryLoadOverTurn`."""
+
 
 BOLT = (
     Quantity("shaft", heading="shaft"),
@@ -553,6 +595,14 @@ def _over_turns(solved: "SolvedLoad") -> Any:
     ] or ABSENT
 
 
+def _turn_angles(solved: "SolvedLoad") -> Any:
+    """Angles of each carrier at which the equilibria over a turn stand; absent where nothing changes with them."""
+    points = solved.point.over_turn
+    if len(points) < 2:
+        return ABSENT
+    return {name: [point.turned_by.get(name, 0.0) for point in points] for name in points[-1].turned_by}
+
+
 def _of_planets(name: str, of: Callable[[Any], Any], unit: str, long_name: str) -> Quantity:
     """Declare a quantity of the planets of all sets, for the file."""
 
@@ -585,6 +635,8 @@ LOAD: Fields = (
     Rows("bearings", "bearings", BEARING, "loaded_bearing"),
     Rows("gear_pairs", "pairs", (Part("", "load", PAIR), *TAKEN), "loaded_pair"),
     Rows("planetary", lambda solved: list(solved.planetary) or ABSENT, PLANETARY),
+    Rows("planetary_over_turn", lambda solved: list(solved.planetary_over_turn) or ABSENT, PLANETARY_OVER_TURN),
+    Quantity("turn_angles_rad", _turn_angles),
     Rows("support_bolts", _bolts, BOLT),
     Quantity("carrier_turns", _over_turns),
     _of_planets("loaded_planet", lambda planet: planet.shaft, "", ""),
@@ -692,26 +744,32 @@ def brief(load: Document) -> Iterator[str]:
     yield from _misalignments(load)
 
 
-def _misalignments(load: Document) -> Iterator[str]:
-    """Yield the misalignment that the motion takes of every pair, beside that of the operating point."""
+def _misalignments(load: Document, *, with_turn: bool = True) -> Iterator[str]:
+    """Yield the misalignment that the motion takes of every pair, beside that of the operating point.
+
+    ``with_turn`` is false where those that change over a turn of carriers stand in a table.
+    """
+    turning = []
     for pair in load["gear_pairs"]:
-        words = misalignment_words(
-            pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
-        )
-        yield f"  {pair['driver']} → {pair['driven']}: {words}"
+        label, origin = f"{pair['driver']} → {pair['driven']}", pair["misalignment_taken_from"]
+        if origin == "operating point" and "over_turn" in pair:
+            mean, least, most = (
+                _MICRO * pair["over_turn"]["misalignment_rad"][part] for part in ("mean", "min", "max")
+            )
+            turning.append(f"{label} {mean:z.2f} ({least:z.2f} to {most:z.2f})")
+        else:
+            words = misalignment_words(pair["misalignment_taken_rad"], origin, pair["misalignment_rad"])
+            yield f"  {label}: {words}"
         over_hunting_period = pair.get("transmission_error_over_hunting_period_m")
         if over_hunting_period is not None:
             yield (
-                f"  {pair['driver']} → {pair['driven']}: {_MICRO * over_hunting_period['peak_to_peak']:.3f} µm of "
-                "transmission error p-p over the hunting period, with the pitch deviations and faults that the "
-                "equilibrium leaves out"
+                f"  {label}: {_MICRO * over_hunting_period['peak_to_peak']:.3f} µm of transmission error p-p over the "
+                "hunting period, with the pitch deviations and faults that the equilibrium leaves out"
             )
-    if load.get("planetary") and any(
-        pair["misalignment_taken_from"] == "operating point" for pair in load["gear_pairs"]
-    ):
+    if turning and with_turn:
         yield (
-            "  These are of the carriers' first angle; mesh stiffness and motion take the means over a turn, and "
-            "`gears` has them with their range."
+            "  misalignment [µrad] and curvature of the flank gap taken as the operating point has them, in the mean "
+            f"over a turn of {' and '.join(load['turn_angles_rad'])} (range): {', '.join(turning)}"
         )
 
 
@@ -906,7 +964,15 @@ def _content(document: Document) -> Iterator[str | Table]:
     caption = "Gear pairs, means over the mesh period, with the misalignment found (as of unmodified flanks)"
     yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], caption)
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
-    yield from _misalignments(document)
+    if angles := document.get("turn_angles_rad"):
+        count = len(next(iter(angles.values())))
+        caption = f"Gear pairs over a turn of {' and '.join(angles)}: mean and range of {count} angles"
+        yield from table_of(_TURN_COLUMNS, document["gear_pairs"], caption)
+        yield (
+            "Mesh stiffness and motion take these means, with the curvature of the flank gap. All else here is of the "
+            "first angle, at which the planets stand where the case puts them"
+        )
+    yield from _misalignments(document, with_turn=False)
     yield from _planetary(document)
     yield from table_of(columns_of(BOLT), document.get("support_bolts", ()), "Forces on the bolts of torque supports")
     rows = [
@@ -925,13 +991,24 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield f"Free motions, which nothing holds and no load drives: {_grouped(document['free_motions'])}"
 
 
+_SHARE_OVER_TURN = _mean_and_range("share over a turn", "load_share", ".4f")
+
+
 def _planetary(document: Document) -> Iterator[str | Table]:
     """Yield the members of every planetary set, and how its planets share the load."""
     turns = {one["name"]: one for turn in document.get("carrier_turns", ()) for one in turn["sets"]}
+    means = {one["name"]: one for one in document.get("planetary_over_turn", ())}
     for one in document.get("planetary", ()):
         yield from table_of(columns_of(MEMBER), one["members"], f"Members of planetary set {one['name']}")
-        yield from table_of(columns_of(PLANET), one["planets"], f"Planets of {one['name']} under load")
-        yield f"Mesh load factor K_γ of {one['name']}: {one['mesh_load_factor']:.4f} (1 where all planets carry alike)"
+        planets, factor = one["planets"], f"{one['mesh_load_factor']:.4f}"
+        if mean := means.get(one["name"]):
+            each = zip(planets, mean["load_shares"], strict=True)
+            planets = [planet | {"over_turn": {"load_share": share}} for planet, share in each]
+            values = mean["mesh_load_factor"]
+            factor += f", over a turn {values['mean']:.4f} in the mean and {values['max']:.4f} at most"
+        columns = (*columns_of(PLANET), *((_SHARE_OVER_TURN,) if mean else ()))
+        yield from table_of(columns, planets, f"Planets of {one['name']} under load")
+        yield f"Mesh load factor K_γ of {one['name']}: {factor} (1 where all planets carry alike)"
         if one["name"] in turns:
             shares = np.array(turns[one["name"]]["load_share"])
             yield (

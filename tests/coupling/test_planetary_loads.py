@@ -11,10 +11,12 @@ from gearwhine.coupling.description.planetary import PlanetarySet
 from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.load_analysis.load_warnings import load_warnings
 from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load
-from gearwhine.coupling.load_analysis.solved_load import solve_load
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad, solve_load
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.statics.mean_mesh import mean_contact, mean_meshes
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.output.sections import Table
+from gearwhine.results.operating_point import load_document, sections
 from gearwhine.rotors import ShaftMaterial
 from tests.machines.plane_planetary_set import (
     BEARING_STIFFNESS,
@@ -223,6 +225,84 @@ def test_mean_forces_are_the_means_of_statics_over_a_turn_of_the_carrier() -> No
         assert [mean.force for mean in mean_meshes(stands) if mean] == pytest.approx(turn[part], rel=2e-5)
         compression = stands.contact_directions.T @ static_equilibrium(system, place)
         assert MESH_STIFFNESS * compression == pytest.approx(turn[part], rel=2e-5)
+
+
+def _forces_past_a_force(turned_by: float, torque: float) -> np.ndarray:
+    """Force of each mesh of the sun, of rigid bodies on springs that only press: a planet carries by both meshes."""
+    angles, alpha, turn = equal_angles(3), np.radians(20.0), np.array([[0.0, -1.0], [1.0, 0.0]])
+    back = np.cos(turned_by) * np.eye(2) - np.sin(turned_by) * turn
+    stiffness = independent_matrices(angles, pressure_angle=alpha, with_ring=True)[2]
+    for body in (slice(0, 2), slice(3, 5)):
+        stiffness[body, body] -= 0.7 * BEARING_STIFFNESS * np.outer(back[:, 1], back[:, 1])
+    sun, planet = TEETH
+    load = np.zeros(18)
+    load[5] = torque / (0.5 * MODULE * sun * np.cos(alpha))
+    load[2] = -torque * (2.0 + 2.0 * planet / sun) / (0.5 * MODULE * (sun + planet))
+    load[[10, 1, 2]] += BEARING_STIFFNESS * ERROR * np.array([1.0, -1.0, -1.0])
+    load[:2] -= 6000.0 * back[:, 1]
+    rows = np.zeros((3, 2, 18))
+    for number, angle in enumerate(angles):
+        x, y, u = range(9 + 3 * number, 12 + 3 * number)
+        of_sun, of_ring = (
+            np.array([np.cos(a), np.sin(a)]) for a in angle + np.array([0.5, -0.5]) * np.pi - [alpha, -alpha]
+        )
+        rows[number, 0, [3, 4, 5, x, y, u]] = *of_sun, 1.0, *-of_sun, 1.0
+        rows[number, 1, [6, 7, 8, x, y, u]] = *-of_ring, 1.0, *of_ring, -1.0
+    carries = np.ones(3, dtype=bool)
+    for _ in range(4):
+        loose = rows[~carries].reshape(-1, 18)
+        motion = np.linalg.lstsq(stiffness - MESH_STIFFNESS * loose.T @ loose, load, rcond=1e-12)[0]
+        # A planet that is free to turn touches where both of its meshes together are pressed.
+        carries = (rows @ motion).sum(axis=1) > 0.0
+    return np.asarray(MESH_STIFFNESS * (rows[:, 0] @ motion) * carries)
+
+
+@cache
+def _parting() -> SolvedLoad:
+    """Under 60 N m the force parts each planet over a part of the turn, where the others carry its load."""
+    return solve_load(replace(_under_a_force(), torque=60.0))
+
+
+@cache
+def _parting_by_hand() -> np.ndarray:
+    return np.array([_forces_past_a_force(2.0 * np.pi * number / 7, 60.0) for number in range(7)])
+
+
+def test_flanks_that_part_at_angles_of_the_carrier_are_named_with_these() -> None:
+    solved, expected = _parting(), _parting_by_hand()
+    found = np.array([[pair.force for pair in point.pairs[:3]] for point in solved.point.over_turn])
+    np.testing.assert_allclose(found, expected, atol=2e-3 * expected.max())
+    parted = expected == 0.0
+    assert np.all((parted.sum(axis=0) > 0) & (parted.sum(axis=0) < 7))
+    warned = {(entry["driver"], entry["driven"]): entry for entry in load_warnings(solved) if "angles_rad" in entry}
+    assert len(warned) == 6
+    for number in range(3):
+        entry = warned["sun gear", f"planet gear {number + 1}"]
+        at = [angle.get("carrier", 0.0) for angle in entry["angles_rad"]]
+        assert at == pytest.approx((2.0 * np.pi / 7 * np.flatnonzero(parted[:, number])).tolist())
+        degrees = ", ".join(f"{np.degrees(angle):.0f}°" for angle in at)
+        assert f"apart with carrier turned by {degrees}, and the pairs" in entry["message"]
+
+
+def test_means_and_ranges_over_a_turn_are_shown_of_forces_and_shares() -> None:
+    """The mean force is that which mesh stiffness and motion take."""
+    solved, expected = _parting(), _parting_by_hand()
+    taken = [pair.mean_force for pair in solved.machine.with_flanks_of(solved.point).gear_pairs]
+    document = load_document("", solved)
+    forces = [pair["over_turn"]["force_n"] for pair in document["gear_pairs"]]
+    assert [force["mean"] for force in forces] == pytest.approx(taken, rel=1e-12)
+    assert forces[0]["min"] == 0.0
+    assert forces[0]["max"] == pytest.approx(expected[:, 0].max(), rel=2e-3)
+    shares = expected / expected.sum(axis=1)[:, None]
+    (stage,) = document["planetary_over_turn"]
+    assert [share["mean"] for share in stage["load_shares"]] == pytest.approx(shares.mean(axis=0), abs=2e-3)
+    assert stage["mesh_load_factor"]["max"] == pytest.approx(3.0 * shares.max(), abs=6e-3)
+    (section,) = sections(document)
+    tables = {item.caption: item.filled()[1] for item in section.content if isinstance(item, Table)}
+    over_turn = tables["Gear pairs over a turn of carrier: mean and range of 7 angles"]
+    assert over_turn[0][2] == f"{forces[0]['mean']:.0f} (0 to {forces[0]['max']:.0f})"
+    text = " ".join(item for item in section.content if isinstance(item, str))
+    assert f"over a turn {stage['mesh_load_factor']['mean']:.4f} in the mean and 2." in text
 
 
 @pytest.mark.slow
