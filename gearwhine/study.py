@@ -204,8 +204,9 @@ class Study(StudiedMachine):
         Parameters
         ----------
         campbell : bool
-            Also compute the Campbell diagram: over the speeds of the settings ([sweep]), else up to 1.5 times the
-            operating speed. Two or more speeds of the settings imply it.
+            Also compute the Campbell diagram, the responses to unbalance and the mesh harmonics of the sensors over
+            speed: over the speeds of the settings ([sweep]), else up to 1.5 times the operating speed. Two or more
+            speeds of the settings imply it.
         sidebands : int
             Number of shaft-order sidebands drawn on each side of every mesh order, up to 20.
         mesh_harmonics : int

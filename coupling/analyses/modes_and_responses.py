@@ -21,6 +21,7 @@ from gearwhine.coupling.linear.frequency_response import (
     touching_meshes,
     unbalance_responses,
 )
+from gearwhine.coupling.linear.lines_over_speed import LinesOverSpeed, lines_over_speed
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
@@ -36,6 +37,7 @@ _LOWEST_HZ = 20.0  # lowest frequency of a response
 _HARMONICS = 4.0  # mesh harmonics that a response covers where no housing limits the model
 _MODES = 6  # least number of modes in a diagram
 _UNBALANCE_STEPS = 200  # speeds of the response to unbalance
+_SLOWEST_OF_LINES = 0.1  # part of the highest speed below which lines of the meshes are left out
 _DIRECT = 24  # frequencies at which superposition is compared with the solved system
 _EXPONENTS = 24  # lowest modes whose exponents with turning carriers are solved
 _NAMED_MODES = 5  # growing modes named one by one
@@ -69,6 +71,9 @@ class SolvedSystem:
     lines : tuple of ResponseParts
         Motions at the mesh harmonics of operation by transmission error and load shuttling, with a housing that has
         sensors, about the mean contact.
+    order_lines : LinesOverSpeed or None
+        Mesh harmonics at the housing's sensors at the speeds of the diagram, at its resonances and in operation; None
+        without a diagram, and of machines whose directions turn, whose sidebands are not these lines.
     exponents : ndarray of complex, shape (m,), or None
         Floquet exponent of each mode [1/s], of the lowest oscillating ones of a machine whose directions turn; NaN of
         others.
@@ -85,6 +90,7 @@ class SolvedSystem:
     unbalance: tuple[FrequencyResponse, ...] = ()
     unbalance_speeds: FloatArray | None = None
     lines: tuple[ResponseParts, ...] = ()
+    order_lines: LinesOverSpeed | None = None
     exponents: ComplexArray | None = None
 
     @property
@@ -276,7 +282,15 @@ def _over_speed(
         responses = unbalance_responses(machine, turning, rotor=rotor, contact=mean)
         # A clockwise rotor's phases are those of its signals, not of e^{iwt} at its negative speed.
         unbalance += [response.at_positive_frequencies() for response in responses]
-    return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)
+    over = None
+    if solved.lines and not machine.system.turns:
+        met = [one.speed for one in campbell.crossings if one.line.kind == "mesh"]  # where a line is about highest
+        here = [machine.speed] if abs(machine.speed) <= abs(speeds[-1]) else []
+        every = np.array(sorted({*speeds, *met, *here}, key=abs))
+        # Slower than a part of the highest speed lines have more harmonics below the limit than are followed.
+        loud = every[np.abs(every) >= _SLOWEST_OF_LINES * abs(speeds[-1])]
+        over = lines_over_speed(machine, loud.tolist(), limit, progress=progress)
+    return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning, order_lines=over)
 
 
 def unstable_modes_warnings(stability: Stability) -> list[ResultWarning]:

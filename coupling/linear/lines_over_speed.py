@@ -18,10 +18,11 @@ import numpy as np
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, causes_in_words
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, lines_of_meshes
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
+from gearwhine.numerics.progress import Progress, silent
 
 _PLACES = 8  # of a carrier in a turn
 _ONE_FREQUENCY = 1e-9
@@ -38,6 +39,8 @@ class LinesOverSpeed:
         Signed speeds of the first driver's shaft [rad/s].
     orders : ndarray, shape (l,)
         Frequency of each line over the speed.
+    causes : tuple of str
+        Mesh harmonics that drive each line, in words.
     sensors : tuple of str
     amplitudes : ndarray, shape (o, s, l)
         Peak amplitudes of acceleration [m/s²]; NaN above the limit.
@@ -51,6 +54,7 @@ class LinesOverSpeed:
 
     speeds: FloatArray
     orders: FloatArray
+    causes: tuple[str, ...]
     sensors: tuple[str, ...]
     amplitudes: FloatArray
     between: FloatArray
@@ -133,7 +137,12 @@ def _housing_rows(machine: CoupledMachine) -> FloatArray:
 
 
 def lines_over_speed(
-    machine: CoupledMachine, speeds: Sequence[float], limit: float, *, of_housing: bool = False
+    machine: CoupledMachine,
+    speeds: Sequence[float],
+    limit: float,
+    *,
+    of_housing: bool = False,
+    progress: Progress = silent,
 ) -> LinesOverSpeed:
     """Solve the mesh harmonics at the sensors of a machine at some speeds.
 
@@ -147,6 +156,7 @@ def lines_over_speed(
         Highest frequency [rad/s].
     of_housing : bool
         Whether the rates of the housing's coordinates are wanted, too, which its sound needs.
+    progress : callable
 
     Raises
     ------
@@ -156,10 +166,12 @@ def lines_over_speed(
     """
     if machine.system.turns:
         raise CouplingError("lines over speed: directions turn with a carrier; expected a machine without such")
-    return _solved_lines(MeshHarmonicModel(machine), speeds, limit, of_housing)
+    return _solved_lines(MeshHarmonicModel(machine), speeds, limit, of_housing, progress)
 
 
-def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: float, of_housing: bool) -> LinesOverSpeed:
+def _solved_lines(
+    model: MeshHarmonicModel, speeds: Sequence[float], limit: float, of_housing: bool, progress: Progress = silent
+) -> LinesOverSpeed:
     """Solve as `lines_over_speed` does, the machine of a model whose directions stand."""
     machine = model.machine
     system, nominal = machine.system, machine.speed
@@ -179,6 +191,7 @@ def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: floa
     rates, outputs = np.zeros((len(ratios), len(loads), len(moves)), dtype=np.complex128), np.vstack([rows, moves])
     rates_between = []
     for place, ratio in enumerate(ratios):
+        progress("lines of the sensors over speed", place / len(ratios))
         there = system.connector_matrices(ratio)
         held = stiffness + (there[0] - here[0])
         resisted = damping + (ratio - 1.0) * system.gyroscopic + (there[1] - here[1])
@@ -210,6 +223,7 @@ def _solved_lines(model: MeshHarmonicModel, speeds: Sequence[float], limit: floa
         between[:, place] = np.sqrt(0.5 * np.sum(np.abs(accelerations[: len(rows)]) ** 2, axis=1))
         rates_between.append((frequency, (accelerations[len(rows) :] / (1j * frequency)).T))
     orders = np.array([load.frequency for load in loads]) / abs(nominal)
+    causes = tuple(" and ".join(causes_in_words(machine, load.causes)) for load in loads)
     given = np.array(speeds, dtype=np.float64)
     names = tuple(machine.sensor_rows)
-    return LinesOverSpeed(given, orders, names, amplitudes, between, rates, tuple(rates_between))
+    return LinesOverSpeed(given, orders, causes, names, amplitudes, between, rates, tuple(rates_between))

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
     from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
     from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+    from gearwhine.coupling.linear.lines_over_speed import LinesOverSpeed
     from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
     from gearwhine.housing import HousingModes
 
@@ -513,6 +514,54 @@ def _unbalance(solved: "SolvedSystem") -> Any:
     return [_Response(response, along) for response in solved.unbalance]
 
 
+class _OrderLine(NamedTuple):
+    """Mesh harmonics over speed, and one of them."""
+
+    over: "LinesOverSpeed"
+    number: int
+
+    def highest(self) -> dict[str, dict[str, float]]:
+        """Highest amplitude [m/s²] at each sensor, and the speed [rpm] and frequency [Hz] of it."""
+        found = {}
+        for sensor, amplitudes in zip(self.over.sensors, self.over.amplitudes[:, :, self.number], strict=True):
+            place = int(np.nanargmax(amplitudes))
+            speed = abs(float(self.over.speeds[place]))
+            frequency = float(self.over.orders[self.number]) * speed / HERTZ
+            found[sensor] = {
+                "amplitude_m_per_s2": float(amplitudes[place]),
+                "speed_rpm": speed * RPM,
+                "frequency_hz": frequency,
+            }
+        return found
+
+
+ORDER_LINE = (
+    Quantity("order", lambda row: row.over.orders[row.number], "order_line_order", unit="1"),
+    Quantity(
+        "cause",
+        lambda row: row.over.causes[row.number],
+        "order_line_cause",
+        long_name="mesh harmonics that drive the line",
+    ),
+    Quantity("highest", lambda row: row.highest()),
+    in_file(
+        "order_line_amplitude",
+        ("order_line_sensor", "order_line_speed"),
+        lambda row: dict(zip(row.over.sensors, row.over.amplitudes[:, :, row.number], strict=True)),
+        "amplitude of the sensor's acceleration at a mesh harmonic; none, as NaN, above the limit of the modes",
+        "m s-2",
+    ),
+)
+"""Quantities of a mesh harmonic at the sensors over speed."""
+
+
+def _order_lines(solved: "SolvedSystem") -> Any:
+    if solved.order_lines is None:
+        return ABSENT
+    known = np.isfinite(solved.order_lines.amplitudes).any(axis=(0, 1))
+    return [_OrderLine(solved.order_lines, number) for number in np.flatnonzero(known).tolist()]
+
+
 def _trusted_below(solved: "SolvedSystem") -> float | None:
     housing = solved.machine.housing
     return None if housing is None or housing.complete_below is None else housing.complete_below / HERTZ
@@ -567,15 +616,34 @@ SYSTEM = (
         "rpm",
     ),
     Rows("unbalance_response", _unbalance, UNBALANCE, "unbalance_of"),
+    in_file(
+        "order_line_speed",
+        "order_line_speed",
+        lambda solved: None if solved.order_lines is None else np.abs(solved.order_lines.speeds) * RPM,
+        "speed of the first driver",
+        "rpm",
+    ),
+    in_file(
+        "order_line_rms",
+        ("order_line_sensor", "order_line_speed"),
+        lambda solved: (
+            None
+            if solved.order_lines is None
+            else dict(zip(solved.order_lines.sensors, solved.order_lines.rms, strict=True))
+        ),
+        "rms of the sensor's acceleration by all lines of the meshes below the limit of the modes",
+        "m s-2",
+    ),
+    Rows("order_lines", _order_lines, ORDER_LINE, "order_line"),
 )
 """Quantities of the coupled system, linear about a contact."""
 
 
 SYSTEM_OPTIONS = (
     Option(
-        ("campbell", "unbalance_response"),
-        ("system_speed", "system_branch", "system_crossing", "unbalance_"),
-        "system-campbell.png",
+        ("campbell", "unbalance_response", "order_lines"),
+        ("system_speed", "system_branch", "system_crossing", "unbalance_", "order_line"),
+        "system-[co]*.png",
     ),
 )
 """Options of the coupled system."""
@@ -595,6 +663,8 @@ def system_document(solved: "SolvedSystem", housing: "HousingModes | None" = Non
 
 _NAMES = {"components": "", "bearings": "", "gear_meshes": "teeth of "}
 _CROSSINGS = 30  # shown at most, those nearest to operation
+_ORDER_LINES = 3  # mesh harmonics over speed shown of each sensor
+_NEAR_MODE = 0.02  # part of a line's frequency that a mode near it is off at most
 _WHIRL = 0.5  # circularity from which a sense of whirl is named
 UNDAMPED_RATIO = 1e-3
 """Damping ratio of a mode below which the height of its peak says nothing: the model lacks what damps it."""
@@ -611,6 +681,11 @@ _PICTURES = (
     Picture(
         "campbell",
         "Campbell diagram of the coupled machine: an order that meets a mode at a speed is a resonance there.",
+    ),
+    Picture(
+        "system-order-lines",
+        "Lines of the meshes over speed at each sensor, by linear response about the mean load: the highest mesh "
+        "harmonics, and all together.",
     ),
     Picture(
         "transmissibility",
@@ -696,6 +771,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from line_content(document)
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
+    yield from _over_speed(document)
     yield from kept_sentence(document, SYSTEM_OPTIONS, "modes")
 
 
@@ -915,6 +991,34 @@ def _peaks(response: Document, modes: list[Document]) -> Iterator[str | Table]:
     )
     yield f"Response to the {response['excitation']}, 1 µm at any frequency:"
     yield from table_of(columns, rows)
+
+
+_ORDER_LINE_COLUMNS = (
+    Column("sensor", "sensor"),
+    Column("mesh harmonic", "cause"),
+    Column("highest [m/s²]", "amplitude_m_per_s2", ".3g"),
+    Column("speed [rpm]", "speed_rpm", ".0f"),
+    Column("frequency [Hz]", "frequency_hz", ".1f"),
+    Column("near, as at operation", "near"),
+)
+
+
+def _over_speed(document: Document) -> Iterator[str | Table]:
+    """Yield the mesh harmonics that are highest over speed at each sensor, and the modes near them."""
+    lines = document.get("order_lines", ())
+    modes = [mode for mode in document["modes"] if mode["kind"] not in ("rigid", "residual")]
+    rows = []
+    for sensor in lines[0]["highest"] if lines else ():
+        highest = sorted(lines, key=lambda line: -line["highest"][sensor]["amplitude_m_per_s2"])
+        for line in highest[:_ORDER_LINES]:
+            peak = line["highest"][sensor]
+            near = min(modes, key=lambda mode: abs(mode["frequency_hz"] - peak["frequency_hz"]), default=None)
+            is_near = near is not None and abs(near["frequency_hz"] / peak["frequency_hz"] - 1.0) <= _NEAR_MODE
+            mode = f"{near['frequency_hz']:.0f} Hz {_named(near)}" if near is not None and is_near else ""
+            rows.append({"sensor": sensor, "cause": arrowed(line["cause"]), "near": mode} | peak)
+    if rows:
+        yield "Mesh harmonics of the sensors over speed, each at its highest; linear response about the mean load:"
+        yield from table_of(_ORDER_LINE_COLUMNS, rows)
 
 
 _CROSSING_COLUMNS = (

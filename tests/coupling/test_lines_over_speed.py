@@ -8,8 +8,11 @@ from sounding_gearbox import small_gearbox
 
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.linear.lines_over_speed import housing_rates, lines_over_speed, sensor_rms
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.output.quantity import document_of
+from gearwhine.results.system import SYSTEM
 
 LIMIT = 2.0 * np.pi * 6000.0
 
@@ -50,6 +53,35 @@ def test_each_speed_has_the_lines_of_the_machine_at_that_speed() -> None:
         assert np.allclose(found.rms[:, place], together, rtol=tolerance)
         assert np.allclose(sensor_rms(there, LIMIT), together, rtol=tolerance)
     assert max(felt) > 0.05
+
+
+def test_a_diagram_has_the_lines_at_its_resonances_and_at_operation() -> None:
+    machine = small_gearbox().machine
+    machine = replace(machine, speed=0.4 * machine.speed)
+    coupled = load_machine(machine, machine.operating_point()).coupled
+    solved = solve_system(coupled, over_speed=(0.8 * machine.speed, 1.1 * machine.speed))
+    over, campbell = solved.order_lines, solved.campbell
+    assert over is not None
+    assert campbell is not None
+    here = over.speeds.tolist().index(machine.speed)
+    known = {cause: place for place, cause in enumerate(over.causes)}
+    assert len(solved.lines) == 2
+    for line in solved.lines:
+        heights = [line.frequency**2 * abs(row @ line.motion) for row in coupled.sensor_rows.values()]
+        assert over.amplitudes[:, here, known[line.cause(coupled)]] == pytest.approx(heights, rel=1e-9)
+    met = [one for one in campbell.crossings if one.line.kind == "mesh"]
+    assert len(met) >= 3
+    assert {one.speed for one in met} <= set(over.speeds.tolist())
+    assert (np.diff(np.abs(over.speeds)) > 0.0).all()
+    document = document_of(SYSTEM, solved)
+    for number, row in enumerate(document["order_lines"]):
+        assert row["cause"] == over.causes[number]
+        for sensor, peak in row["highest"].items():
+            amplitudes = over.amplitudes[over.sensors.index(sensor), :, number]
+            assert peak["amplitude_m_per_s2"] == np.nanmax(amplitudes)
+            place = int(np.nanargmax(amplitudes))
+            assert peak["speed_rpm"] == pytest.approx(abs(over.speeds[place]) * 30.0 / np.pi)
+            assert peak["frequency_hz"] == pytest.approx(over.orders[number] * peak["speed_rpm"] / 60.0)
 
 
 @pytest.mark.slow

@@ -17,6 +17,7 @@ from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.linear.campbell import SystemCampbell
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.linear.lines_over_speed import LinesOverSpeed
 from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
 from gearwhine.figures.style import (
     BLUE,
@@ -39,10 +40,12 @@ from gearwhine.figures.style import (
     legend,
     legend_below,
     legend_height,
+    log_axis,
     mark_operation,
     name_in_legend,
     name_lowest,
     panel,
+    panel_title,
     sheet,
     shortened,
     stacked,
@@ -79,6 +82,8 @@ _ABOVE_LINES = 10.0  # top of a panel of lines over its highest one: room for na
 _NAMES_APART = 0.03  # part of a panel's width that names of lines which lean alike are apart
 _LINE_GAP = 9.0  # gap between two panels of lines [mm]
 _COLUMNS = 4  # columns of their names above it
+_MOST_ORDERS = 6  # mesh harmonics over speed that are drawn
+_ORDER_COLUMNS = 4  # columns of their names below
 _CAMPBELL_COLUMNS = 8  # columns of the kinds of modes below the Campbell diagram
 
 
@@ -282,6 +287,46 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     )
 
 
+def draw_order_lines(over: LinesOverSpeed, *, operating_speed: float) -> Figure:
+    """Draw the mesh harmonics over speed, a panel for each sensor: the highest of them, and all lines together.
+
+    Parameters
+    ----------
+    over : LinesOverSpeed
+        Lines of one sensor or more.
+    operating_speed : float
+        Speed of operation, drawn as a line [rad/s].
+    """
+    sensors, speeds = over.sensors[:_MOST_PANELS], RPM * np.abs(over.speeds)
+    heights = np.nan_to_num(over.amplitudes).max(axis=(0, 1))
+    followed = np.isfinite(over.amplitudes).any(axis=(0, 2))
+    chosen = np.sort(np.argsort(-heights)[:_MOST_ORDERS])
+    handles = [
+        Line2D([], [], color=SERIES[place], lw=1.1, label=name_in_legend(over.causes[number], 30))
+        for place, number in enumerate(chosen.tolist())
+    ]
+    handles.append(Line2D([], [], color=INK, lw=0.8, label="all together, rms × √2"))
+    room = FOOT + legend_height(len(handles) + 1, _ORDER_COLUMNS)
+    note = "peak amplitudes of mesh harmonics below the limit of the modes, linear response about the mean load"
+    figure, panels = stacked(
+        len(sensors), _RESPONSE_HEIGHT, _LINE_GAP, "Mesh harmonics over speed", note, first=_LINE_GAP, foot=room
+    )
+    for place, (sensor, axes) in enumerate(zip(sensors, panels, strict=True)):
+        together = np.sqrt(2.0) * over.rms[place]
+        axes.plot(speeds[followed], together[followed], color=INK, lw=0.8, zorder=2)
+        for series, number in enumerate(chosen.tolist()):
+            axes.plot(speeds, over.amplitudes[place, :, number], color=SERIES[series], lw=1.1, zorder=3)
+        top = float(together.max())
+        if top > 0.0:
+            log_axis(axes, top * 10.0**-_DECADES, 1.5 * top)
+        operation = mark_operation(axes, operating_speed, "-.")
+        axes.set(xlim=(speeds[followed].min(), speeds[followed].max()), ylabel="acceleration [m/s²]")
+        panel_title(axes, sensor)
+    name_lowest(panels, "speed of the first driver [rpm]")
+    legend_below(figure, [*handles, operation], _ORDER_COLUMNS)
+    return figure
+
+
 def draw_sensor_lines(machine: CoupledMachine, lines: Sequence[ResponseParts]) -> Figure:
     """Draw the lines of the sensors at operation: mesh harmonics and their sidebands by carriers.
 
@@ -359,7 +404,8 @@ def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
     ------
     str
         Name of the figure: ``system-campbell`` where there is a diagram, ``transmissibility-PAIR`` for each gear pair
-        that touches, ``system-lines`` where carriers turn and sensors have lines.
+        that touches, ``system-order-lines`` where sensors have lines over speed, ``system-lines`` where carriers turn
+        and sensors have lines.
     matplotlib.figure.Figure
     """
     if solved.campbell is not None:
@@ -376,5 +422,7 @@ def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
         limit = float(response.frequencies[-1] / (2.0 * np.pi))
         heading = f"From the transmission error of {shortened(arrowed(name), 30)}"
         yield stem, draw_transmissibility(heading, response, mesh_frequencies=meshes, limit=limit)
+    if solved.order_lines is not None:
+        yield "system-order-lines", draw_order_lines(solved.order_lines, operating_speed=solved.speed)
     if any(line.sidebands for line in solved.lines) and solved.machine.sensor_rows:
         yield "system-lines", draw_sensor_lines(solved.machine, solved.lines)

@@ -10,7 +10,13 @@ from matplotlib.figure import Figure
 from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
-from gearwhine.figures.machine.system import KIND_COLORS, draw_system_campbell, draw_transmissibility
+from gearwhine.coupling.linear.lines_over_speed import LinesOverSpeed
+from gearwhine.figures.machine.system import (
+    KIND_COLORS,
+    draw_order_lines,
+    draw_system_campbell,
+    draw_transmissibility,
+)
 
 RPM = 60.0 / (2.0 * math.pi)
 SPEEDS = np.linspace(0.0, 100.0, 11)
@@ -122,3 +128,29 @@ def test_a_panel_for_each_kind_of_answer() -> None:
     marked = [line.get_xdata()[0] for line in mesh.get_lines() if line.get_label() == "mesh frequency"]
     assert marked == pytest.approx([300.0, 600.0, 900.0])
     assert len(draw_transmissibility("t", response(sensors=False)).axes) == 2
+
+
+def test_the_highest_mesh_harmonics_over_speed_and_all_together() -> None:
+    speeds, orders = np.linspace(-50.0, -100.0, 6), np.arange(1.0, 9.0)
+    amplitudes = np.add.outer([1.0, 2.0], np.outer(1e-3 * speeds**2, 1.0 / orders))
+    amplitudes[:, -1] = np.nan  # above the limit
+    amplitudes[:, 3:, 1] = np.nan
+    causes = tuple(f"{order:.0f}× pinion -> wheel" for order in orders)
+    nothing = np.zeros((6, 8, 0), dtype=complex)
+    over = LinesOverSpeed(speeds, orders, causes, ("top", "side"), amplitudes, np.zeros((2, 6)), nothing, ())
+    figure = draw_order_lines(over, operating_speed=-80.0)
+    top, side = figure.axes
+    for place, axes in enumerate((top, side)):
+        together, *lines, operation = axes.get_lines()
+        assert np.asarray(together.get_xdata()) == pytest.approx(-RPM * speeds[:-1])
+        expected = np.sqrt(np.nansum(amplitudes[place, :-1] ** 2, axis=1))
+        assert np.asarray(together.get_ydata()) == pytest.approx(expected)
+        # The six highest of eight.
+        for number, line in enumerate(lines):
+            assert line.get_ydata() == pytest.approx(amplitudes[place, :, number], nan_ok=True)
+        assert len(lines) == 6
+        assert operation.get_xdata() == pytest.approx([80.0 * RPM] * 2)
+    assert top.get_title(loc="left") == "top"
+    (legend,) = figure.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert names == [*(f"{order}× pinion → wheel" for order in range(1, 7)), "all together, rms × √2", "operation"]
