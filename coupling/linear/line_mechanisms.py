@@ -316,7 +316,7 @@ class LineMechanisms:
             error = at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
             if not swings and abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
                 yield order * rate, "transmission_error", Force.along(contact, stiffness * error[0])
-            if (rubbed := self.model.friction((number, order))) is not None:
+            for rubbed in self.model.friction_forces((number, order)):
                 yield order * rate, "friction", rubbed
             if isinstance(varying, TurningStiffnessForce):
                 for turns, force in varying.at(order).items():

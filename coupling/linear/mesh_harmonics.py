@@ -51,6 +51,7 @@ from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
 from gearwhine.coupling.statics.flank_swing import (
     LawsOverTurn,
+    forces_over_turn,
     swinging_laws,
     swinging_shuttling,
     turn_waves,
@@ -400,8 +401,7 @@ class MeshHarmonicModel:
             "load_shuttling": sum_by_order(moments),
         }
         if self._has_friction:
-            rubbed = self.friction(cause)
-            loads["friction"] = {} if rubbed is None else rubbed.by_order(model)
+            loads["friction"] = sum_by_order(force.by_order(model) for force in self.friction_forces(cause))
         return loads
 
     def error_forces(self, cause: Cause) -> list[Force]:
@@ -579,6 +579,40 @@ class MeshHarmonicModel:
         """Friction of a contact's teeth at a mesh harmonic under its mean force; None without friction."""
         number, harmonic = cause
         return friction_force(self.machine.system.contacts[number], *self.alike[number], harmonic)
+
+    def friction_forces(self, cause: Cause) -> list[Force]:
+        """Friction of a contact's teeth at a mesh harmonic, and at its sidebands as the load swings over a turn."""
+        number, harmonic = cause
+        contact, by_angle = self.machine.system.contacts[number], self._friction_over_turn.get(number)
+        if by_angle is None:
+            rubbed = self.friction(cause)
+            return [] if rubbed is None else [rubbed]
+        forces = [friction_force(contact, *alike, harmonic) for alike in by_angle]
+        amplitudes = np.array([force.amplitudes for force in forces if force is not None])
+        return [
+            Force(contact.sliding.directions, wave @ amplitudes, contact.sliding.turning, order)
+            for order, wave in by_order(turn_waves(self.machine.system), self.turning.model).items()
+            if contact.sliding is not None
+        ]
+
+    @cached_property
+    def _friction_over_turn(self) -> dict[int, list[tuple[LoadedMesh, FloatArray | None]]]:
+        """As `alike`, at the load and the gap of each angle of a turn, of contacts with friction whose load swings."""
+        if not (self.machine.system.turns and self._has_friction):
+            return {}
+        contacts, found = self.machine.system.contacts, dict[int, list[tuple[LoadedMesh, FloatArray | None]]]()
+        for number, forces in forces_over_turn(self.machine.system, self._at_rest).items():
+            contact = contacts[number]
+            if number not in self.loaded or contact.sliding is None:
+                continue
+            if number not in self._laws_over_turn:
+                found[number] = [alike_teeth(contact, force) for force in forces.tolist()]
+                continue
+            sliding, friction, found[number] = contact.sliding, contact.sliding.friction, []
+            for law, force in self._laws_over_turn[number]:
+                on_gap = replace(contact, contact=law, sliding=replace(sliding, friction=friction.under(law)))
+                found[number].append(alike_teeth(on_gap, force))
+        return found
 
     @cached_property
     def alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:

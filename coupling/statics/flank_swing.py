@@ -73,22 +73,32 @@ def swinging_laws(
         for number, law in enumerate(laws)
         if angles > 1 and law.faces is not None and len(law.faces.changes) == angles and law.hunting_period == 1
     ]
-    if not swinging:
-        return {}
-    means, motions = equilibrium_over_turn(system) if rest is None else rest
-    compressions, found = compressions_over_turn(system, motions), dict[int, list[tuple[ToothContact, float]]]()
-    for number in swinging:
-        mean, faces, moved = means[number], laws[number].faces, compressions[:, number]
-        if mean is None or faces is None:
-            continue
-        # By the slope of the mean curve.
-        forces = mean.force + mean.secant * (moved - moved.mean())
-        if np.all(forces > 0.0):
+    found = dict[int, list[tuple[ToothContact, float]]]()
+    for number, forces in forces_over_turn(system, rest).items() if swinging else ():
+        faces = laws[number].faces
+        if number in swinging and faces is not None:
             gaps = [replace(faces, gap=faces.gap + change, changes=np.zeros((1, 1))) for change in faces.changes]
             found[number] = [
                 (replace(laws[number], faces=gap), force) for gap, force in zip(gaps, forces.tolist(), strict=True)
             ]
     return found
+
+
+def forces_over_turn(
+    system: CoupledSystem, rest: tuple[Sequence[MeanMesh | None], FloatArray] | None = None
+) -> dict[int, FloatArray]:
+    """Force of each contact at rest, at each of `CoupledSystem.turn_times` [N], shape (t,), by the slope of its curve.
+
+    Left out are contacts without a mean force, and those whose flanks part at an angle. ``rest`` is as of
+    `swinging_laws`.
+    """
+    means, motions = equilibrium_over_turn(system) if rest is None else rest
+    forces = {
+        number: mean.force + mean.secant * (moved - moved.mean())
+        for number, (mean, moved) in enumerate(zip(means, compressions_over_turn(system, motions).T, strict=True))
+        if mean is not None
+    }
+    return {number: force for number, force in forces.items() if np.all(force > 0.0)}
 
 
 def swinging_errors(

@@ -34,8 +34,14 @@ SOFTER = ShaftMaterial(youngs_modulus=2e12, shear_modulus=8e11, density=10.0)
 
 
 @cache
-def machine(push: float, material: ShaftMaterial = STIFF, **modes: int) -> CoupledMachine:
-    """A set on short stiff shafts whose carrier a force pulls down at its end."""
+def machine(
+    push: float,
+    material: ShaftMaterial = STIFF,
+    friction: float = 0.0,
+    deviations: tuple[float, ...] = (),
+    **modes: int,
+) -> CoupledMachine:
+    """A set on short stiff shafts whose carrier a force pulls down at its end, and pitch deviations of its ring."""
     of_set = {"pressure_angle": PRESSURE_ANGLE, "with_ring": True, "damping": LAG, "material": material} | modes
     parts = plane_set(ANGLES, **of_set, diameter=0.05, teeth=TEETH)
     law = 0.5 * np.diag([BEARING, BEARING, BEARING, 2e3, 2e3])
@@ -52,7 +58,11 @@ def machine(push: float, material: ShaftMaterial = STIFF, **modes: int) -> Coupl
         replace(one, gear=replace(one.gear, helix_angle=HELIX if one.gear.name == "sun gear" else -HELIX, **of_teeth))
         for one in parts["gears"]
     ]
-    of_pair = {"stiffness": SquareStiffness(TOOTH), "misalignment": None, "damping": LAG * TOOTH}
+    parts["gears"] = [
+        replace(one, gear=replace(one.gear, pitch_deviations=deviations)) if one.gear.name == "ring gear" else one
+        for one in parts["gears"]
+    ]
+    of_pair = {"stiffness": SquareStiffness(TOOTH), "misalignment": None, "damping": LAG * TOOTH, "friction": friction}
     parts["gear_pairs"] = [replace(one, corner_contact=False, **of_pair) for one in parts["gear_pairs"]]
     forces = [ShaftForce("carrier", 0.1, (0.0, -push, 0.0))] if push else []
     return (
@@ -62,11 +72,20 @@ def machine(push: float, material: ShaftMaterial = STIFF, **modes: int) -> Coupl
     )
 
 
-def integrated(phases: FloatArray, push: float, slices: int = 21, steps: int = 4096) -> ComplexArray:
+def integrated(
+    phases: FloatArray,
+    push: float,
+    friction: float = 0.0,
+    gaps: FloatArray | None = None,
+    slices: int = 21,
+    steps: int = 4096,
+) -> ComplexArray:
     """Lines of the housing along x and y over the third turn of the carrier, by their order (o, 2) [m/s²].
 
     Bodies have x, y, z and rotations about them in space, the housing two modes. The carrier sees the meshes stand:
-    a slice at z whose contact is ξ from the pitch point approaches by n·(u + φ × r) of both gears.
+    a slice at z whose contact is ξ from the pitch point approaches by n·(u + φ × r) of both gears. The first gear of a
+    mesh slides past the other by the difference of their speeds times ξ, against Coulomb's friction; ``gaps`` are those
+    of the ring's teeth in the order in which they enter, for each of its meshes.
     """
     sun, planet, ring = (0.5 * MODULE * z for z in (*TEETH, RING))
     distance, turn = sun + planet, SPEED * TEETH[0] / (TEETH[0] + RING)
@@ -81,7 +100,8 @@ def integrated(phases: FloatArray, push: float, slices: int = 21, steps: int = 4
     before = np.repeat([beyond(planet, planet + module), -beyond(ring, ring - 0.8 * module)], 3)
     behind = np.repeat([beyond(sun, sun + module), beyond(planet, planet + module)], 3)
     # Approach by its mean, its slope over z and over ξ, of the sun's and of the ring's meshes.
-    by_body = np.zeros((6, 3, 6, 6))
+    by_body, by_friction, sense = np.zeros((6, 3, 6, 6)), np.zeros((6, 3, 6, 6)), np.zeros(6)
+    spins = np.array([SPEED, turn, 0.0] + [turn - (SPEED - turn) * TEETH[0] / TEETH[1]] * 3)
     for mesh in range(6):
         number, of_ring = 3 + mesh % 3, mesh >= 3
         out = np.array([math.cos(ANGLES[number - 3]), math.sin(ANGLES[number - 3]), 0.0])
@@ -89,12 +109,17 @@ def integrated(phases: FloatArray, push: float, slices: int = 21, steps: int = 4
         line = (-1.0 if of_ring else 1.0) * math.cos(across) * along + math.sin(across) * out
         normal = line - np.array([0.0, 0.0, lead])
         place = (ring if of_ring else sun) * out
-        for body, sign in ((number, 1.0), (2, -1.0)) if of_ring else ((0, 1.0), (number, -1.0)):
+        first, second = (number, 2) if of_ring else (0, number)
+        across_line = np.array([-line[1], line[0], 0.0])
+        sense[mesh] = -np.sign(spins[first] - spins[second])
+        for body, sign in ((first, 1.0), (second, -1.0)):
             arm = place - (distance * out if body == number else 0.0)
             for part, reach in enumerate((arm, np.array([0.0, 0.0, 1.0]), line)):
                 by_body[mesh, part, body, 3:] = sign * np.cross(reach, normal)
+                by_friction[mesh, part, body, 3:] = sign * np.cross(reach, across_line)
             by_body[mesh, 0, body, :3] = sign * normal
-    rows = by_body.reshape(6, 3, 36)
+            by_friction[mesh, 0, body, :3] = sign * across_line
+    rows, rubbing = by_body.reshape(6, 3, 36), by_friction.reshape(6, 3, 36)
     mass, held, pins = np.zeros((6, 6)), np.zeros((36, 36)), np.zeros((36, 36))
     radii = [sun * math.cos(PRESSURE_ANGLE), distance, ring * math.cos(PRESSURE_ANGLE)]
     radii += [planet * math.cos(PRESSURE_ANGLE)] * 3
@@ -122,7 +147,6 @@ def integrated(phases: FloatArray, push: float, slices: int = 21, steps: int = 4
         -push,
         push * 0.05,
     )
-    spins = np.array([SPEED, turn, 0.0] + [turn - (SPEED - turn) * TEETH[0] / TEETH[1]] * 3)
     z = FACE * ((np.arange(slices) + 0.5) / slices - 0.5)
     half = 0.5 * FACE * lead / slices
     natural = 2.0 * math.pi * np.array(NATURAL)
@@ -135,17 +159,24 @@ def integrated(phases: FloatArray, push: float, slices: int = 21, steps: int = 4
     def acceleration(time: float, q: FloatArray, v: FloatArray) -> FloatArray:
         seen, rate = rotated(q[:36], turn * time), rotated(v[:36], turn * time)
         rate = rate - turn * rotated(seen, -0.5 * math.pi) * np.tile([1.0, 1.0, 0.0], 12)
-        place = (phases + turn * RING / (2.0 * math.pi) * time) % 1.0
+        entered, place = np.divmod(phases + turn * RING / (2.0 * math.pi) * time, 1.0)
         along = (place[:, None, None] + np.arange(-1.0, 3.0)[:, None]) * pitch + lead * z
         end = (before + behind)[:, None, None]
         carrying = np.clip(np.minimum(along + half, end) - np.maximum(along - half, 0.0), 0.0, None) / (2.0 * half)
         xi = along - before[:, None, None]
         mean, slope, tilt = np.moveaxis(rows @ seen, 1, 0)[..., None, None]
         pressed = mean + slope * z + tilt * xi
+        if gaps is not None:
+            teeth = (entered[3:, None].astype(int) - np.arange(-1, 3)) % RING
+            pressed[3:] -= gaps[np.arange(3)[:, None], teeth, None]
         mean, slope, tilt = np.moveaxis(rows @ rate, 1, 0)[..., None, None]
         load = TOOTH / slices * carrying * np.where(pressed > 0.0, pressed + LAG * (mean + slope * z + tilt * xi), 0.0)
         loads = np.array([load.sum((1, 2)), (load * z).sum((1, 2)), (load * xi).sum((1, 2))]).T
         force = centrifugal.ravel() - np.einsum("mp,mpn->n", loads, rows) - pins @ (seen + LAG * rate)
+        if friction:
+            rubbed = friction * math.hypot(1.0, lead) * load * np.clip(xi / half, -1.0, 1.0) * sense[:, None, None]
+            loads = np.array([rubbed.sum((1, 2)), (rubbed * z).sum((1, 2)), (rubbed * xi).sum((1, 2))]).T
+            force += np.einsum("mp,mpn->n", loads, rubbing)
         force = rotated(force, -turn * time) + pushed.ravel() - held @ q[:36] - LAG * damped @ v[:36]
         # Ring and housing by the seat.
         shift, swept = 0.2 * q[36:], 0.2 * v[36:]
@@ -170,6 +201,12 @@ def integrated(phases: FloatArray, push: float, slices: int = 21, steps: int = 4
     return np.asarray(2.0 * np.fft.rfft(found, axis=0) / steps)
 
 
+def _lines(model: MeshHarmonicModel) -> dict[int, ComplexArray]:
+    """Accelerations of the housing along x and y, by their order in turns of the carrier (2,) [m/s²]."""
+    carrier, rows = model.machine.speeds["carrier"], np.array([model.machine.sensor_rows[name] for name in "xy"])
+    return {round(one.frequency / carrier): -(one.frequency**2) * (rows @ one.motion) for one in model.parts(LIMIT)}
+
+
 @pytest.mark.slow
 def test_lines_of_flanks_that_swing_are_those_of_an_integration() -> None:
     """Of a force past which the carrier turns there are lines at all turns; without it at odd ones alone."""
@@ -177,13 +214,7 @@ def test_lines_of_flanks_that_swing_are_those_of_an_integration() -> None:
     phases = np.array([contact.phase for contact in assembled.system.contacts])
     expected, mechanisms = integrated(phases, PUSH), LineMechanisms(assembled)
     carrier = assembled.speeds["carrier"]
-    rows = np.array([assembled.sensor_rows[name] for name in "xy"])
-
-    def lines(of: CoupledMachine) -> dict[int, ComplexArray]:
-        model = mechanisms.model if of is assembled else LineMechanisms(of).model
-        return {round(one.frequency / carrier): -(one.frequency**2) * (rows @ one.motion) for one in model.parts(LIMIT)}
-
-    found, without = lines(assembled), lines(still)
+    found, without = _lines(mechanisms.model), _lines(LineMechanisms(still).model)
     for turns in (-3, -2, -1, 0, 1, 2, 3):
         order = RING + turns
         assert np.abs(found[order] - expected[order]).max() < 0.09 * np.abs(expected[order]).max()
@@ -192,6 +223,21 @@ def test_lines_of_flanks_that_swing_are_those_of_an_integration() -> None:
             assert np.abs(without.get(order, np.zeros(2))).max() < 0.01 * np.abs(expected[order]).max()
         parts = mechanisms.parts(order * carrier)
         assert [parts[name].together for name in "xy"] == pytest.approx(np.abs(found[order]).tolist(), rel=5e-3)
+
+
+@pytest.mark.slow
+def test_friction_of_flanks_that_swing_is_that_of_an_integration() -> None:
+    """It halves some lines: the load on a slope has more friction on one side of the pitch line than on the other."""
+    assembled = machine(PUSH, friction=0.08)
+    expected = integrated(np.array([contact.phase for contact in assembled.system.contacts]), PUSH, friction=0.08)
+    found, without = _lines(MeshHarmonicModel(assembled)), _lines(MeshHarmonicModel(machine(PUSH)))
+    for turns in (-2, -1, 0, 1, 2):
+        size = np.abs(expected[RING + turns]).max()
+        assert np.abs(found[RING + turns] - expected[RING + turns]).max() < 0.16 * size
+        if turns % 2 == 0:
+            assert np.abs(without[RING + turns] - expected[RING + turns]).max() > 0.35 * size
+    parts = LineMechanisms(assembled).parts((RING - 2) * assembled.speeds["carrier"])
+    assert [parts[name].together for name in "xy"] == pytest.approx(np.abs(found[RING - 2]).tolist(), rel=0.01)
 
 
 @pytest.mark.slow
@@ -204,10 +250,6 @@ def test_motion_has_the_lines_of_flanks_that_swing() -> None:
     settings = TransientSettings(duration=3.0 * turn, **of_turn)
     motion = histories(assembled, simulate(assembled.system, settings, transient_outputs(assembled)))
     spectra = np.array([2.0 * np.fft.rfft(motion.sensor_acceleration[name]) / count for name in "xy"])
-    rows = np.array([assembled.sensor_rows[name] for name in "xy"])
-    lines = {
-        round(one.frequency / carrier): -(one.frequency**2) * (rows @ one.motion)
-        for one in MeshHarmonicModel(assembled).parts(LIMIT)
-    }
+    lines = _lines(MeshHarmonicModel(assembled))
     for order in range(RING - 3, RING + 4):
         assert np.abs(spectra[:, order] - lines[order]).max() < 0.06 * np.abs(lines[order]).max()

@@ -65,6 +65,10 @@ class SlidingFriction:
         """Phases in [0, 1) at which the friction force steps, for lines of contact that reverse as a whole."""
         return () if self.shares.size else (self.pitch_point % 1.0,)
 
+    def under(self, contact: ToothContact) -> SlidingFriction:
+        """Return the friction of flanks with another contact law, such as with another gap over the face."""
+        return replace(self, shares=_shares(contact, self)) if contact.enters_by_slices else self
+
 
 def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coefficient: float) -> SlidingFriction:
     """Friction of a gear pair.
@@ -90,10 +94,8 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
             f"{geometry.label}: friction needs the place of each pair of teeth, over a contact ratio of "
             f"{geometry.contact_ratio:.6g}; got a stiffness of the whole mesh, over {contact.contact_ratio:.6g}"
         )
-    friction = SlidingFriction(
-        coefficient / math.cos(geometry.driver.base_helix_angle), geometry.pitch_point_position, geometry.contact_ratio
-    )
-    return replace(friction, shares=_shares(contact, friction)) if contact.enters_by_slices else friction
+    across = coefficient / math.cos(geometry.driver.base_helix_angle)
+    return SlidingFriction(across, geometry.pitch_point_position, geometry.contact_ratio).under(contact)
 
 
 def sliding_direction_means(
