@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from gearwhine.optimisation.optimised import Optimised
     from gearwhine.optimisation.scatter import Scatter
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+    from gearwhine.solve.case_summary import CheckedCase, CheckedMachine
     from gearwhine.sweep.grid import SweptPoint
     from gearwhine.sweep.points import GridPoint
     from gearwhine.variation.statistics import VariedResult
@@ -376,6 +377,21 @@ class Study(StudiedMachine):
         from gearwhine.coupling.description.changed import changed
 
         return Study(changed(self.machine, changes), self.settings, self.progress)
+
+    def check(self) -> "Result[CheckedMachine] | Result[CheckedCase]":
+        """Check the machine and show speeds, mesh frequencies, torques and sizes; solve nothing.
+
+        Raises
+        ------
+        gearwhine.coupling.gears.GearError
+            Where a fault is not one of its gear.
+        """
+        from gearwhine.output.quantity import document_of
+        from gearwhine.results.check import CHECKED_MACHINE
+        from gearwhine.solve.case_summary import check_machine
+
+        checked = check_machine(self.machine, self.settings)
+        return self.origin.result("check", checked, document_of(CHECKED_MACHINE, checked))
 
     def vary(
         self,
