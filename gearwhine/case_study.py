@@ -16,7 +16,7 @@ from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.settings import Settings
 from gearwhine.study import AT_LEAST_ONE, NOT_NEGATIVE, Study, require_either
 from gearwhine.study_folder import FolderOptions, StudyFolder
-from gearwhine.view_names import GearPart, View
+from gearwhine.view_names import GearPart, ModeFormat, View
 
 if TYPE_CHECKING:
     from gearwhine.analyses.machine_results import MachineUnderLoad
@@ -45,8 +45,6 @@ if TYPE_CHECKING:
     from gearwhine.housing.reduced import ReducedHousing
     from gearwhine.meshes import Mesh
     from gearwhine.optimisation.optimised import Optimised
-    from gearwhine.output.export import Signals
-    from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.updating import SolvedUpdate
@@ -305,7 +303,9 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(self, *, detail: bool = False) -> "Result[HousingModes] | Result[ReducedHousing]":
+    def modes(  # type: ignore[override]  # a case may have a housing of reduced matrices
+        self, *, detail: bool = False
+    ) -> "Result[HousingModes] | Result[ReducedHousing]":
         """Natural modes of the housing, certified complete, with checks of the model.
 
         Of a housing of reduced matrices the modes of these, with what is proved of them.
@@ -328,9 +328,11 @@ class CaseStudy(Study):
             from gearwhine.analyses.reduced_housing import reduced_modes_result
 
             return reduced_modes_result(reduced, self.origin)
-        return modes_result(self._required_housing("modes"), self.origin, detail=detail)
+        return modes_result(self.required_housing("modes"), self.origin, detail=detail)
 
-    def compare(self) -> "Result[Comparison]":
+    def compare(  # type: ignore[override]  # a case has its measured modes
+        self,
+    ) -> "Result[Comparison]":
         """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
 
         Raises
@@ -353,7 +355,7 @@ class CaseStudy(Study):
                 compared = compare_reduced(reduced, test)
             return reduced_compare_result(reduced, compared, test.modes, self.origin)
         require_comparable(measured, self.case.housing)
-        housing = self._required_housing("compare")
+        housing = self.required_housing("compare")
         compared = compare_measured(measured, housing, self.progress, with_responses=True)
         return compare_result(housing, compared, self.origin)
 
@@ -374,20 +376,16 @@ class CaseStudy(Study):
         CaseError
             Where the sensors cannot separate the modes.
         """
-        from gearwhine.analyses.housing import survey_result
         from gearwhine.case import CaseError, Problem
         from gearwhine.housing import HousingError
-        from gearwhine.housing.modal_test import plan_modal_survey
 
-        housing = self._required_housing("survey")
-        self.progress(f"choosing {sensors} sensors")
+        _ = self.required_housing("survey")  # whose errors are its own
         try:
-            planned = plan_modal_survey(housing, sensors, modes)
+            return super().survey(sensors, modes)
         except HousingError as error:
             raise CaseError(
                 [Problem("--sensors", str(sensors), f"sensors that tell the modes apart, or fewer --modes; {error}")]
             ) from error
-        return survey_result(housing, planned, self.origin)
 
     def update(self, *, null: Annotated[int, NOT_NEGATIVE] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
         """Fit the parameters of [update] to the measured modes, and write the case with them as updated.toml.
@@ -415,7 +413,7 @@ class CaseStudy(Study):
         line: Sequence[float] = (),
         measured: bool = False,
         view: View = "auto",
-        mode_format: Literal["png", "glb", "gif", "mp4"] = "png",
+        mode_format: ModeFormat = "png",
     ) -> "Result[HousingModes]":
         """Draw mode shapes, operating shapes or measured shapes.
 
@@ -443,6 +441,7 @@ class CaseStudy(Study):
         from gearwhine.analyses import housing
         from gearwhine.case import CaseError, Problem
         from gearwhine.case.model import measured_table
+        from gearwhine.housing import HousingError
         from gearwhine.mode_pictures import check_request, require_survey
         from gearwhine.solve.comparison import require_comparable
 
@@ -454,27 +453,24 @@ class CaseStudy(Study):
             require_survey(measured_table(self.case, "render --measured"))
             require_comparable(self.case.measured, self.case.housing)
         check_request(modes, mode_format, line)
+        solved, compared = self.required_housing("render"), None
+        try:
+            compared = self.compared_modes(solved)
+        except (CaseError, HousingError):
+            if measured:
+                raise  # else the modes are drawn without their measured partners
         return housing.render(
-            self.case,
-            self._required_housing("render"),
+            solved,
+            self.origin,
             modes,
             view=view,
             mode_format=mode_format,
+            compared=compared,
             lines=line,
             measured=measured,
             folder=self.folder,
             progress=self.progress,
         )
-
-    def report(self, folder: str | os.PathLike[str], *, interactive: bool = False) -> Path:
-        """Write all results in a folder as one HTML page; return the file.
-
-        See :func:`gearwhine.results_folder.write_report`.
-        """
-        from gearwhine.results_folder import write_report
-
-        written = write_report(Path(folder), self.case, interactive=interactive, progress=self.progress)
-        return Path(folder) / str(written["files"][0])
 
     def rotors(self, *, write_ross: bool = False, **settings: Any) -> "Result[tuple[SolvedRotor, ...]]":
         """Lateral and torsional modes, whirl and critical speeds of each rotor; CASE may be a rotor saved by ROSS.
@@ -601,7 +597,7 @@ class CaseStudy(Study):
         require_either("sound", "an Acoustics", acoustics, settings)
         self.require("sound")
         given = Acoustics(**settings) if settings else acoustics
-        housing = self._required_housing("sound", with_sound=given is None)
+        housing = self.required_housing("sound", with_sound=given is None)
         field = housing.displacement_field
         if given is not None:
             require_acoustics(given, field.mesh, field.widest_bore, given.limit_hz(field))
@@ -756,25 +752,6 @@ class CaseStudy(Study):
             seed=seed,
         )
 
-    def export(
-        self,
-        folder: str | os.PathLike[str],
-        formats: "Sequence[Format]" = ("csv", "uff", "wav"),
-        *,
-        signals: "Signals" = "sensors",
-        seconds: float | None = None,
-    ) -> list[str]:
-        """Write results in formats of other programs; see :func:`gearwhine.results_folder.export_results`.
-
-        Returns
-        -------
-        list of str
-            The files, relative to the folder.
-        """
-        from gearwhine.results_folder import export_results
-
-        return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
-
     def export_rexs(
         self, file: str | os.PathLike[str], folder: str | os.PathLike[str] | None = None
     ) -> "tuple[Note, ...]":
@@ -815,7 +792,7 @@ class CaseStudy(Study):
         from gearwhine.results_folder import export_reduced, refuse_target
 
         refuse_target(Path(file))
-        housing = self._required_housing("export --reduced")
+        housing = self.required_housing("export --reduced")
         component = component_of_housing(housing, participates=False, with_coarser=False)
         return export_reduced(self.case.title, component, Path(file))
 
@@ -883,9 +860,9 @@ class CaseStudy(Study):
         self, folder: Path | None = None, *, with_sound: bool = False, before: Callable[[], object] | None = None
     ) -> "HousingModes | None":
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound, before)
+        return None if self.case.housing is None else self.required_housing("modes", folder, with_sound, before)
 
-    def _required_housing(
+    def required_housing(
         self,
         command: str,
         folder: Path | None = None,

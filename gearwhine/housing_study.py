@@ -1,8 +1,9 @@
-"""Study of a housing alone: its natural modes and these beside measured ones, each as a result."""
+"""Study of a housing: its natural modes, and these beside measured ones, each as a result."""
 
 from typing import TYPE_CHECKING
 
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.view_names import ModeFormat, View
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -14,7 +15,109 @@ if TYPE_CHECKING:
     from gearwhine.housing.modal_test import ModalTest, PlannedSurvey
 
 
-class HousingStudy:
+class HousingAnalyses:
+    """The analyses of a solved housing, alone or with a machine in it."""
+
+    progress: Progress
+
+    @property
+    def origin(self) -> "Origin":
+        """What results are of."""
+        raise NotImplementedError
+
+    def required_housing(self, command: str) -> "HousingModes":
+        """Return the housing; where there is none, the command is refused."""
+        raise NotImplementedError
+
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
+        """Natural modes of the housing, certified complete, with checks of the model.
+
+        Parameters
+        ----------
+        detail : bool
+            Also report effective masses, support reactions, and the modes dominant between bearings and sensors.
+        """
+        from gearwhine.analyses.housing import modes_result
+
+        return modes_result(self.required_housing("modes"), self.origin, detail=detail)
+
+    def compare(self, measured: "ModalTest | npt.ArrayLike") -> "Result[Comparison]":
+        """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
+
+        Parameters
+        ----------
+        measured : ModalTest or sequence of float
+            Modal test, or the frequencies alone of measured modes [rad/s].
+
+        Raises
+        ------
+        gearwhine.HousingError
+            Where the modes are not known as high as the measured ones, or the test does not fit the housing.
+        """
+        import numpy as np
+
+        from gearwhine.analyses.housing import compare_result
+        from gearwhine.housing.measured import MeasuredModes
+        from gearwhine.housing.modal_test import ModalTest, compare_test
+
+        test = measured
+        if not isinstance(test, ModalTest):
+            test = ModalTest(MeasuredModes(np.atleast_1d(np.asarray(measured, dtype=np.float64))))
+        housing = self.required_housing("compare")
+        return compare_result(housing, compare_test(housing, test, self.progress), self.origin)
+
+    def survey(self, sensors: int, modes: int | None = None) -> "Result[PlannedSurvey]":
+        """Plan a modal survey: sensor and hammer positions.
+
+        Parameters
+        ----------
+        sensors : int
+            Number of sensors, each normal to the surface.
+        modes : int, optional
+            Number of lowest modes to survey; by default all known.
+
+        Raises
+        ------
+        gearwhine.HousingError
+            Where the sensors cannot separate the modes.
+        """
+        from gearwhine.analyses.housing import survey_result
+        from gearwhine.housing.modal_test import plan_modal_survey
+
+        housing = self.required_housing("survey")
+        self.progress(f"choosing {sensors} sensors")
+        return survey_result(housing, plan_modal_survey(housing, sensors, modes), self.origin)
+
+    def render(
+        self, modes: str = "dominant", *, view: View = "auto", mode_format: ModeFormat = "png"
+    ) -> "Result[HousingModes]":
+        """Draw mode shapes.
+
+        Parameters
+        ----------
+        modes : str
+            Modes to draw: 'dominant', 'all', '1,4,9' or '1-6'.
+        view : str
+            Direction of view; 'auto': for each shape the corner from which most of its motion is seen.
+        mode_format : {"png", "glb", "gif", "mp4"}
+            Picture, animated glTF model, or film (MP4 needs ffmpeg).
+
+        Raises
+        ------
+        CaseError
+            Where something is asked for that cannot be drawn.
+        gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
+            Where no renderer or encoder is available.
+        """
+        from gearwhine.analyses.housing import render
+        from gearwhine.mode_pictures import check_request
+
+        check_request(modes, mode_format, ())
+        housing = self.required_housing("render")
+        return render(housing, self.origin, modes, view=view, mode_format=mode_format, progress=self.progress)
+
+
+class HousingStudy(HousingAnalyses):
     """A solved housing and the analyses of it alone.
 
     Parameters
@@ -48,59 +151,6 @@ class HousingStudy:
 
         return Origin(self.title, warnings=[warning("input", str(doubt)) for doubt in self.housing.housing.findings])
 
-    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
-        """Natural modes of the housing, certified complete, with checks of the model.
-
-        Parameters
-        ----------
-        detail : bool
-            Also report effective masses, support reactions, and the modes dominant between bearings and sensors.
-        """
-        from gearwhine.analyses.housing import modes_result
-
-        return modes_result(self.housing, self.origin, detail=detail)
-
-    def compare(self, measured: "ModalTest | npt.ArrayLike") -> "Result[Comparison]":
-        """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
-
-        Parameters
-        ----------
-        measured : ModalTest or sequence of float
-            Modal test, or the frequencies alone of measured modes [rad/s].
-
-        Raises
-        ------
-        gearwhine.HousingError
-            Where the modes are not known as high as the measured ones, or the test does not fit the housing.
-        """
-        import numpy as np
-
-        from gearwhine.analyses.housing import compare_result
-        from gearwhine.housing.measured import MeasuredModes
-        from gearwhine.housing.modal_test import ModalTest, compare_test
-
-        test = measured
-        if not isinstance(test, ModalTest):
-            test = ModalTest(MeasuredModes(np.atleast_1d(np.asarray(measured, dtype=np.float64))))
-        return compare_result(self.housing, compare_test(self.housing, test, self.progress), self.origin)
-
-    def survey(self, sensors: int, modes: int | None = None) -> "Result[PlannedSurvey]":
-        """Plan a modal survey: sensor and hammer positions.
-
-        Parameters
-        ----------
-        sensors : int
-            Number of sensors, each normal to the surface.
-        modes : int, optional
-            Number of lowest modes to survey; by default all known.
-
-        Raises
-        ------
-        gearwhine.HousingError
-            Where the sensors cannot separate the modes.
-        """
-        from gearwhine.analyses.housing import survey_result
-        from gearwhine.housing.modal_test import plan_modal_survey
-
-        self.progress(f"choosing {sensors} sensors")
-        return survey_result(self.housing, plan_modal_survey(self.housing, sensors, modes), self.origin)
+    def required_housing(self, command: str) -> "HousingModes":
+        """Return the housing."""
+        return self.housing

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import file_stems
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.report import MovingShape
+from gearwhine.view_names import ModeFormat as ModeFormat
 from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from gearwhine.housing.modal_test import ComparedTest
     from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
     from gearwhine.solve.operating_shapes import RunLine
-
-ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6

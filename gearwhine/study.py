@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from gearwhine.housing_study import HousingAnalyses
 from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, argument_findings, refuse
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.studied_machine import StudiedMachine
@@ -30,10 +31,14 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.detection.detectability import DetectionResult
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing import HousingModes
     from gearwhine.numerics.distributions import Discrete, Distribution, Uniform
     from gearwhine.optimisation.optimised import Optimised
     from gearwhine.optimisation.scatter import Scatter
+    from gearwhine.output.export import Signals
+    from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+    from gearwhine.solve.case_summary import CheckedCase, CheckedMachine
     from gearwhine.sweep.grid import SweptPoint
     from gearwhine.sweep.points import GridPoint
     from gearwhine.variation.statistics import VariedResult
@@ -47,7 +52,7 @@ NOT_NEGATIVE = Number(at_least=0, whole=True)
 _SPEEDS = Numbers(each=Number(unit="rad/s"))
 
 
-class Study(StudiedMachine):
+class Study(StudiedMachine, HousingAnalyses):
     """A machine, what its analyses take beside it, and the analyses: each a call that returns a labelled result.
 
     The results are those of the same machine in a case: the same numbers, warnings, figures and files.
@@ -378,6 +383,21 @@ class Study(StudiedMachine):
 
         return Study(changed(self.machine, changes), self.settings, self.progress)
 
+    def check(self) -> "Result[CheckedMachine] | Result[CheckedCase]":
+        """Check the machine and show speeds, mesh frequencies, torques and sizes; solve nothing.
+
+        Raises
+        ------
+        gearwhine.coupling.gears.GearError
+            Where a fault is not one of its gear.
+        """
+        from gearwhine.output.quantity import document_of
+        from gearwhine.results.check import CHECKED_MACHINE
+        from gearwhine.solve.case_summary import check_machine
+
+        checked = check_machine(self.machine, self.settings)
+        return self.origin.result("check", checked, document_of(CHECKED_MACHINE, checked))
+
     def vary(
         self,
         laws: "Mapping[str, Distribution]",
@@ -609,6 +629,50 @@ class Study(StudiedMachine):
         with ExitStack() as until_written:
             run = WholeRun(self, self.settings.transient, Path(folder), until_written, pictures=pictures)
             return run.result().stored(Path(folder), pictures=pictures, progress=self.progress)
+
+    def report(self, folder: str | os.PathLike[str], *, interactive: bool = False) -> Path:
+        """Write all results in a folder as one HTML page; return the file.
+
+        See :func:`gearwhine.results_folder.write_report`.
+        """
+        from gearwhine.results_folder import write_report
+
+        written = write_report(Path(folder), self.origin.case, interactive=interactive, progress=self.progress)
+        return Path(folder) / str(written["files"][0])
+
+    def export(
+        self,
+        folder: str | os.PathLike[str],
+        formats: "Sequence[Format]" = ("csv", "uff", "wav"),
+        *,
+        signals: "Signals" = "sensors",
+        seconds: float | None = None,
+    ) -> list[str]:
+        """Write results in formats of other programs; see :func:`gearwhine.results_folder.export_results`.
+
+        Returns
+        -------
+        list of str
+            The files, relative to the folder.
+        """
+        from gearwhine.results_folder import export_results
+
+        return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
+
+    def required_housing(self, command: str) -> "HousingModes":
+        """Return the solved housing of the machine; where there is none, the command is refused.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+        """
+        from gearwhine.coupling import CouplingError
+
+        housing = self.solved_housing()
+        if housing is None:
+            expected = "a machine whose housing is solved, as gearwhine.Housing.modes gives"
+            raise CouplingError(f"{command}: expected {expected}")
+        return housing
 
 
 def require_either(verb: str, kind: str, given: object, named: Mapping[str, object]) -> None:

@@ -22,3 +22,6 @@ View = Literal[
 
 GearPart = Literal["harris-map", "relief"]
 """What the analysis of gear pairs may be without: Harris maps, the search for the best tip relief."""
+
+ModeFormat = Literal["png", "glb", "gif", "mp4"]
+"""Formats of drawn modes: pictures, animated models, films."""

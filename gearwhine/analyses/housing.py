@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, CaseError
+from gearwhine.case import Case
 from gearwhine.case.model import housing_table
 from gearwhine.from_case.fixtures import build_fixtures
 from gearwhine.from_case.mesh import build_mesh, material_of
 from gearwhine.from_case.mesh_health import allowed_defects
-from gearwhine.housing import HousingError, HousingModes
+from gearwhine.housing import HousingModes
 from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.housing.measured import MeasuredGeometry
 from gearwhine.housing.modal_test import ComparedTest, PlannedSurvey, ResponseCorrelation, comparison_warnings
@@ -31,8 +31,8 @@ from gearwhine.results.comparison import (
     write_comparison,
     write_response_correlation,
 )
-from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
-from gearwhine.solve.comparison import compare_measured, write_plan
+from gearwhine.results.housing import HOUSING, modes_document, write_shapes
+from gearwhine.solve.comparison import write_plan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -197,12 +197,13 @@ def update(
 
 
 def render(
-    case: Case,
     housing: HousingModes,
+    origin: Origin,
     modes: str | None,
     *,
     view: str,
     mode_format: ModeFormat,
+    compared: ComparedTest | None = None,
     lines: Sequence[float] = (),
     measured: bool = False,
     folder: Path | None = None,
@@ -212,8 +213,8 @@ def render(
 
     Parameters
     ----------
-    case : Case
     housing : HousingModes
+    origin : Origin
     modes : str or None
         ``dominant``, ``all``, or numbers such as ``1,4,9``; None for none.
     view : str
@@ -221,6 +222,8 @@ def render(
         its motion.
     mode_format : {"png", "glb", "gif", "mp4"}
         Pictures, models that move, or films; the result writes them.
+    compared : ComparedTest, optional
+        Measured partners of the modes.
     lines : sequence of float
         Frequencies of the run in ``folder`` [Hz].
     measured : bool
@@ -236,13 +239,6 @@ def render(
     gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
         Where no renderer or encoder is available.
     """
-    compared = None
-    if case.measured is not None:
-        try:
-            compared = compare_measured(case.measured, housing, progress)
-        except (CaseError, HousingError):
-            if measured:
-                raise  # else the modes are drawn without their measured partners
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         drawn: dict[str, Any] = {}
@@ -252,7 +248,7 @@ def render(
         if lines and folder is not None:
             drawn["lines"] = draw_lines(housing, folder, lines, view, mode_format, place, progress)
         if measured:
-            draw_measured(case.title, housing, compared, view, place)
+            draw_measured(origin.title, housing, compared, view, place)
         return drawn
 
-    return Result("render", case, housing, origin_document(housing), _files=files, _housing=housing)
+    return replace(origin, housing=housing).result("render", housing, {}, files=files)

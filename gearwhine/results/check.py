@@ -1,4 +1,4 @@
-"""Check of a case: quantities known by arithmetic alone, and how the terminal shows them."""
+"""Check of a case or a machine: quantities known by arithmetic alone, and how the terminal shows them."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.case import Case, CouplingSegment, amounts, rotor_speeds
+from gearwhine.case import Case, amounts, rotor_speeds
 from gearwhine.coupling.description.axial_location import ARRANGEMENTS
 from gearwhine.exchange.rexs.notes import Note, in_words
 from gearwhine.numerics.progress import Progress, silent
@@ -19,6 +19,7 @@ from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
 from gearwhine.results.motion import damping_lines, gear_body_lines
 from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.results.planetary import PLANETARY, set_lines, set_summary
+from gearwhine.rotors import Coupling
 from gearwhine.solve.case_summary import check_case
 from gearwhine.solve.damping import damping_document, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
@@ -135,16 +136,21 @@ REDUCED_HOUSING = (
 """Quantities of a housing of reduced matrices, and what is proved of these."""
 
 ROTOR = (
-    Quantity("name", "given.name"),
+    Quantity("name", "built.name"),
     Quantity("length_m", "built.length"),
     Quantity("segments", lambda rotor: len(rotor.built.segments)),
-    Quantity("couplings", lambda rotor: sum(isinstance(segment, CouplingSegment) for segment in rotor.given.segments)),
+    Quantity("couplings", lambda rotor: sum(isinstance(segment, Coupling) for segment in rotor.built.segments)),
     Quantity("mass_kg", "built.mass"),
     Quantity("polar_inertia_kg_m2", "built.polar_inertia"),
     Quantity("speed_rpm"),
-    Quantity("mass_model", "given.mass"),
+    Quantity("mass_model", "built.mass_model"),
 )
 """Quantities of a rotor."""
+
+
+def _ends(speeds: Sequence[float] | None) -> list[float] | None:
+    """First and last speed of a table."""
+    return None if speeds is None else [float(speed) * RPM for speed in (speeds[0], speeds[-1])]
 
 
 def _span(speeds: Sequence[float]) -> list[float] | None:
@@ -182,12 +188,7 @@ BEARING = (
     Quantity("name"),
     Quantity("rotor"),
     Quantity("seat"),
-    Quantity(
-        "table_rpm",
-        lambda bearing: (
-            None if bearing.speeds is None else [speed * RPM for speed in (bearing.speeds[0], bearing.speeds[-1])]
-        ),
-    ),
+    Quantity("table_rpm", lambda bearing: _ends(bearing.speeds)),
     Quantity("pedestal_kg", "pedestal.mass"),
 )
 """Quantities of a bearing of the case."""
@@ -205,8 +206,8 @@ LOCATION = (
 """Quantities of a rotor's location: bearings that take its thrust towards +z and -z, and arrangements of rows."""
 
 PAIR = (
-    Quantity("driver", "given.driver"),
-    Quantity("driven", "given.driven"),
+    Quantity("driver", "geometry.driver.name"),
+    Quantity("driven", "geometry.driven.name"),
     Quantity("ratio", lambda pair: abs(pair.geometry.ratio)),
     Quantity("contact_ratio", "geometry.contact_ratio"),
     Quantity("overlap_ratio", "geometry.overlap_ratio"),
@@ -226,7 +227,7 @@ PAIR = (
     Quantity("mean_force_from", "force_origin"),
     Quantity("misalignment_rad", "misalignment.taken"),
     Quantity("misalignment_from", "misalignment.origin"),
-    Quantity("stiffness_model", "given.stiffness.model"),
+    Quantity("stiffness_model"),
     Part("geometry", "geometry", GEOMETRY),
 )
 """Quantities of a gear pair."""
@@ -364,20 +365,8 @@ def _keys(key: str, table: str) -> Quantity:
     return Quantity(key, lambda study: list(getattr(study, table)))
 
 
-_LIMITS = _keys("limits", "limit")
-
-CHECK = (
-    Quantity("title", "case.title"),
-    Part("imported", "imported", IMPORTED, optional=True),
-    Part("housing", lambda checked: ABSENT if checked.mesh is None else checked, HOUSING),
-    Part("reduced_housing", "reduced", REDUCED_HOUSING, optional=True),
-    Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
-    Rows(
-        "rotor_analysis",
-        lambda checked: [_Analysis(checked.case, rotor) for rotor in checked.case.rotor] or ABSENT,
-        ANALYSIS,
-    ),
-    Quantity("bearings", lambda checked: _bearings(checked.case.bearing, checked.case.rotor) or None, optional=True),
+_ROTORS = Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR)
+_TRAIN = (
     Rows(
         "axial_location",
         lambda checked: [location for location in checked.locations if location.bearings] or ABSENT,
@@ -385,6 +374,66 @@ CHECK = (
     ),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
     Rows("planetary", lambda checked: checked.sets or ABSENT, PLANETARY),
+)
+_GEAR_BODIES = Quantity(
+    "gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None, optional=True
+)
+_TORQUE = (Quantity("rotor"), Quantity("at_m", "at"), Quantity("torque_n_m", "value"))
+
+CHECKED_MACHINE = (
+    Quantity("title", "settings.title"),
+    _ROTORS,
+    Rows(
+        "bearings",
+        lambda checked: checked.machine.bearings or ABSENT,
+        (
+            Quantity("name", "bearing.name"),
+            Quantity("rotor"),
+            Quantity("seat", lambda mounted: mounted.seat or "ground"),
+            Quantity("table_rpm", lambda mounted: _ends(mounted.bearing.speeds)),
+            Quantity("pedestal_kg", "bearing.pedestal.mass"),
+        ),
+    ),
+    *_TRAIN,
+    Part(
+        "operation",
+        "machine",
+        (
+            Quantity("speed_rpm", "speed"),
+            Quantity("torque_n_m", "torque"),
+            Rows("torques", "constant_torques", _TORQUE),
+            Quantity("gravity_m_per_s2", "gravity", optional=True),
+        ),
+    ),
+    Part(
+        "transient",
+        lambda checked: ABSENT if (plan := checked.settings.transient) is None or plan.run is not None else plan,
+        (
+            Quantity("revolutions"),
+            Quantity("recorded_revolutions", lambda plan: plan.revolutions - plan.discarded),
+            Quantity("tolerance"),
+        ),
+    ),
+    _GEAR_BODIES,
+    Quantity("warnings", lambda checked: checked.warnings or None, optional=True),
+)
+"""Quantities of a machine of Python, by the same keys."""
+
+_LIMITS = _keys("limits", "limit")
+
+CHECK = (
+    Quantity("title", "case.title"),
+    Part("imported", "imported", IMPORTED, optional=True),
+    Part("housing", lambda checked: ABSENT if checked.mesh is None else checked, HOUSING),
+    Part("reduced_housing", "reduced", REDUCED_HOUSING, optional=True),
+    _ROTORS,
+    Rows(
+        "rotor_analysis",
+        lambda checked: [_Analysis(checked.case, rotor) for rotor in checked.case.rotor] or ABSENT,
+        ANALYSIS,
+    ),
+    Quantity("bearings", lambda checked: _bearings(checked.case.bearing, checked.case.rotor) or None, optional=True),
+    *_TRAIN,
     Part("operation", lambda checked: ABSENT if checked.case.operation is None else checked.case, OPERATION),
     Part("transient", "case.transient", TRANSIENT, optional=True),
     Part("sweep", "case.sweep", (Quantity("speeds", lambda sweep: len(sweep.speeds)),), optional=True),
@@ -398,9 +447,7 @@ CHECK = (
     Part("detection", "case.detection", (Quantity("fault"), Quantity("severities")), optional=True),
     Part("measured", "case.measured", MEASURED, optional=True),
     Quantity("provenance", lambda checked: checked.case.provenance or None, optional=True),
-    Quantity(
-        "gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None, optional=True
-    ),
+    _GEAR_BODIES,
     Quantity("damping", lambda checked: damping_document(part_dampings(checked.case)) or None, optional=True),
     Quantity("warnings", lambda checked: checked.warnings or None, optional=True),
 )

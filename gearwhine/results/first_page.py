@@ -235,18 +235,18 @@ PAIR_COLUMNS = (
 
 def _shaft(rotor: "CheckedRotor", bearings: Iterable[Bearing]) -> Document:
     return {
-        "name": rotor.given.name,
+        "name": rotor.built.name,
         "speed_rpm": None if rotor.speed is None else rotor.speed * RPM,
         "length_mm": _MM * rotor.built.length,
         "mass_kg": float(rotor.built.mass),
-        "bearings": ", ".join(bearing.name for bearing in bearings if bearing.rotor == rotor.given.name),
+        "bearings": ", ".join(bearing.name for bearing in bearings if bearing.rotor == rotor.built.name),
     }
 
 
 def _pair(pair: "CheckedPair") -> Document:
     geometry = pair.geometry
     return {
-        "name": f"{pair.given.driver} → {pair.given.driven}",
+        "name": f"{geometry.driver.name} → {geometry.driven.name}",
         "teeth": f"{geometry.driver.teeth} : {geometry.driven.teeth}",
         "ratio": abs(float(geometry.ratio)),
         "contact_ratio": float(geometry.total_contact_ratio),

@@ -1,13 +1,13 @@
-"""Summary of a case before anything is solved: parts that cannot be built are refused, the rest is arithmetic."""
+"""Summary of a case, or of a machine of Python, before anything is solved: what cannot be built is refused."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from gearwhine.case import Case, GearPair, Rotor
+from gearwhine.case import Case
 from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
-from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings, taken_misalignments
 from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.description.fault_rates import (
@@ -28,9 +28,10 @@ from gearwhine.from_case.reduced_housing import build_reduced_housing, reduced_c
 from gearwhine.housing.reduced import ReducedHousing
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.rotors import Rotor as BuiltRotor
+from gearwhine.rotors import Rotor
 from gearwhine.rotors.rolling_bearings import CharacteristicFrequencies, frequencies_in_seat
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
+from gearwhine.settings import Settings
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.part_fits import fit_warnings
@@ -38,29 +39,26 @@ from gearwhine.solve.part_fits import fit_warnings
 
 @dataclass(frozen=True)
 class CheckedRotor:
-    """Rotor of a checked case.
+    """Rotor of a checked machine.
 
     Attributes
     ----------
-    given : Rotor
-        Table of the rotor in the case.
     built : gearwhine.rotors.Rotor
     speed : float or None
         Speed in operation [rad/s]; None without an operation.
     """
 
-    given: Rotor
-    built: BuiltRotor
+    built: Rotor
     speed: float | None
 
 
 @dataclass(frozen=True)
 class CheckedPair:
-    """Gear pair of a checked case.
+    """Gear pair of a checked machine.
 
     Attributes
     ----------
-    given : GearPair
+    stiffness_model : str
     geometry : gearwhine.coupling.gears.GearPairGeometry
     misalignment : TakenMisalignment
     mesh_frequency : float or None
@@ -71,7 +69,7 @@ class CheckedPair:
         See :attr:`gearwhine.coupling.description.gear_train.GearTrain.force_origins`.
     """
 
-    given: GearPair
+    stiffness_model: str
     geometry: GearPairGeometry
     misalignment: TakenMisalignment
     mesh_frequency: float | None
@@ -86,7 +84,7 @@ class CheckedPair:
 
 @dataclass(frozen=True)
 class CheckedSet:
-    """Planetary set of a checked case.
+    """Planetary set of a checked machine.
 
     Attributes
     ----------
@@ -151,6 +149,57 @@ class CheckedCase:
     reduced: ReducedHousing | None = None
 
 
+@dataclass(frozen=True)
+class CheckedMachine:
+    """A machine of Python; the attributes are those of :class:`CheckedCase`, and the settings."""
+
+    machine: Machine
+    settings: Settings
+    rotors: tuple[CheckedRotor, ...]
+    pairs: tuple[CheckedPair, ...]
+    locations: tuple[AxialLocation, ...]
+    sets: tuple[CheckedSet, ...]
+    warnings: list[dict[str, Any]]
+
+
+def check_machine(machine: Machine, settings: Settings) -> CheckedMachine:
+    """Summarise a machine of Python, which its constructor has checked.
+
+    Raises
+    ------
+    gearwhine.coupling.gears.GearError
+        Where a fault is not one of its gear.
+    """
+    rows = zip(
+        (getattr(pair.stiffness, "name", str(pair.stiffness)) for pair in machine.gear_pairs),
+        machine.pair_geometries,
+        taken_misalignments(machine.gear_pairs, None, is_sought=False),
+        machine.mesh_frequencies,
+        machine.pair_torques,
+        machine.train.force_origins,
+        strict=True,
+    )
+    rotors = tuple(CheckedRotor(machine.rotor(shaft.name), machine.speeds[shaft.name]) for shaft in machine.shafts)
+    pairs = tuple(CheckedPair(*row) for row in rows)
+    warnings: list[dict[str, Any]] = []
+    for built, geometry in zip(machine.gear_pairs, machine.pair_geometries, strict=True):
+        built.require_sound_faults(geometry)
+        warnings += geometry_warnings(built, geometry)
+    warnings += _machine_warnings(machine)
+    sets = tuple(checked_sets(machine.placed_sets, machine))
+    return CheckedMachine(machine, settings, rotors, pairs, machine.axial_locations, sets, warnings)
+
+
+def _machine_warnings(machine: Machine) -> list[dict[str, Any]]:
+    """Return warnings of a machine's operation and of the speeds of its rolling bearings."""
+    speeds = (
+        (mounted.bearing.name, mounted.rolling, machine.bearing_speed(mounted))
+        for mounted in machine.bearings
+        if mounted.rolling is not None
+    )
+    return [*operation_warnings(machine), *centrifugal_warnings(speeds)]
+
+
 def check_case(case: Case, progress: Progress = silent, imported: ImportedCase | None = None) -> CheckedCase:
     """Build all of a case but the housing's matrices, and read the file of its geometry.
 
@@ -195,30 +244,23 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
         warnings += geometry_warnings(built, geometry)
     warnings += fit_warnings(parts, case.housing, None if mesh is None else mesh.mesh)
     if machine is not None:
-        warnings += operation_warnings(machine)
-        warnings += centrifugal_warnings(
-            (mounted.bearing.name, mounted.rolling, machine.bearing_speed(mounted))
-            for mounted in machine.bearings
-            if mounted.rolling is not None
-        )
+        warnings += _machine_warnings(machine)
     if case.measured is not None and case.measured.survey is not None:
         warnings += [
             warning("measured", f"{case.measured.file_names}: {remark}") for remark in case.measured.survey.remarks
         ]
-    sets = tuple(checked_sets(parts))
+    sets = tuple(checked_sets(parts.placed_sets, machine))
     return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, sets, machine, warnings, imported, reduced)
 
 
 def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:
     """Build the rotors of a case, each with its speed."""
-    rows = zip(parts.rotor, parts.rotors, strict=True)
-    return tuple(CheckedRotor(entry, built, parts.speeds.get(entry.name)) for entry, built in rows)
+    return tuple(CheckedRotor(rotor, parts.speeds.get(rotor.name)) for rotor in parts.rotors)
 
 
-def checked_sets(parts: Parts) -> Iterator[CheckedSet]:
-    """Place the planetary sets of a case, with members and phases where there is a machine in operation."""
-    machine = parts.machine
-    for placed in parts.placed_sets:
+def checked_sets(sets: Iterable[PlacedSet], machine: Machine | None) -> Iterator[CheckedSet]:
+    """Yield planetary sets, with members and phases where there is a machine in operation."""
+    for placed in sets:
         if machine is None:
             yield CheckedSet(placed)
             continue
@@ -242,7 +284,7 @@ def checked_pairs(parts: Parts) -> Iterator[CheckedPair]:
     """Build the gear pairs of a case one by one, each with its mesh frequency and torque."""
     unknown = (None,) * len(parts.gear_pair)
     rows = zip(
-        parts.gear_pair,
+        (pair.stiffness.model for pair in parts.gear_pair),
         parts.pair_geometries,
         misalignments_of_case(parts, None, is_sought=False),
         unknown if parts.operation is None else parts.mesh_frequencies,

@@ -59,6 +59,27 @@ def test_results_of_a_housing_are_those_of_its_case(case: gw.CaseStudy, tmp_path
     assert {"survey.csv", "survey.uff"} <= set(plan.write(tmp_path))
 
 
+@pytest.mark.slow
+def test_the_housing_of_a_machine_has_the_results_of_that_of_the_case(case: gw.CaseStudy, tmp_path: Path) -> None:
+    study = gw.Study(case.machine, case.settings)
+    alike(study.modes(detail=True), case.modes(detail=True))
+    assert case.case.measured is not None
+    alike(study.compare(modal_test_of(case.case.measured)), case.compare())
+    alike(study.survey(30, 5), case.survey(30, 5))
+    for place, one in (("machine", study), ("case", case)):
+        one.render("1", mode_format="glb").write(tmp_path / place)
+    (drawn,) = (tmp_path / "machine").glob("mode-*.glb")
+    assert drawn.read_bytes() == (tmp_path / "case" / drawn.name).read_bytes()
+    study.modes().write(tmp_path / "machine", pictures=False)
+    page = study.report(tmp_path / "machine").read_text(encoding="utf-8")
+    assert 'id="modes-housing-mode-1"' in page
+    assert study.export(tmp_path / "machine", ["csv"])
+    without = gw.Study(case.on_rigid_seats())
+    for verb in (without.modes, without.render, lambda: without.survey(3), lambda: without.compare([1e3])):
+        with pytest.raises(gw.CouplingError, match=r"expected a machine whose housing is solved"):
+            verb()
+
+
 def test_a_test_that_does_not_fit_the_housing_is_refused(modes: HousingModes) -> None:
     study = gw.HousingStudy(modes)
     compared = study.compare(2.0 * np.pi * modes.frequencies_hz[6:8])

@@ -12,6 +12,7 @@ import gearwhine as gw
 from gearwhine.coupling import CouplingError, TorqueOverTime
 from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
 from gearwhine.coupling.sound import Acoustics
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.results_folder import write_report
 from gearwhine.solve.machine import plan_of
 
@@ -47,6 +48,21 @@ def test_motion_over_time_is_that_of_the_case_and_is_written(
     assert json.loads((tmp_path / "summary.json").read_text())["steps"] == found.document["steps"]
     assert "two spur gears" in found._repr_html_()
     assert found.plot("mesh-force").axes
+
+
+@pytest.mark.parametrize("name", ["spur-pair", "planetary-stage", "overhung-fan"])
+def test_check_of_a_machine_is_that_of_the_case_without_its_housing(name: str) -> None:
+    case = gw.load(name)
+    on_ground = describe_machine(case.case)
+    found = gw.Study(on_ground, case.settings).check()
+    expected = case.check().document
+    without = {"warnings", "bearings"} if "housing" in expected else set()
+    assert set(expected) - set(found.document) <= {"housing", "rotor_analysis", "damping", "provenance"}
+    for key in set(found.document) - without:
+        assert found.document[key] == expected[key], key
+    assert [one["seat"] for one in found.document["bearings"] if one["rotor"] == "sun"] in ([], ["ground"] * 2)
+    thin = replace(on_ground, gravity=(0.0, -90.0, 0.0))
+    assert any("m/s²" in text or "90" in text for text in gw.Study(thin).check().warnings)
 
 
 def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.Study) -> None:
