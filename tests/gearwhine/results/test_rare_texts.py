@@ -1,9 +1,7 @@
 """Sentences and tables of what few results have, word for word: documents by hand, all of their numbers distinct."""
 
-import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from math import pi
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -30,10 +28,9 @@ from gearwhine.results import (
 )
 from gearwhine.results import run as motion
 from gearwhine.results_folder import export_sections
-from gearwhine.sweep.resolution import SPEED_KEY, over_with, peak_warnings
+from gearwhine.sweep.resolution import peak_warnings
 
 Document = dict[str, Any]
-RPM = 2.0 * pi / 60.0
 
 
 def told(content: Iterable[str | Table | Finding]) -> list[str]:
@@ -796,22 +793,3 @@ def test_sound_over_time_is_doubted_beyond_half_a_decibel(error: float, told_of:
     )
     assert [one["message"] for one in warnings] == [f"{begins}an error of {size}" for size in told_of]
     assert [one["relative"] for one in warnings] == [error] * len(told_of)
-
-
-@pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_options_of_a_sweep_have_the_speeds_between_the_old_ones(sense: float) -> None:
-    """Old speeds keep their texts, and new ones turn the same way; other keys stay as they were."""
-    keys: list[Any] = [
-        SimpleNamespace(keys=("operation.torque",), key="operation.torque", texts=("10 N*m", "20 N*m")),
-        SimpleNamespace(keys=(SPEED_KEY,), key=SPEED_KEY),
-    ]
-    swept: list[Any] = [
-        SimpleNamespace(
-            point=SimpleNamespace(texts=(torque, f"{sense * kilo:g}e3 rpm"), speed=sense * kilo * 1e3 * RPM)
-        )
-        for torque in keys[0].texts
-        for kilo in (1.0, 2.0)
-    ]
-    options = over_with(keys, swept, [1250.5, 1750.0])
-    along = "1e3 rpm,1250.5 rpm,1750 rpm,2e3 rpm" if sense > 0.0 else "-2e3 rpm,-1750 rpm,-1250.5 rpm,-1e3 rpm"
-    assert shlex.split(options) == ["--over", "operation.torque=10 N*m,20 N*m", "--over", f"{SPEED_KEY}={along}"]
