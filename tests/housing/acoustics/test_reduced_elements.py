@@ -159,7 +159,7 @@ def test_other_methods_have_nothing_to_span(standing: HousingRadiation) -> None:
 
 
 def test_solutions_that_depend_on_others_widen_no_span() -> None:
-    """Three harmonics, and mixtures of them with the rounding of single precision, one of them zero: a span of three."""
+    """Three harmonics, and mixtures of them with rounding of single precision, one of them zero: a span of three."""
     surface = sphere(7)
     first = harmonics(surface.points, surface.points).astype(np.complex64)
     mixed = np.stack([first[:, 0] + 2j * first[:, 1], first[:, 2] - first[:, 1], 0.0 * first[:, 0]], axis=1)
