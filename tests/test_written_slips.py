@@ -31,8 +31,43 @@ WORDS |= dict.fromkeys(("rpm", "speeds", "onset", "widest", "undamped"), "rpm")
 WORDS |= dict.fromkeys(("hz", "hertz", "frequencies", "mesh_frequency", "limit", "trusted_limit", "spacing"), "Hz")
 WORDS |= dict.fromkeys(("exciting", "held", "rate", "slowest", "modulating"), "Hz")
 """Names without a unit of values in the unit of the document."""
-PARTS = {"share", "part", "covered", "axial_share", "damping_ratio", "load_share", "contact_loss_fraction", "margin"}
+PARTS = {
+    "share",
+    "part",
+    "covered",
+    "axial_share",
+    "damping_ratio",
+    "load_share",
+    "contact_loss_fraction",
+    "margin",
+    "accuracy",
+    "fraction",
+    "leak",
+    "mode_share",
+    "left_of_prior_spread",
+    "least_residue",
+    "kinetic_energy_share",
+}
 """Names of parts of 1."""
+IN_SI = {
+    "m": "apart axial_offset backlash base base_radii_sum base_radius bore bounds center centre_distance close_holes "
+    "compression compression_limit depth diameter distance distances eccentricity edge gap grip gyration hub inner "
+    "lengths longest module offset outer pitch_diameter places radius reach refined_size rim rim_inner_radius shift "
+    "thinnest tip_radius tooth_deflection working_centre_distance yielding",
+    "s": "begin duration interval period seconds timeout total when",
+    "N": "axial_force bearable load rating spring thrust typical wanted",
+    "N m": "entering leaving input_torque",
+    "Pa": "peak_pressure pressure shear_modulus youngs_modulus",
+    "W": "power power_in power_out surface_power",
+    "kg": "mass lightest heaviest",
+    "kg m2": "moments",
+    "m/s": "line_speed bursts fast",
+    "rad": "misalignment at_equilibrium taken start_roll_angle end_roll_angle",
+    "N/m": "specific_load",
+    "h": "life short_life",
+}
+"""Names of values in SI units, in sentences converted to what is said; lives are in hours."""
+OF_SI = {name: dimension for dimension, names in IN_SI.items() for name in names.split()}
 
 
 class Source:
@@ -160,6 +195,8 @@ def wrong_units(source: Source) -> Slips:
         said = "%" if "percent" in name else "kg m2" if name.endswith("_kg_m2") else dimension_of(name)
         if name in PARTS and dimension == "%":
             said, size = "%", 1e-2 * size
+        if (of := OF_SI.get(name.strip("_").lower())) and said is None:
+            said = of
         if said is None:
             wrong = name in WORDS and dimension not in (WORDS[name], "%")
         else:

@@ -99,7 +99,7 @@ class SymmetricMatrix:
     @classmethod
     def of(cls, matrix: sparse.csr_array) -> "SymmetricMatrix":
         """Take the lower triangle of a matrix with both."""
-        lower = sparse.csc_array(sparse.tril(matrix, format="csc"))
+        lower = sparse.csc_array(sparse.tril(matrix))
         lower.sum_duplicates()
         return cls(lower.indptr, lower.indices, lower.data)
 

@@ -168,6 +168,11 @@ def test_planets_that_reach_over_the_axis_of_their_ring_leave_room_for_one() -> 
     (touching, *_) = placed_set(PlanetarySet("stage", made.gear_names, "c", ring="r"), parts).findings()
     assert "axes are 40 mm apart, and their tip circles need 84 mm" in touching.expected
     assert "room for 1 of them" in touching.expected
+    # Of three, each of which touches both others, the first two are named.
+    made = planets(40, 0.5 * MODULE * 20, carrier, [("p", "r")], count=3)
+    parts = _Parts([shaft("r"), carrier], [("r", -60)], made)
+    found = placed_set(PlanetarySet("stage", made.gear_names, "c", ring="r"), parts).findings()
+    assert [one.value for one in found if "clear of each other" in one.expected] == [made.gear_names[:2]]
 
 
 @pytest.mark.parametrize(

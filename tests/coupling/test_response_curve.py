@@ -2,6 +2,8 @@
 
 import gc
 import weakref
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.periodic import periodic_response, response_curve
+from gearwhine.coupling.periodic.continuation import _Follower
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.quantity import RPM
@@ -230,3 +233,29 @@ def test_what_is_not_followed_is_told() -> None:
     assert warned["name"] == "branch range"
     assert (warned["from_rpm"], warned["to_rpm"]) == pytest.approx((RPM * low, RPM * 1.2))
     assert SolvedSteady(machine=None, motions=(), curve=response_curve(deep, 1.1, 1.2)).branch_warnings() == []  # type: ignore[arg-type]
+
+
+def test_a_point_between_two_of_a_branch_is_on_it_where_it_is_as_near_as_predictions_are() -> None:
+    """Between speeds 1 and 2 the states go along a line; beside it by 2 % of a motion is another branch."""
+    times = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)[:, None]
+    shape, change = np.sin(times), 3.0 * np.cos(times)
+
+    def motion(part: float, aside: float = 0.0) -> tuple[FloatArray, FloatArray]:
+        return shape + part * change + aside, part * shape
+
+    nodes = [SimpleNamespace(displacements=q, velocities=v / 4.0, period=4.0) for q, v in map(motion, (0.0, 1.0))]
+    branch: Any = SimpleNamespace(speeds=[1.0, 2.0], motions=nodes)
+
+    def holds(speed: float, part: float, aside: float = 0.0) -> bool:
+        q, v = motion(part, aside)
+        response = SimpleNamespace(at_nodes=lambda segments: (q, v / 5.0), period=5.0)
+        point: Any = SimpleNamespace(speed=speed, response=response, ready=SimpleNamespace(segments=np.arange(16)))
+        return _Follower.has(branch, point)
+
+    assert holds(1.25, 0.25)
+    assert holds(2.0, 1.0)
+    assert not holds(1.25, 0.75)
+    assert not holds(1.25, 0.25, aside=0.3)
+    assert not holds(2.5, 1.5)
+    branch.speeds = [1.25, 1.25]
+    assert holds(1.25, 0.0)

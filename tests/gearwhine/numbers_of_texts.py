@@ -116,6 +116,13 @@ def foreign_numbers(document: Mapping[str, Any], sections: Iterable[Section]) ->
     return [one for one in foreign if not any(one.number in text and text in one.text for text in words)]
 
 
+def untrusted_lines(document: Mapping[str, Any]) -> list[str]:
+    """Peaks of sensors and mesh harmonics with sidebands above the frequency up to which a model is complete."""
+    limit = document.get("trusted_below_hz") or np.inf
+    lines = ((path, value) for path, value in leaves(document) if _TRUSTED.search(path))
+    return [f"{path} = {value:.6g} Hz" for path, value in lines if value > limit * (1.0 + 1e-6)]
+
+
 def repeated_columns(sections: Iterable[Section]) -> list[str]:
     """Headings of columns that show what another column of their table shows."""
     several = list(sections)
@@ -207,6 +214,7 @@ _OWN_CURVES = re.compile(
 """Figures, with the label of the axis, of curves whose highest points are not in the file."""
 _CUT = re.compile("campbell|steady-motion|-teeth")
 """Figures whose highest branches, further periods, or lines of action lie beyond the axes."""
+_TRUSTED = re.compile(r"^\.sensors\.peaks\.frequency_hz$|\.carrier_hz$")
 _FILE_UNITS = {"m s-2": "m/s2", "m s-2 m-1": "m/s2", "N m-1": "N/m", "1": "%", "": "%", "percent": "%"}
 _FEWEST_POINTS, _ROUNDING, _EDGE = 8, 1e-12, 1e-6
 _NEAR = 4e-3  # part by which a curve that is drawn smoothly may rise above its samples
@@ -293,6 +301,8 @@ def numbers_held(is_on: Callable[[], bool]) -> Iterator[None]:
         document = {"command": self.command} | self.document
         unsaid = [one for entry in document["warnings"] for one in unsaid_figures(entry)]
         assert not unsaid, f"{self.command}: not in the message of the warning: {unsaid}"
+        beyond = untrusted_lines(document)
+        assert not beyond, f"{self.command}: lines beyond the frequency up to which they are trusted: {beyond}"
         for compose in _composers().get(self.command, ()):
             composed = list(compose(document))
             foreign = foreign_numbers(document, composed)

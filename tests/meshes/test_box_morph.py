@@ -131,6 +131,9 @@ def test_a_morph_goes_on_from_a_moved_mesh(moved: Mesh) -> None:
 def test_what_a_mesh_cannot_follow_is_said(mesh: Mesh, other: BoxGeometry, said: str) -> None:
     with pytest.raises(MorphError, match=said):
         BoxMorph(mesh, BEFORE).displacement(other)
+    if said != "other parts":
+        with pytest.raises(MorphError, match=said):
+            BoxMorph(mesh, other)
 
 
 def test_a_mesh_is_not_turned_inside_out(mesh: Mesh) -> None:

@@ -24,6 +24,7 @@ from gearwhine.coupling.gears.loaded.contact_pressure import (
     contact_pressure,
     mesh_pressure,
 )
+from gearwhine.coupling.gears.loaded.gear_pair import operation_findings
 
 ANGLE = math.radians(20.0)
 
@@ -113,3 +114,33 @@ def test_a_crowned_face_bears_most_in_its_middle() -> None:
     radii = contact_curvature_radius(pair, mesh.positions)
     carried = squares * np.pi * radii / contact_modulus(pair)
     np.testing.assert_allclose(np.where(mesh.pair_forces > 0.0, carried, 0.0), mesh.pair_forces, rtol=1e-9)
+
+
+@pytest.mark.parametrize("helix", [0.0, 20.0])
+def test_a_load_that_teeth_do_not_bear_has_the_pressure_of_hertz_at_the_pitch_point(helix: float) -> None:
+    """p = √(w E* / (π R)) of cylinders in line contact, on the length of contact b ε_α / cos β_b of helical teeth.
+
+    K. L. Johnson, Contact mechanics, 1985, section 4.2(c).
+    """
+    driver, driven = (
+        Gear(name, teeth, 4e-3, np.radians(20.0), 25e-3, helix_angle=np.radians(turn * helix))
+        for name, teeth, turn in (("pinion", 24, 1.0), ("wheel", 60, -1.0))
+    )
+    geometry, torque = GearPairGeometry(driver, driven), 9000.0
+    transverse = np.arctan(np.tan(np.radians(20.0)) / np.cos(np.radians(helix)))
+    base = np.arcsin(np.sin(np.radians(helix)) * np.cos(np.radians(20.0)))
+    radii = [0.5 * teeth * 4e-3 / np.cos(np.radians(helix)) for teeth in (24, 60)]
+    along = torque / (radii[0] * np.cos(transverse))  # in the transverse plane
+    length = 25e-3 / np.cos(base) * (geometry.contact_ratio if helix else 1.0)
+    curvature = sum(np.cos(base) / (radius * np.sin(transverse)) for radius in radii)
+    modulus = driver.youngs_modulus / (2.0 * (1.0 - driver.poisson_ratio**2))
+    pressure = np.sqrt(along / np.cos(base) / length * modulus * curvature / np.pi)
+    assert pressure > 3e9
+    (found,) = operation_findings(geometry, -torque, 100.0)
+    assert (found.part, found.attribute, found.value) == (("gear pair", "pinion -> wheel"), "torque", -torque)
+    root = 3.5 * along / (25e-3 * 4e-3)
+    assert f"{along:.4g} N press their flanks with {1e-9 * pressure:.3g} GPa" in found.expected
+    assert f"bend their roots with {1e-9 * root:.3g} GPa, where steel bears 3 and 2 at most" in found.expected
+    assert list(operation_findings(geometry, 100.0, 1e3)) == []
+    (fast,) = operation_findings(geometry, 100.0, -1.001 * 600.0 / radii[0])
+    assert "a pitch-line speed at which no rim bursts, at most 600 m/s; it is 600.6 m/s" in fast.expected

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from odd_but_sound import changed
 
-from gearwhine.case import CaseError, parse_case
+from gearwhine.case import CaseError, fields, parse_case
 from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.gears import Gear
@@ -308,3 +309,22 @@ def test_sound_parts_are_accepted() -> None:
     assert seated(0.02 + 0.034).housing is not None
     assert over_speeds(1.0, 600.0).bearings
     assert settings().samples == 5000
+
+
+_NEVER_NEGATIVE = {"mass", "inertia", "imbalance", "torque", "ratio"}
+_NEVER_ZERO = {"density", "modulus"}
+
+
+def test_types_of_numbers_have_the_limits_that_their_names_say() -> None:
+    """A mass may be zero, a density not; a damping ratio is below 1; a type from zero or positive is so in its name."""
+    held = 0
+    for name, kind in vars(fields).items():
+        rules = [one for one in getattr(kind, "__metadata__", ()) if isinstance(one, fields.Quantity)]
+        for rule in rules:
+            words = {word.lower() for word in re.findall("[A-Z][a-z]+", name)}
+            positive = "positive" in words or bool(words & _NEVER_ZERO)
+            from_zero = not positive and ("zero" in words or bool(words & _NEVER_NEGATIVE))
+            assert (rule.above, rule.at_least) == (0.0 if positive else None, 0.0 if from_zero else None), name
+            assert (rule.below, rule.at_most) == (1.0 if "ratio" in words else None, None), name
+            held += 1
+    assert held > 18

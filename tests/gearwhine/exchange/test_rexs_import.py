@@ -3,7 +3,8 @@
 import math
 import tomllib
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from rexs_files import CENTRE_DISTANCE, HELIX, PLANET, RING, SUN, RexsFile, helical_stage, planetary_stage
@@ -13,6 +14,7 @@ from gearwhine.case import CaseError, parse_case
 from gearwhine.case.model import Case
 from gearwhine.exchange.rexs import ImportedCase, RexsError, case_of, read_content
 from gearwhine.exchange.rexs.catalogue import dimensions_of
+from gearwhine.exchange.rexs.operation import find_drive
 
 
 def imported(file: RexsFile, load_case: str = "") -> ImportedCase:
@@ -437,6 +439,37 @@ def test_power_in_place_of_torque() -> None:
     file.named("motor")["power"] = (9.0, "kW")
     torque = float(imported(file).document["operation"]["torque"].split()[0])
     assert torque == pytest.approx(9000.0 / (1500.0 * math.pi / 30.0), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("stated", "torques", "others", "driven"),
+    [
+        (100.0, {"output": 10.0}, (), ("input", 100.0, 5.0, None)),  # taken out at -50 rad/s: 500 W
+        (100.0, {"output": 10.0, "input": 0.0}, (), ("input", 100.0, 5.0, "input")),
+        (100.0, {"output": -10.0}, (), ("output", -50.0, 10.0, "output")),  # along its speed
+        (100.0, {"input": -10.0}, (), ("input", 100.0, 10.0, "input")),  # brakes the only shaft: taken as driving it
+        (-100.0, {"output": 0.0}, ("no torque",), ("input", -100.0, 0.0, None)),
+    ],
+)
+def test_power_comes_in_where_a_load_drives_or_else_where_the_speed_is_stated(
+    stated: float, torques: dict[str, float], others: tuple[str, ...], driven: tuple[Any, ...]
+) -> None:
+    """Of two shafts, the output turns half as fast the other way; torques about +z."""
+    bodies = {name: SimpleNamespace(name=name) for name in ("input", "output")}
+    noted = list[str]()
+    notes = SimpleNamespace(
+        assumed=lambda *given: noted.append("no torque"), changed=lambda *given: noted.append("brakes")
+    )
+    component = SimpleNamespace(flag=lambda name: None, label="a load")
+    loads: Any = [
+        SimpleNamespace(component=component, body=bodies[name], torque=torque, power=None)
+        for name, torque in torques.items()
+    ]
+    unit: Any = SimpleNamespace(notes=notes)
+    found = find_drive(unit, (cast(Any, bodies["input"]), stated), loads, {"input": 1.0, "output": -0.5})
+    load = None if found.load is None else found.load.body.name
+    assert (found.body.name, found.speed, found.torque, load) == driven
+    assert tuple(noted) == (("brakes",) if torques == {"input": -10.0} else others)
 
 
 def test_weight_is_along_the_stated_direction() -> None:

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
+from gearwhine.coupling.sound.solution import SolvedSound
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results import (
@@ -780,3 +781,15 @@ def test_what_excites_and_carries_the_loudest_lines() -> None:
     assert sound._mode_text({"mode_share": None}) == ""
     assert sound._mode_text({"mode_share": 0.375, "mode": None}) == "local, 38 %"
     assert sound._mode_text({"mode_share": 0.375, "mode": 7, "mode_frequency_hz": 633.0}) == "7 at 633 Hz, 38 %"
+
+
+@pytest.mark.parametrize(("error", "told_of"), [(0.0595, ()), (0.0625, ("6.2 %",))])
+def test_sound_over_time_is_doubted_beyond_half_a_decibel(error: float, told_of: tuple[str, ...]) -> None:
+    given = SimpleNamespace(of_modes=SimpleNamespace(warnings=()), told=(), histories=SimpleNamespace(error=error))
+    given._microphone_doubts = list
+    warnings = SolvedSound.warnings(cast(Any, given))
+    begins = (
+        "sound pressure over time is doubtful: the transfer to the microphones is interpolated over frequency with "
+    )
+    assert [one["message"] for one in warnings] == [f"{begins}an error of {size}" for size in told_of]
+    assert [one["relative"] for one in warnings] == [error] * len(told_of)

@@ -156,3 +156,14 @@ def test_frequencies_of_a_span_lie_closer_at_short_waves(standing: HousingRadiat
 def test_other_methods_have_nothing_to_span(standing: HousingRadiation) -> None:
     estimate = replace(standing, method="erp", reduced=None)
     assert estimate.spanned(np.linspace(100.0, 2000.0, 20), (20.0, 2000.0)) is estimate
+
+
+def test_solutions_that_depend_on_others_widen_no_span() -> None:
+    """Three harmonics, and mixtures of them with rounding of single precision, one of them zero: a span of three."""
+    surface = sphere(7)
+    first = harmonics(surface.points, surface.points).astype(np.complex64)
+    mixed = np.stack([first[:, 0] + 2j * first[:, 1], first[:, 2] - first[:, 1], 0.0 * first[:, 0]], axis=1)
+    basis = reduced_elements._basis(surface, np.array([first[:, :3], mixed]).astype(np.complex64))
+    found = np.linalg.lstsq(basis.columns, first[:, :3], rcond=None)[0]
+    np.testing.assert_allclose(basis.columns @ found, first[:, :3], atol=1e-5)
+    assert basis.columns.shape[1] == 3

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,7 @@ from gearwhine.housing.reduced import (
     reduced_matrices,
     static_stiffness,
 )
+from gearwhine.housing.reduced.certificate import _held_frequency
 
 SEATS = (NodeSeat("back", 101, PLACES[101]), NodeSeat("front", 205, PLACES[205]))
 
@@ -327,3 +329,15 @@ def test_numbers_beyond_all_quantities_are_refused_by_their_place() -> None:
     stiffness[3, 3] = 1e200
     with pytest.raises(HousingError, match="row 4, column 4"):
         ReducedMatrices(mass, stiffness, tuple(FRAME_COORDINATES))
+
+
+def test_internal_coordinates_whose_mass_is_rounding_have_no_mode() -> None:
+    """Masses of 1 and 4 kg on springs of 9 and 100 N/m, beside two whose mass is a rounding error of either sign."""
+    matrices: Any = SimpleNamespace(
+        coordinates=[(number, 0) for number in range(4)],
+        mass=np.diag([1.0, -1e-18, 4.0, 1e-18]),
+        stiffness=np.diag([9.0, 5.0, 100.0, 6.0]),
+    )
+    assert _held_frequency(matrices) == pytest.approx(5.0)
+    matrices.mass = np.diag([-1e-18] * 4)
+    assert _held_frequency(matrices) is None

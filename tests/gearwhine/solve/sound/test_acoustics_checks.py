@@ -3,11 +3,14 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli.command_line import run_command
+from gearwhine.coupling.sound.acoustics import Acoustics, Microphone
+from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
 from gearwhine.results.run import sections
 from gearwhine.solve.acoustics import check_before_modes
 
@@ -199,3 +202,28 @@ def test_the_exit_code_is_that_of_bad_input(capsys: pytest.CaptureFixture[str]) 
     said = capsys.readouterr().err
     assert "acoustics.floor: expected a height at or below the soles" in said
     assert "acoustics.mesh_size: expected an edge that suits" in said
+
+
+BOUNDS = np.array([[0.0, 0.0, 0.0], [0.8, 0.4, 0.4]])  # its size is 0.8 m
+
+
+@pytest.mark.parametrize(
+    ("near", "far", "named"),
+    [
+        ({"floor": -15.9}, {"floor": -16.1}, "acoustics floor"),
+        ({"microphone": (159.0, 0.0, 0.0)}, {"microphone": (0.0, 161.0, 0.0)}, "acoustics microphone"),
+        ({"floor": 0.0, "microphone_box": 159.0}, {"floor": 0.0, "microphone_box": 161.0}, "acoustics microphone"),
+        ({"highest_frequency": 3000.0}, {"highest_frequency": 3001.0}, "acoustics frequency"),
+    ],
+)
+def test_what_is_far_from_a_housing_for_its_size_is_doubted(
+    near: dict[str, Any], far: dict[str, Any], named: str
+) -> None:
+    """A floor from 20 and microphones from 200 sizes of the housing on; a sound above the modes' 3 kHz."""
+    for given, expected in ((near, []), (far, [named])):
+        place = given.get("microphone")
+        microphones = (
+            {} if place is None else {"microphone": (Microphone("m", tuple((place + BOUNDS.mean(axis=0)).tolist())),)}
+        )
+        warnings = acoustics_warnings(Acoustics(**given | microphones), BOUNDS, 3000.0)
+        assert [one["name"] for one in warnings] == expected
