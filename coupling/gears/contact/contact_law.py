@@ -68,7 +68,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
-from gearwhine.coupling.gears.contact.face_slices import DEFAULT_SLICES, FaceSlices, face_equilibrium
+from gearwhine.coupling.gears.contact.face_slices import DEFAULT_SLICES, FaceSlices, aligned_slices, face_equilibrium
 from gearwhine.coupling.gears.contact.lookup_tables import (
     FaceSliceStates,
     face_force_table,
@@ -650,13 +650,17 @@ def tooth_contact(
     model : StiffnessModel
         See `gearwhine.coupling.gears.stiffness.models`.  A model of the whole mesh (range exactly one base pitch, when
         the contact ratio is not) has no single pairs: the profile deviation is then zero.  Pitch deviations remain,
-        one pair for each mesh period.
+        one pair for each mesh period.  Weber's contact is frozen at the model's own ``force``, without one at 300 N/mm
+        of face width: give it the mesh force that the contact is loaded with, as
+        ``ElasticRingStiffness(force=...)`` or by `stiffness_under_load`, else the transmission error is off by some per
+        cent.
     damping : float
         Damping coefficient [N s/m], e.g. from `mesh_damping`.
     corner_contact : bool
         Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
     faces : FaceSlices or None
-        Slices from `face_slices`, where the face is not loaded evenly; None for a uniform load.
+        Slices of the face; None for those of aligned flanks, see `aligned_slices`: with slices where the teeth are
+        helical or the flanks uneven over the face, a uniform load else.
 
     Returns
     -------
@@ -667,6 +671,8 @@ def tooth_contact(
     GearError
         Damaged teeth or corner contact with a model of the whole mesh, which has no single pairs.
     """
+    if faces is None:
+        faces = aligned_slices(geometry)
     variants = pair_variants(geometry)
     stiffness = model.pair_stiffness(geometry)
     flattening = contact_flattening(model, geometry)

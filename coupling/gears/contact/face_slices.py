@@ -329,6 +329,20 @@ def face_slices(
     )
 
 
+def aligned_slices(geometry: GearPairGeometry, *, sense: int = 1) -> FaceSlices | None:
+    """Slices of aligned flanks; None of spur teeth that are even over the face: they carry uniformly without them.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    sense : int
+        See `face_slices`; the transmission error of flanks that are symmetric over the face is the same in both senses.
+    """
+    deviations = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
+    even = all(deviation is None or deviation.is_straight for deviation in deviations)
+    return None if even and geometry.driver.helix_angle == 0.0 else face_slices(geometry, sense=sense)
+
+
 def _has_pits(geometry: GearPairGeometry) -> bool:
     faults = (*geometry.driver.faults, *geometry.driven.faults)
     return any(isinstance(fault, Spall) and fault.across_face(geometry.face_width) for fault in faults)

@@ -18,6 +18,7 @@ from gearwhine.coupling.gears.contact.contact_law import ToothContact, law_betwe
 from gearwhine.coupling.gears.contact.face_slices import (
     DEFAULT_SLICES,
     FaceSlices,
+    aligned_slices,
     face_slices,
     face_stations,
     mean_and_slope,
@@ -214,11 +215,8 @@ class GearPair:
             Sense of rotation of the driver about z: 1 or -1.
         """
         misalignment = self.misalignment or 0.0
-        bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
-        straight = all(deviation is None or deviation.is_straight for deviation in bent)
-        even = misalignment == 0.0 and not any(self.face_gap) and not self.gap_changes
-        if geometry.driver.helix_angle == 0.0 and even and straight:
-            return None
+        if misalignment == self.path_slope == 0.0 and not any(self.face_gap) and not self.gap_changes:
+            return aligned_slices(geometry, sense=sense)
         return face_slices(
             geometry,
             sense=sense,

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from scipy.optimize import minimize
 
 from gearwhine.coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, with_flanks_of
-from gearwhine.coupling.gears.contact.face_slices import FaceSlices
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, aligned_slices
 from gearwhine.coupling.gears.errors import GearError, require_finite
 from gearwhine.coupling.gears.geometry.modifications import ReliefShape, TipRelief
 from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
@@ -258,7 +258,8 @@ def optimal_tip_relief(
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
     stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
     faces, searched_faces = (
-        None if face is None else slices_of_teeth(face, model, geometry) for face in (faces, searched_faces)
+        None if face is None else slices_of_teeth(face, model, geometry)
+        for face in (faces or aligned_slices(geometry), searched_faces)
     )
 
     target: ReliefAim = PeakToPeak() if aim is None else aim

@@ -190,7 +190,7 @@ def test_means_and_slopes_over_the_face() -> None:
 
 def test_a_contact_without_slices_and_stations_off_the_face_are_refused() -> None:
     geometry = pair_of(0.0)
-    plain = tooth_contact(geometry, MODEL)
+    plain = replace(tooth_contact(geometry, MODEL), faces=None)
     with pytest.raises(GearError, match="the contact has no face slices; expected those of `face_slices`"):
         FaceContact(plain, geometry, face_stations(WIDTH), 0.0)
     sliced = tooth_contact(geometry, MODEL, faces=face_slices(geometry))
