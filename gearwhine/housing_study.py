@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.modal_test import ModalTest, PlannedSurvey
+    from gearwhine.housing.reduced import ReducedHousing
 
 
 class HousingStudy:
@@ -19,8 +20,8 @@ class HousingStudy:
 
     Parameters
     ----------
-    housing : gearwhine.housing.HousingModes
-        Natural modes of a housing, see :meth:`gearwhine.Housing.modes`.
+    housing : gearwhine.housing.HousingModes or gearwhine.housing.reduced.ReducedHousing
+        Natural modes of a housing, see :meth:`gearwhine.Housing.modes`, or a housing of reduced matrices.
     title : str
     progress : callable
         Receives the progress of long work in words; silent by default.
@@ -28,27 +29,29 @@ class HousingStudy:
     Raises
     ------
     gearwhine.HousingError
-        Where the modes are something else.
+        Where the housing is something else.
     """
 
-    def __init__(self, housing: "HousingModes", title: str = "", progress: Progress = silent) -> None:
+    def __init__(self, housing: "HousingModes | ReducedHousing", title: str = "", progress: Progress = silent) -> None:
         from gearwhine.housing import HousingError, HousingModes
+        from gearwhine.housing.reduced import ReducedHousing
 
-        if not isinstance(housing, HousingModes):
-            raise HousingError(
-                f"a study is of the modes of a housing, as gearwhine.Housing.modes() gives; got {housing!r:.60}"
-            )
+        if not isinstance(housing, HousingModes | ReducedHousing):
+            expected = "the modes of a housing, as gearwhine.Housing.modes() gives, or of a ReducedHousing"
+            raise HousingError(f"a study is of {expected}; got {housing!r:.60}")
         self.housing, self.title, self.progress = housing, title, progress
 
     @property
     def origin(self) -> "Origin":
         """What results are of."""
         from gearwhine.analyses.origin import Origin
+        from gearwhine.housing import HousingModes
         from gearwhine.numerics.result_warnings import warning
 
-        return Origin(self.title, warnings=[warning("input", str(doubt)) for doubt in self.housing.housing.findings])
+        doubts = self.housing.housing.findings if isinstance(self.housing, HousingModes) else ()
+        return Origin(self.title, warnings=[warning("input", str(doubt)) for doubt in doubts])
 
-    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes] | Result[ReducedHousing]":
         """Natural modes of the housing, certified complete, with checks of the model.
 
         Parameters
@@ -57,7 +60,11 @@ class HousingStudy:
             Also report effective masses, support reactions, and the modes dominant between bearings and sensors.
         """
         from gearwhine.analyses.housing import modes_result
+        from gearwhine.analyses.reduced_housing import reduced_modes_result
+        from gearwhine.housing import HousingModes
 
+        if not isinstance(self.housing, HousingModes):
+            return reduced_modes_result(self.housing, self.origin)
         return modes_result(self.housing, self.origin, detail=detail)
 
     def compare(self, measured: "ModalTest | npt.ArrayLike") -> "Result[Comparison]":
@@ -76,12 +83,17 @@ class HousingStudy:
         import numpy as np
 
         from gearwhine.analyses.housing import compare_result
+        from gearwhine.analyses.reduced_housing import reduced_compare_result
+        from gearwhine.housing import HousingModes
         from gearwhine.housing.measured import MeasuredModes
         from gearwhine.housing.modal_test import ModalTest, compare_test
+        from gearwhine.housing.reduced_modal_test import compare_reduced
 
         test = measured
         if not isinstance(test, ModalTest):
             test = ModalTest(MeasuredModes(np.atleast_1d(np.asarray(measured, dtype=np.float64))))
+        if not isinstance(self.housing, HousingModes):
+            return reduced_compare_result(self.housing, compare_reduced(self.housing, test), test.modes, self.origin)
         return compare_result(self.housing, compare_test(self.housing, test, self.progress), self.origin)
 
     def survey(self, sensors: int, modes: int | None = None) -> "Result[PlannedSurvey]":
@@ -97,10 +109,13 @@ class HousingStudy:
         Raises
         ------
         gearwhine.HousingError
-            Where the sensors cannot separate the modes.
+            Where the sensors cannot separate the modes, or the housing has no mesh.
         """
         from gearwhine.analyses.housing import survey_result
+        from gearwhine.housing import HousingError, HousingModes
         from gearwhine.housing.modal_test import plan_modal_survey
 
+        if not isinstance(self.housing, HousingModes):
+            raise HousingError("survey: expected a housing with its mesh; that of reduced matrices has none")
         self.progress(f"choosing {sensors} sensors")
         return survey_result(self.housing, plan_modal_survey(self.housing, sensors, modes), self.origin)
