@@ -102,6 +102,7 @@ from gearwhine.coupling.machine.loads import (
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 from gearwhine.coupling.machine.pins import MountedPin, stiff_pin
+from gearwhine.coupling.machine.reduced_component import component_of_reduced_housing
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
@@ -120,6 +121,7 @@ from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import Motion, simulate
 from gearwhine.housing import HousingModes
+from gearwhine.housing.reduced import ReducedHousing
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -191,7 +193,8 @@ class Machine:
         Driving torque on the first driver's shaft [N m]; negative where it brakes.
     outputs : sequence of Output
         Shafts where the torque leaves; by default the shafts that drive no other, with equal power.
-    housing : gearwhine.housing.HousingModes or HousingComponent, optional
+    housing : HousingModes, ReducedHousing or HousingComponent, optional
+        Result of :meth:`gearwhine.Housing.modes`, or a :class:`gearwhine.housing.reduced.ReducedHousing`.
     torque_at : float
         Station of the input torque, from the left end of its shaft [m].
     forces : sequence of ShaftForce
@@ -238,7 +241,7 @@ class Machine:
     speed: float = 0.0
     torque: float = 0.0
     outputs: Sequence[Output] = ()
-    housing: HousingComponent | HousingModes | None = None
+    housing: HousingComponent | HousingModes | ReducedHousing | None = None
     torque_at: float = 0.0
     forces: Sequence[ShaftForce] = ()
     torque_over_time: TorqueOverTime | None = None
@@ -328,6 +331,8 @@ class Machine:
     @cached_property
     def housing_component(self) -> HousingComponent | None:
         """The housing as a component of the coupled system."""
+        if isinstance(self.housing, ReducedHousing):
+            return component_of_reduced_housing(self.housing)
         if not isinstance(self.housing, HousingModes):
             return self.housing
         return component_of_housing(self.housing, participates=self.moves_housing_as_a_body)
@@ -1374,7 +1379,11 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
     }
     yield from kind_findings(part, machine, **kinds)
     rules: dict[str, Rule] = {
-        "housing": Instance((HousingModes, HousingComponent), "result of Housing.modes(), or None", optional=True),
+        "housing": Instance(
+            (HousingModes, ReducedHousing, HousingComponent),
+            "result of Housing.modes(), a ReducedHousing, or None",
+            optional=True,
+        ),
         "torque_over_time": Instance(TorqueOverTime, "a TorqueOverTime, or None", optional=True),
         "motor": Instance(TorqueLine, "a TorqueLine, or None", optional=True),
         "load": Instance(TorqueLine, "a TorqueLine, or None", optional=True),

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.modal_test import ModalTest, PlannedSurvey
+    from gearwhine.housing.reduced import ReducedHousing
 
 
 class HousingAnalyses:
@@ -29,7 +30,7 @@ class HousingAnalyses:
         """Return the housing; where there is none, the command is refused."""
         raise NotImplementedError
 
-    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes] | Result[ReducedHousing]":
         """Natural modes of the housing, certified complete, with checks of the model.
 
         Parameters
@@ -54,15 +55,10 @@ class HousingAnalyses:
         gearwhine.HousingError
             Where the modes are not known as high as the measured ones, or the test does not fit the housing.
         """
-        import numpy as np
-
         from gearwhine.analyses.housing import compare_result
-        from gearwhine.housing.measured import MeasuredModes
-        from gearwhine.housing.modal_test import ModalTest, compare_test
+        from gearwhine.housing.modal_test import compare_test
 
-        test = measured
-        if not isinstance(test, ModalTest):
-            test = ModalTest(MeasuredModes(np.atleast_1d(np.asarray(measured, dtype=np.float64))))
+        test = _modal_test(measured)
         housing = self.required_housing("compare")
         return compare_result(housing, compare_test(housing, test, self.progress), self.origin)
 
@@ -122,8 +118,8 @@ class HousingStudy(HousingAnalyses):
 
     Parameters
     ----------
-    housing : gearwhine.housing.HousingModes
-        Natural modes of a housing, see :meth:`gearwhine.Housing.modes`.
+    housing : gearwhine.housing.HousingModes or gearwhine.housing.reduced.ReducedHousing
+        Natural modes of a housing, see :meth:`gearwhine.Housing.modes`, or a housing of reduced matrices.
     title : str
     progress : callable
         Receives the progress of long work in words; silent by default.
@@ -131,26 +127,76 @@ class HousingStudy(HousingAnalyses):
     Raises
     ------
     gearwhine.HousingError
-        Where the modes are something else.
+        Where the housing is something else.
     """
 
-    def __init__(self, housing: "HousingModes", title: str = "", progress: Progress = silent) -> None:
+    def __init__(self, housing: "HousingModes | ReducedHousing", title: str = "", progress: Progress = silent) -> None:
         from gearwhine.housing import HousingError, HousingModes
+        from gearwhine.housing.reduced import ReducedHousing
 
-        if not isinstance(housing, HousingModes):
-            raise HousingError(
-                f"a study is of the modes of a housing, as gearwhine.Housing.modes() gives; got {housing!r:.60}"
-            )
+        if not isinstance(housing, HousingModes | ReducedHousing):
+            expected = "the modes of a housing, as gearwhine.Housing.modes() gives, or of a ReducedHousing"
+            raise HousingError(f"a study is of {expected}; got {housing!r:.60}")
         self.housing, self.title, self.progress = housing, title, progress
 
     @property
     def origin(self) -> "Origin":
         """What results are of."""
         from gearwhine.analyses.origin import Origin
+        from gearwhine.housing import HousingModes
         from gearwhine.numerics.result_warnings import warning
 
-        return Origin(self.title, warnings=[warning("input", str(doubt)) for doubt in self.housing.housing.findings])
+        doubts = self.housing.housing.findings if isinstance(self.housing, HousingModes) else ()
+        return Origin(self.title, warnings=[warning("input", str(doubt)) for doubt in doubts])
 
     def required_housing(self, command: str) -> "HousingModes":
-        """Return the housing."""
+        """Return the housing; one of reduced matrices, which has no mesh, is refused."""
+        from gearwhine.housing import HousingError, HousingModes
+
+        if not isinstance(self.housing, HousingModes):
+            raise HousingError(f"{command}: expected a housing with its mesh; that of reduced matrices has none")
         return self.housing
+
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes] | Result[ReducedHousing]":
+        """Natural modes of the housing, certified complete, with checks of the model.
+
+        Parameters
+        ----------
+        detail : bool
+            Also report effective masses, support reactions, and the modes dominant between bearings and sensors.
+        """
+        from gearwhine.analyses.reduced_housing import reduced_modes_result
+        from gearwhine.housing import HousingModes
+
+        if isinstance(self.housing, HousingModes):
+            return super().modes(detail=detail)
+        return reduced_modes_result(self.housing, self.origin)
+
+    def compare(self, measured: "ModalTest | npt.ArrayLike") -> "Result[Comparison]":
+        """Compare the housing's modes with measured ones, as :meth:`HousingAnalyses.compare` does.
+
+        Parameters
+        ----------
+        measured : ModalTest or sequence of float
+            Modal test, or the frequencies alone of measured modes [rad/s].
+        """
+        from gearwhine.analyses.reduced_housing import reduced_compare_result
+        from gearwhine.housing import HousingModes
+        from gearwhine.housing.reduced_modal_test import compare_reduced
+
+        if isinstance(self.housing, HousingModes):
+            return super().compare(measured)
+        test = _modal_test(measured)
+        return reduced_compare_result(self.housing, compare_reduced(self.housing, test), test.modes, self.origin)
+
+
+def _modal_test(measured: "ModalTest | npt.ArrayLike") -> "ModalTest":
+    """Return a modal test, made of frequencies alone where no more is known [rad/s]."""
+    import numpy as np
+
+    from gearwhine.housing.measured import MeasuredModes
+    from gearwhine.housing.modal_test import ModalTest
+
+    if isinstance(measured, ModalTest):
+        return measured
+    return ModalTest(MeasuredModes(np.atleast_1d(np.asarray(measured, dtype=np.float64))))

@@ -7,8 +7,10 @@ Bampton 1968, AIAA Journal 6(7), Eq. 15).
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.numerics.arrays import FloatArray
@@ -46,16 +48,20 @@ UNITS = {"SI": (1.0, 1.0), "mm-t-s": (1e-3, 1e-3)}
 """Length [m] and energy [J] of each system of units: t mm²/s² is 1e-3 J."""
 
 
+_PAIRS = "pairs (node, component): 1 to 3 along x, y, z, 4 to 6 about them, 0 for an internal coordinate"
+
+
 @dataclass(frozen=True)
 class LabelledMatrix:
-    """A square matrix as a file holds it.
+    """A square matrix as a file holds it, or one of your own with its coordinates.
 
     Attributes
     ----------
     values : ndarray, shape (n, n)
         In the units of the file.
-    coordinates : tuple of Coordinate, or None
-        Coordinates of rows and columns, where the file names them.
+    coordinates : tuple of (int, int), or None
+        Node and component of each row and column, where the file names them: components 1 to 3 are motions of the node
+        along x, y, z, and 4 to 6 about them; ``(number, 0)`` is an internal coordinate, such as a modal amplitude.
     """
 
     values: FloatArray
@@ -166,8 +172,8 @@ class ReducedMatrices:
         M: kg of translations, kg m and kg m² with rotations.
     stiffness : ndarray, shape (n, n)
         K: N/m of translations, N and N m with rotations.
-    coordinates : tuple of Coordinate
-        Coordinate of each row, each once.
+    coordinates : tuple of (int, int)
+        Node and component of each row, each once, as in :class:`LabelledMatrix`.
     damping : ndarray, shape (n, n), or None
         C of viscous damping: N s/m of translations.
     is_static : bool
@@ -192,7 +198,10 @@ class ReducedMatrices:
         if self.damping is not None:
             given["damping"] = self.damping
         matrices = {name: np.array(matrix, dtype=np.float64) for name, matrix in given.items()}
-        object.__setattr__(self, "coordinates", tuple((int(node), int(axis)) for node, axis in self.coordinates))
+        try:
+            object.__setattr__(self, "coordinates", tuple((int(node), int(axis)) for node, axis in self.coordinates))
+        except (TypeError, ValueError):
+            refuse([Finding(("reduced housing", ""), "coordinates", self.coordinates, _PAIRS)], HousingError)
         refuse(self._order_findings(matrices), HousingError)
         refuse(_symmetry_findings(matrices), HousingError)
         for name, matrix in matrices.items():
@@ -231,33 +240,40 @@ class ReducedMatrices:
                 yield Finding(_part(name), place, float(matrix[row, column]), "a finite number")
         if not 0 < n <= MOST_COORDINATES:
             yield Finding(("reduced housing", ""), "order", n, f"from 1 to {MOST_COORDINATES} coordinates")
-        seen: set[Coordinate] = set()
-        for coordinate in self.coordinates:
-            if coordinate in seen:
-                yield Finding(("reduced housing", ""), "coordinates", coordinate, "each coordinate once")
-            if not 0 <= coordinate[1] <= 6:
-                yield Finding(("reduced housing", ""), "coordinates", coordinate, "a component from 0 to 6")
-            seen.add(coordinate)
+        once = dict.fromkeys(self.coordinates)
+        if twice := [one for one in once if self.coordinates.count(one) > 1][:3] if len(once) < n else []:
+            yield Finding(("reduced housing", ""), "coordinates", tuple(twice), "each coordinate once")
+        if wrong := [one for one in once if not 0 <= one[1] <= 6][:3]:
+            yield Finding(("reduced housing", ""), "coordinates", tuple(wrong), _PAIRS)
+        components: dict[int, set[int]] = {}
+        for node, axis in once:
+            components.setdefault(node, set()).add(axis)
+        # An internal coordinate may bear the number of a node, but no such node has six motions or three then.
+        of_nodes = [axes for axes in components.values() if axes != {0}]
+        if of_nodes and all(axes in (set(range(6)), set(range(3))) for axes in of_nodes):
+            expected = f"{_PAIRS}; the components of all nodes count from 0"
+            yield Finding(("reduced housing", ""), "coordinates", self.coordinates[:3], expected)
 
 
 def reduced_matrices(
-    matrices: Mapping[str, LabelledMatrix], nodes: Sequence[int] = (), units: str = "SI"
+    matrices: Mapping[str, Any], nodes: Sequence[int] | Mapping[int, Sequence[int]] = (), units: str = "SI"
 ) -> ReducedMatrices:
-    """Make reduced matrices in SI from those of files.
+    """Make reduced matrices in SI from those of files, or from arrays.
 
     With the length L [m] and the energy E [J] of the units, and S = diag(L for a translation, 1 otherwise), energies
     qᵀ A q are the same in SI where A_SI = E S⁻¹ A S⁻¹.
 
     Parameters
     ----------
-    matrices : mapping of str to LabelledMatrix
+    matrices : mapping of str to LabelledMatrix, or to an array of NumPy or SciPy, shape (n, n)
         ``stiffness``, and ``mass`` and ``damping`` where there are any: without a mass the housing is static. Rows that
         one of labelled matrices lacks are zero; those of a stiffness of :data:`HELD` are left out.
-    nodes : sequence of int
-        Numbers of the nodes to which the first rows belong, six each, where the files name no coordinates; the others
-        are internal.
+    nodes : sequence of int, or mapping of int to sequence of int
+        Nodes of rows that bear no names: numbers of the nodes to which the first rows belong, six each; or the rows of
+        each node, counted from 0, of its motions along x, y, z and about them (six), or along x, y, z (three). All
+        other rows are internal.
     units : {"SI", "mm-t-s"}
-        Units of the files.
+        Units of the matrices.
 
     Raises
     ------
@@ -267,6 +283,10 @@ def reduced_matrices(
     """
     if units not in UNITS:
         refuse([Finding(("reduced housing", ""), "units", units, f"one of {', '.join(UNITS)}")], HousingError)
+    if "stiffness" not in matrices or not set(matrices) <= set(USUAL_NAMES):
+        expected = "'stiffness', with 'mass' and 'damping' where there are any"
+        refuse([Finding(("reduced housing", ""), "matrices", tuple(matrices), expected)], HousingError)
+    matrices = {name: _as_labelled(name, matrix) for name, matrix in matrices.items()}
     labelled = {name: matrix.coordinates for name, matrix in matrices.items() if matrix.coordinates is not None}
     if labelled and len(labelled) < len(matrices):
         without = next(name for name in matrices if name not in labelled)
@@ -292,17 +312,47 @@ def reduced_matrices(
             coordinates = tuple(one for one, is_held in zip(union, held, strict=True) if not is_held)
             values = {name: matrix[np.ix_(~held, ~held)] for name, matrix in values.items()}
     else:
-        order = len(matrices["stiffness"].values)
-        if 6 * len(nodes) > order or not nodes:
-            expected = f"at least one node, and six rows for each: the order of the stiffness is {order}"
-            refuse([Finding(("reduced housing", ""), "nodes", tuple(nodes), expected)], HousingError)
-        at_nodes = [(node, axis) for node in nodes for axis in range(1, 7)]
-        coordinates = (*at_nodes, *((number, 0) for number in range(1, order - len(at_nodes) + 1)))
+        coordinates = _coordinates_of_rows(nodes, len(values["stiffness"]))
     for name, matrix in values.items():
         if matrix.shape == (len(coordinates),) * 2:
             values[name] = _in_si(matrix, coordinates, units)
     mass = values.get("mass", np.zeros((len(coordinates),) * 2))
     return ReducedMatrices(mass, values["stiffness"], coordinates, values.get("damping"), "mass" not in values)
+
+
+def _as_labelled(name: str, matrix: Any) -> LabelledMatrix:
+    """Return a matrix with its values dense, and coordinates where it has any."""
+    values: Any = matrix.values if isinstance(matrix, LabelledMatrix) else matrix
+    coordinates = matrix.coordinates if isinstance(matrix, LabelledMatrix) else None
+    is_sparse = bool(sparse.issparse(values))
+    try:
+        is_small = is_sparse and max(values.shape) <= MOST_COORDINATES
+        dense = np.array(values.toarray() if is_small else values, dtype=np.float64)
+    except (TypeError, ValueError):
+        dense = np.zeros(0)
+    if dense.ndim != 2:
+        expected = f"a square matrix, as an array of NumPy or SciPy of order {MOST_COORDINATES} at most"
+        refuse([Finding(_part(name), "", values, expected)], HousingError)
+    return LabelledMatrix(dense, coordinates)
+
+
+def _coordinates_of_rows(nodes: Sequence[int] | Mapping[int, Sequence[int]], order: int) -> tuple[Coordinate, ...]:
+    """Coordinates of rows without names; those of no node are internal, with their places as numbers."""
+    if not isinstance(nodes, Mapping):
+        if 6 * len(nodes) > order or not nodes:
+            expected = f"at least one node, and six rows for each: the order of the stiffness is {order}"
+            refuse([Finding(("reduced housing", ""), "nodes", tuple(nodes), expected)], HousingError)
+        nodes = {node: range(6 * place, 6 * place + 6) for place, node in enumerate(nodes)}
+    coordinates = [(row + 1, 0) for row in range(order)]
+    free = set(range(order))
+    for node, rows in nodes.items():
+        if len(rows) not in (3, 6) or len(set(rows)) < len(rows) or not free.issuperset(rows):
+            expected = f"six rows or three for each node, from 0 to {order - 1} and of no other node"
+            refuse([Finding(("node", str(node)), "rows", tuple(rows), expected)], HousingError)
+        free.difference_update(rows)
+        for axis, row in enumerate(rows, start=1):
+            coordinates[row] = (int(node), axis)
+    return tuple(coordinates)
 
 
 def _in_si(matrix: FloatArray, coordinates: Sequence[Coordinate], units: str) -> FloatArray:

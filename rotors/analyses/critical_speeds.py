@@ -19,15 +19,15 @@ from gearwhine.rotors.errors import RotorError, require, require_count
 from gearwhine.rotors.model.bearing import Bearing, undamped
 from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
-from gearwhine.rotors.whirl.completeness import NO_OSCILLATION
+from gearwhine.rotors.whirl.completeness import NO_OSCILLATION, is_conservative
 from gearwhine.rotors.whirl.eigenvalues import SYNCHRONOUS
 from gearwhine.rotors.whirl.modal_projection import ModalProjection
 from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT, planar_basis
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
 
-# Number of speeds at which bearing tables are searched, and the factor beyond them up to which branches are followed.
-TABLE_SPEEDS = 60
-TABLE_REACH = 1.2
+# Number of speeds of a diagram that is searched, and the factor beyond them up to which branches are followed.
+DIAGRAM_SPEEDS = 60
+DIAGRAM_REACH = 1.2
 
 
 @dataclass(frozen=True)
@@ -75,18 +75,18 @@ def critical_speeds(
     speed_limit: float | None = None,
     count: int | None = None,
 ) -> CriticalSpeeds:
-    """Undamped critical speeds: where a whirl frequency equals the speed of rotation.
+    """Undamped critical speeds: where a whirl frequency Im λ in undamped bearings equals the speed of rotation Ω.
 
-    With Ω = ω the gyroscopic term joins the mass, and all of them are roots of one eigenproblem,
+    In bearings of constant symmetric stiffness λ = iω, the gyroscopic term joins the mass at Ω = ω, and all of them are
+    roots of one eigenproblem,
 
         K q = ω² [[M, −i G], [i G, M]] q
 
     over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
-    Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
-    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying
-    whirl), and the real part of ω is given; of those with Re ω² ≤ 0 none is a critical speed: such a root is a forward
-    whirl that the disc takes away. Damping is left out, which is the usual definition; the damped whirl
-    frequency crosses a little elsewhere, where `gearwhine.rotors.Campbell.crossings` has it.
+    Where stiffness depends on speed or its cross-coupling drives whirl (k_xy ≠ k_yx, λ with a real part), they are the
+    crossings of a Campbell diagram of 60 speeds: in the range that the tables share, or of constants from rest to
+    1.2 times the highest root of the eigenproblem. Damping is left out, which is the usual definition; the damped
+    whirl frequency crosses a little elsewhere, where `gearwhine.rotors.Campbell.crossings` has it.
 
     Parameters
     ----------
@@ -104,25 +104,28 @@ def critical_speeds(
     """
     free = [undamped(bearing) for bearing in bearings]
     chosen = planar_basis(rotor, free, speed_limit, count)
-    if any(bearing.speeds is not None for bearing in free):
-        return _tabled_critical_speeds(rotor, free, speed_limit, count)
+    tables = [bearing.speeds for bearing in free if bearing.speeds is not None]
+    if tables:
+        low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
+        high = min(high, speed_limit or np.inf)
+        require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
+        return _crossed_speeds(rotor, free, low, high, speed_limit, count)
     sets = [ModalProjection.of(rotor, free, blocks, chosen) for blocks in coupled_motions(free)]
     roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
     speeds = roots.eigenvalues.imag
+    if speeds.size and not is_conservative(free):
+        high = speed_limit or DIAGRAM_REACH * float(speeds.max())
+        return _crossed_speeds(rotor, free, 0.0, high, speed_limit, count or speeds.size)
     order = np.argsort(speeds)
     motion = roots.motion
     return CriticalSpeeds(speeds[order], motion.direction[order], motion.axial_share[order], certificate)
 
 
-def _tabled_critical_speeds(
-    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None
+def _crossed_speeds(
+    rotor: Rotor, bearings: Sequence[Bearing], low: float, high: float, limit: float | None, count: int | None
 ) -> CriticalSpeeds:
-    """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
-    tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]
-    low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
-    high = min(high, limit or np.inf)
-    require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
-    diagram = campbell(rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high)
+    """Crossings of the Campbell diagram between two speeds."""
+    diagram = campbell(rotor, bearings, np.linspace(low, high, DIAGRAM_SPEEDS), frequency_limit=DIAGRAM_REACH * high)
     crossings = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
     speeds = np.array([crossing.speed for crossing in crossings])
     proof = ModeCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")

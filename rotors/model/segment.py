@@ -112,9 +112,9 @@ class Segment:
     Parameters
     ----------
     length, outer_diameter, inner_diameter : float
-        Length and diameters [m]; the bore (inner diameter) may be zero. For a cone, diameters at its left end.
+        Length and diameters [m]; the bore (inner diameter) is zero by default. For a cone, diameters at its left end.
     material : ElasticMaterial
-        Material of the segment.
+        Material of the segment; by its name where the bore is left out, ``material=STEEL``.
     shear_coefficient : ShearFormula or float
         ``"cowper"``, ``"hutchinson"``, or the number κ itself.
     right_outer_diameter, right_inner_diameter : float or None
@@ -131,8 +131,8 @@ class Segment:
 
     length: float
     outer_diameter: float
-    inner_diameter: float
-    material: ElasticMaterial
+    inner_diameter: float = 0.0
+    material: ElasticMaterial = None  # type: ignore[assignment]  # has to be given: None is refused
     shear_coefficient: ShearFormula | float = "cowper"
     right_outer_diameter: float | None = None
     right_inner_diameter: float | None = None

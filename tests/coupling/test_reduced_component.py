@@ -107,3 +107,30 @@ def test_a_free_housing_takes_part_in_gravity() -> None:
 def test_a_held_housing_does_not() -> None:
     mass, stiffness, coordinates = craig_bampton()
     assert reduced(ReducedMatrices(mass, stiffness, coordinates)).participation is None
+
+
+def test_a_machine_on_pedestals_of_arrays_sinks_by_their_compliance() -> None:
+    # A force F amid a shaft on two pedestals: each sinks by F / 2k. Alone each has the frequency √(k / m) three times.
+    stiffness, mass, force = 2e8, 5.0, 1e3
+    arrays = {
+        "mass": np.diag([mass] * 3 + [0.05] * 3 + [mass] * 3 + [0.05] * 3),
+        "stiffness": np.diag(([stiffness] * 3 + [1e6] * 3) * 2),
+    }
+    matrices = matrices_of(arrays, nodes={0: range(6), 1: range(6, 12)})
+    places = (0.05, 0.35)
+    seats = [NodeSeat(f"at {z}", node, (0.0, 0.0, z)) for node, z in enumerate(places)]
+    pedestals = ReducedHousing(matrices, seats, limit=LIMIT)
+    shaft = gw.Shaft(gw.Rotor("shaft", [gw.Segment(0.4, 0.03, material=gw.STEEL)]))
+    bearings = [gw.MountedBearing(gw.Bearing.isotropic(f"at {z}", z, 1e8), "shaft", f"at {z}") for z in places]
+    machine = gw.Machine([shaft], bearings, housing=pedestals, forces=[gw.ShaftForce("shaft", 0.2, (0.0, -force, 0.0))])
+    point = gw.Study(machine).operating_point().dataset
+    np.testing.assert_allclose(point["seat_displacement"].values[:, 1], -0.5 * force / stiffness, rtol=1e-9)
+    alone = gw.HousingStudy(pedestals)
+    document = alone.modes().document["reduced_housing"]
+    natural = np.sqrt(stiffness / mass) / (2.0 * np.pi)
+    assert sum(abs(mode["frequency_hz"] / natural - 1.0) < 1e-9 for mode in document["modes"]) == 6
+    assert alone.compare([2.0 * np.pi * natural]).document["pairs"][0]["error_percent"] == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(gw.HousingError, match="expected a housing with its mesh"):
+        alone.survey(3)
+    with pytest.raises(gw.CouplingError, match=r"result of Housing\.modes\(\), a ReducedHousing, or None"):
+        replace(machine, housing=arrays)  # type: ignore[arg-type]

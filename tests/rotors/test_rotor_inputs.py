@@ -71,6 +71,7 @@ def test_rotor_sums_its_parts_and_merges_its_stations() -> None:
         (lambda: ShaftMaterial(1.0, 1.0, math.nan), "density is nan"),
         (lambda: ShaftMaterial.from_poisson_ratio(1.0, 0.6, 1.0), "poisson_ratio is 0.6"),
         (lambda: Segment(0.0, 0.03, 0.0, STEEL), "segment: length is 0; expected a finite number above 0 m"),
+        (lambda: Segment(0.1, 0.03), "segment: material: expected a material"),
         (lambda: Segment(0.1, 0.03, 0.03, STEEL), "less than the outer diameter"),
         (lambda: Segment(0.1, 0.03, 0.0, ShaftMaterial(2e11, 2e10, 1.0)), "check the moduli"),
         (lambda: Segment(0.1, 0.03, 0.0, STEEL, "timoshenko"), "'cowper', 'hutchinson' or a number"),  # type: ignore[arg-type]

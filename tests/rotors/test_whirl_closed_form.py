@@ -1,6 +1,7 @@
 """Whirl of a rigid rotor on two bearings, where every root is a quadratic; and what a basis must not change."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -110,13 +111,19 @@ def test_critical_speeds_of_the_rigid_rotor() -> None:
     # A thin disc, I_p > I_t, has no forward conical critical speed.
     thin = critical_speeds(rigid_rotor(polar=1.2), isotropic())
     np.testing.assert_allclose(thin.speeds, [math.sqrt(tilt / 2.0), cylinder, cylinder], rtol=1e-8)
-    # Nor in bearings that drive it, though its root i √(...) then has a real part.
-    driving = 0.1j * STIFFNESS * np.array([1.0, 1.0, -1.0])
-    squares = (STIFFNESS + driving) / STIFFNESS * [tilt / 2.0, cylinder**2, cylinder**2]
-    skew = critical_speeds(
-        rigid_rotor(polar=1.2), pair(STIFFNESS * np.array([[1.0, 0.1], [-0.1, 1.0]]), np.zeros((2, 2)))
-    )
-    np.testing.assert_allclose(skew.speeds, np.sqrt(squares).real, rtol=1e-8)
+    # Nor in bearings that drive it. With k_xy = −k_yx = k/10 the backward conical whirl λ = a + iΩ grows,
+    # I_t λ² + i I_p Ω λ + 2 k a² (1 − i/10) = 0: (I_t + I_p) Ω⁴ − 2 k a² Ω² − I_t (2 k a² / (20 I_t + 10 I_p))² = 0.
+    driving = STIFFNESS * np.array([[1.0, 0.1], [-0.1, 1.0]])
+    polar = 1.2
+    quartic = [DIAMETRAL + polar, -tilt, -DIAMETRAL * (0.1 * tilt / (2.0 * DIAMETRAL + polar)) ** 2]
+    conical = math.sqrt(np.roots(quartic).max())
+    expected = [conical, *[math.sqrt(STIFFNESS * 2.0 / MASS) * np.sqrt(1.0 + 0.1j).real] * 2]
+    constant = pair(driving, np.zeros((2, 2)))
+    np.testing.assert_allclose(critical_speeds(rigid_rotor(polar=polar), constant).speeds, expected, rtol=1e-8)
+    # The same numbers as a table over speed are the same bearing.
+    speeds = np.array([0.0, 1000.0])
+    tabled = [replace(b, stiffness=[b.stiffness] * 2, damping=[b.damping] * 2, speeds=speeds) for b in constant]
+    np.testing.assert_allclose(critical_speeds(rigid_rotor(polar=polar), tabled).speeds, expected, rtol=1e-8)
 
 
 def test_attached_loads_make_static_compliance_exact() -> None:

@@ -23,6 +23,7 @@ from reduced_frames import (
     write_dmig,
     write_matrix_market,
 )
+from scipy import sparse
 
 from gearwhine.housing import HousingError
 from gearwhine.housing.reduced import (
@@ -140,6 +141,39 @@ def test_motion_without_mass_responds_statically() -> None:
     assert compliance == pytest.approx(other / (other**2 - across**2), rel=1e-10)
 
 
+def test_arrays_whose_rows_are_given_by_node() -> None:
+    # The frame's rows shuffled, with a mass on a spring of three motions between them: its node has three rows.
+    mass, stiffness = (np.pad(one, (0, 4)) for one in frame())
+    mass[12:, 12:], stiffness[12:, 12:] = np.eye(4), np.diag([4e6, 5e6, 6e6, 7e6])
+    order = np.random.default_rng(1).permutation(16)
+    place = np.argsort(order)
+    nodes = {101: place[:6], 205: place[6:12], 7: place[12:15]}
+    shuffled = {"mass": sparse.csc_array(mass[np.ix_(order, order)]), "stiffness": stiffness[np.ix_(order, order)]}
+    matrices = reduced_matrices(shuffled, nodes)
+    sensor = NodeSensor("mass", 7, (0.0, 1.0, 0.0), (0.0, 1.0, 0.0))
+    housing = free_frame(matrices=matrices, sensors=[sensor])
+    expected = np.sort([*closed_form(), *np.sqrt([4e6, 5e6, 6e6, 7e6])])
+    np.testing.assert_allclose(housing.modes.frequencies[6:], expected, rtol=1e-8)
+    moved = np.flatnonzero(np.abs(housing.sensor_motions()["mass"]) > 0.5)
+    np.testing.assert_allclose(housing.modes.frequencies[moved], np.sqrt(5e6), rtol=1e-8)
+
+
+def test_wrong_rows_of_arrays_are_named() -> None:
+    mass, stiffness = frame()
+    for nodes in ({1: range(6), 2: range(5, 11)}, {1: range(4)}, {1: range(7, 13)}):
+        with pytest.raises(HousingError, match="six rows or three for each node, from 0 to 11"):
+            reduced_matrices({"mass": mass, "stiffness": stiffness}, nodes)
+    with pytest.raises(HousingError, match="expected 'stiffness', with 'mass'"):
+        reduced_matrices({"mass": mass, "K": stiffness}, (1, 2))
+    with pytest.raises(HousingError, match="as an array of NumPy or SciPy"):
+        reduced_matrices({"mass": mass, "stiffness": stiffness[0]}, (1, 2))
+    counted_from_0 = [(node, axis) for node in (1, 2) for axis in range(6)]
+    for coordinates in (counted_from_0, [(0, axis) for axis in range(7, 19)], range(12)):
+        with pytest.raises(HousingError, match="1 to 3 along x, y, z, 4 to 6 about them") as refused:
+            ReducedMatrices(mass, stiffness, coordinates)  # type: ignore[arg-type]
+        assert len(str(refused.value).splitlines()) == 1
+
+
 def test_rows_by_order_with_internal_coordinates(tmp_path: Path) -> None:
     mass, stiffness = (np.pad(matrix, (0, 1)) for matrix in frame())
     mass[12, 12], stiffness[12, 12] = 1.0, 4e6
@@ -147,7 +181,7 @@ def test_rows_by_order_with_internal_coordinates(tmp_path: Path) -> None:
     read = {name: read_matrix(write_matrix_market(tmp_path / f"{name}.mtx", one)) for name, one in files.items()}
     matrices = reduced_matrices(read, nodes=(101, 205))
     assert matrices.nodes == (101, 205)
-    assert matrices.coordinates[-1] == (1, 0)
+    assert matrices.coordinates[-1] == (13, 0)
     housing = free_frame(matrices=matrices)
     assert np.isclose(housing.modes.frequencies, 2000.0, rtol=1e-12).sum() == 1
     with pytest.raises(HousingError, match="six rows for each: the order of the stiffness is 13"):
