@@ -303,7 +303,7 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(  # type: ignore[override]  # a case may have a housing of reduced matrices
+    def modes(  # a case may have a housing of reduced matrices
         self, *, detail: bool = False
     ) -> "Result[HousingModes] | Result[ReducedHousing]":
         """Natural modes of the housing, certified complete, with checks of the model.
