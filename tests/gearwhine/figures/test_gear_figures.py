@@ -30,7 +30,7 @@ from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.gears.loaded.transmission_error import along_one_pair
 from gearwhine.figures import draw_gear_pairs, save, save_all
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern, over_flank
-from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
+from gearwhine.figures.gears.teeth import _ring, draw_flank_charts, draw_tooth_pair, has_charts
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
 from gearwhine.from_case.machine import solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs
@@ -266,3 +266,13 @@ def test_every_pair_has_its_files(tmp_path: Path) -> None:
         "flanks.png",
     ]
     assert said == ["drawing gear pair a/$b$ → ö ö", "drawing gear pair A/$B$ → ö ö"]
+
+
+@pytest.mark.parametrize("place", [(0.0, -50.0), (30.0, 40.0)])
+def test_the_outline_of_a_ring_encloses_its_rim_alone(place: tuple[float, float]) -> None:
+    """Area within the outline, by its sides: π R² less the inside, which is passed the other way round."""
+    centre, around = np.array(place), np.linspace(0.0, 2.0 * math.pi, 2000, endpoint=False)
+    inside = centre + 60.0 * np.column_stack([np.cos(around), np.sin(around)])
+    x, y = _ring(inside, centre, 80.0).T
+    area = 0.5 * abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    assert area == pytest.approx(math.pi * (80.0**2 - 60.0**2), rel=5e-3)

@@ -27,6 +27,7 @@ from gearwhine.results import (
     update,
 )
 from gearwhine.results import run as motion
+from gearwhine.results.motion import plain
 from gearwhine.results_folder import export_sections
 from gearwhine.sweep.resolution import peak_warnings
 
@@ -793,3 +794,17 @@ def test_sound_over_time_is_doubted_beyond_half_a_decibel(error: float, told_of:
     )
     assert [one["message"] for one in warnings] == [f"{begins}an error of {size}" for size in told_of]
     assert [one["relative"] for one in warnings] == [error] * len(told_of)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "told_as"),
+    [
+        (7.04e5, 2, "700000"),
+        (987654.0, 6, "987654"),
+        (0.012345, 3, "0.0123"),
+        (1234.5, 2, "1200"),
+        (9.999e5, 2, "1e+06"),
+    ],
+)
+def test_numbers_below_a_million_have_no_exponent(value: float, digits: int, told_as: str) -> None:
+    assert plain(value, digits) == told_as
