@@ -1124,7 +1124,7 @@ class Machine:
             if flank == "reversed":
                 refuse([Finding(part, "", None, POWER_FROM_THE_DRIVER)], CouplingError)
             if flank == "back" and pair.backlash_of(geometry) is None:
-                refuse([Finding(part, "backlash", "None", BACKLASH_OF_A_BRAKE)], CouplingError)
+                refuse([Finding(part, "backlash", None, BACKLASH_OF_A_BRAKE)], CouplingError)
 
     def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")

@@ -80,9 +80,10 @@ def table_findings_of_speeds(
         yield Finding(part, "speeds", speeds, expected)
 
 
-POWER_FROM_THE_DRIVER = "power to flow from driver to driven; swap the two names"
+POWER_FROM_THE_DRIVER = "power to flow from driver to driven, in the frame of planets' carrier; swap the two names"
 BACKLASH_OF_A_BRAKE = (
-    "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet without one"
+    "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet without one; "
+    "standard gears at their standard distance have none: give their tooth_thinning, or the backlash of the pair"
 )
 
 

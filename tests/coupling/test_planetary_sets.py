@@ -243,7 +243,7 @@ def _refusals() -> dict[str, tuple[dict[str, Any], str]]:
         ),
         "reversed": (
             {**parts, "gear_pairs": [*pairs[:3], *(replace(one, driver="r", driven=one.driver) for one in pairs[3:])]},
-            "power to flow from driver to driven; swap the two names",
+            "power to flow from driver to driven, in the frame of planets' carrier; swap the two names",
         ),
     }
 

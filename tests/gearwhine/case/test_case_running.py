@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from gearwhine.case import CaseError, load_case, parse_case
+from gearwhine.coupling.description.arrangement import POWER_FROM_THE_DRIVER
 
 STEEL = {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7800}}
 
@@ -57,7 +58,7 @@ def test_shafts_alone_and_gears_without_a_pair_are_cases() -> None:
 def test_power_from_driven_to_driver_is_an_error() -> None:
     """In at a, out at c: b must drive c; the pair says otherwise."""
     output = [{"rotor": "c", "torque": "30 N*m"}]
-    expected = 'gear_pair[1] ("c" to "b"): expected power to flow from driver to driven; swap the two names'
+    expected = f'gear_pair[1] ("c" to "b"): expected {POWER_FROM_THE_DRIVER}'
     assert problems(gears([("a", "b"), ("c", "b")], output=output)) == [expected]
     assert parse_case(gears([("a", "b"), ("b", "c")], output=output)).parts.pair_torques == pytest.approx((30.0, 60.0))
     backwards = gears([("a", "b"), ("c", "b")], output=output, speed="-600 rpm")
