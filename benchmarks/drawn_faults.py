@@ -297,9 +297,10 @@ def draw(number: int, seed: int, under: list[str]) -> list[DrawnFault]:
 
     A line is drawn first and then its fault, so that a long table of names is no likelier than its lines are.
     """
-    from gearwhine.numerics.compiled import kernel_sources
+    from gearwhine.numerics.compiled import has_kernels, kernel_sources
 
-    kernels = {str(path.relative_to(ROOT)) for path in kernel_sources(ROOT)}
+    files = [path for room in ROOMS for path in (ROOT / room).rglob("*.py") if has_kernels(path)]
+    kernels = {str(source.relative_to(ROOT)) for path in files for source in kernel_sources(ROOT, path)}
     names = [str(path.relative_to(ROOT)) for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))]
     modules = {name: Module(name) for name in names if name.startswith(tuple(under)) and name not in kernels}
     kinds: dict[str, dict[tuple[str, int], list[DrawnFault]]] = defaultdict(lambda: defaultdict(list))

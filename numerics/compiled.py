@@ -7,15 +7,17 @@ costs several times the arithmetic of a step, and most of the compile time. Kern
 the first caller holds all arrays meanwhile. numba refuses to compile one that does make an array, even for the message
 of an error that ``a[:] = b`` could raise: write a loop.
 
-A called kernel is compiled on its own, and again within every kernel that inlines it. So few kernels call many, and
-kernels that only kernels call have no entry points from Python or C.
+numba optimises a called kernel on its own and makes machine code of it, and does both again within every kernel that
+calls it, however indirectly. A kernel that only kernels call has no entry points from Python or C, and is optimised in
+its callers alone. ``forceinline`` inlines it there; numba's ``inline="always"`` would infer its types at every call.
 
 Kernel cache: numba stamps a cached kernel with its own source file only. Its machine code also holds the kernels that
 it calls and the constants that it reads from other files, and would stay outdated when one of those changes. Here the
-folder's name is a digest of all sources of machine code and of the versions of numba, llvmlite and NumPy, so that
-changed sources find an empty folder. numba itself separates Python versions and processors. The folder stands below
-``NUMBA_CACHE_DIR`` where that is set, else beside the sources, else, where these are read-only, in the user's cache.
-Folders that no process has used for a month are removed.
+kernels of a file have a folder whose name is a digest of the file, of the files with kernels that it reaches by
+imports, of what these import from, and of the versions of numba, llvmlite and NumPy, so that changed sources find an
+empty folder. numba itself separates Python versions and processors. The folders stand below ``NUMBA_CACHE_DIR`` where
+that is set, else beside the sources, else, where these are read-only, in the user's cache. Those that no process has
+used for a month are removed.
 
 numba numbers the files of one kernel's machine code, a file for each signature. Two processes that compile different
 signatures at once choose the same number, and the index of the one may come to name the code of the other: arrays are
@@ -30,7 +32,7 @@ import re
 import shutil
 import time
 import uuid
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -39,8 +41,11 @@ from typing import Any, TypeVar, cast
 import llvmlite
 import numba
 import numpy as np
+from llvmlite.binding import parse_assembly
 from numba import njit
 from numba.core import event
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 # A product and the sum it goes into may be rounded once.
@@ -49,7 +54,6 @@ FUSED = {"contract"}
 FINITE = {"contract", "nnan", "ninf", "nsz"}
 _ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
-_PACKAGES = ("numerics", "rotors", "coupling")
 _UNUSED = 30 * 86400.0
 """Age of a folder that is removed [s]."""
 _KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
@@ -68,16 +72,43 @@ class _Log(event.Listener):
         pass
 
 
-event.register("numba:compile", _Log())  # type: ignore[no-untyped-call]
+event.register("numba:compile", _Log())
+
+
+class _LinkedCode(JITCodeLibrary):
+    """Code that callers link and optimise with their own: machine code is made of its environment alone."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+        linked = self._get_module_for_linking()
+        environment = [str(value) for value in linked.global_variables if value.name.startswith("_ZN08NumbaEnv")]
+        self._final_module = parse_assembly(
+            "\n".join([str(self._codegen._create_empty_module(self.name)), *environment])
+        )
+        super()._finalize_final_module()
+
+
+class _LinkedCompiler(Compiler):
+    """Compiler of a kernel that only kernels call."""
+
+    def compile_extra(self, function: Any) -> Any:
+        self.state.library = _LinkedCode(self.state.targetctx.codegen(), function.__qualname__)
+        self.state.library.enable_object_caching()
+        return super().compile_extra(function)
 
 
 def counted(**options: Any) -> Callable[[Kernel], Kernel]:
     """Compile a function that makes arrays; further options are numba's."""
+    if options.get("no_cpython_wrapper"):
+        options["pipeline_class"] = _LinkedCompiler
 
     def compiled(function: Kernel) -> Kernel:
         # numba reads the cache folder when it decorates; functions of other packages keep theirs.
         config: Any = numba.config
-        previous, config.CACHE_DIR = config.CACHE_DIR, cache_folder()
+        previous, config.CACHE_DIR = config.CACHE_DIR, cache_folder(Path(function.__code__.co_filename))
         try:
             kernel: Any = njit(**(_ALL | options))(function)
         finally:
@@ -106,60 +137,62 @@ def inner(**options: Any) -> Callable[[Kernel], Kernel]:
     return uncounted(no_cpython_wrapper=True, **options)
 
 
-def kernel_sources(root: Path) -> list[Path]:
-    """List the sources of the machine code: files with kernels, and the files that these import from.
+def has_kernels(path: Path) -> bool:
+    """Whether a file has kernels."""
+    return _KERNELS.search(path.read_bytes()) is not None
+
+
+def kernel_sources(root: Path, path: Path) -> list[Path]:
+    """List the sources of the machine code of a file's kernels.
 
     Parameters
     ----------
     root : Path
         The folder that holds the packages ``numerics``, ``rotors`` and ``coupling``.
+    path : Path
+        The file.
 
     Returns
     -------
     list of Path
-        Paths, ascending.
+        Paths, ascending: the file, the files with kernels that it reaches by imports, and what these import from.
     """
-    sources: set[Path] = set()
-    for path in _python_files(root):
-        text = path.read_bytes()
-        if _KERNELS.search(text):
-            sources.add(path)
-            sources.update(_imported(root, path, text))
+    sources, reached = {path}, [path]
+    while reached:
+        new = set(_imported(root, reached.pop())) - sources
+        sources |= new
+        reached.extend(filter(has_kernels, new))
     return sorted(sources)
 
 
-def _python_files(root: Path) -> Iterable[Path]:
-    for package in _PACKAGES:
-        yield from sorted((root / package).rglob("*.py"))
-
-
-def _imported(root: Path, path: Path, text: bytes) -> Iterable[Path]:
+@cache
+def _imported(root: Path, path: Path) -> tuple[Path, ...]:
     """Files of the packages that a file imports names from."""
-    for match in _IMPORT.findall(text):
+    found: list[Path] = []
+    for match in _IMPORT.findall(path.read_bytes()):
         name = match.decode()
         dots = len(name) - len(name.lstrip("."))
         folder = path.parents[dots - 1] if dots else root
         module = folder.joinpath(*filter(None, name.split(".")))
-        for source in (module.with_suffix(".py"), module / "__init__.py"):
-            if source.is_file():
-                yield source
+        found += [source for source in (module.with_suffix(".py"), module / "__init__.py") if source.is_file()]
+    return tuple(found)
 
 
-def sources_digest(root: Path) -> str:
-    """Digest of the sources' bytes and of the compiler's versions."""
+def sources_digest(root: Path, path: Path) -> str:
+    """Digest of the bytes of the sources of a file's kernels, and of the compiler's versions."""
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {np.__version__}".encode())
-    for path in kernel_sources(root):
-        text = path.read_bytes()
-        digest.update(f"\n{path.relative_to(root).as_posix()} {len(text)}\n".encode())
+    for source in kernel_sources(root, path):
+        text = source.read_bytes()
+        digest.update(f"\n{source.relative_to(root).as_posix()} {len(text)}\n".encode())
         digest.update(text)
     return digest.hexdigest()[:16]
 
 
 @cache
-def cache_folder() -> str:
-    """Folder of this process's kernels, made where it can be; empty where there is none to write to."""
-    root = Path(__file__).resolve().parents[1]
-    name = f"kernels-{sources_digest(root)}"
+def cache_folder(path: Path) -> str:
+    """Folder of the kernels of a file, made where it can be; empty where there is none to write to."""
+    path, root = path.resolve(), Path(__file__).resolve().parents[1]
+    name = f"kernels-{sources_digest(root, path)}"
     configured = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # numba takes it from the environment
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "gearwhine"
     for base in [Path(configured)] if configured else [root / "numerics" / "__pycache__", user]:
@@ -173,6 +206,7 @@ def cache_folder() -> str:
     return configured
 
 
+@cache
 def _remove_unused(base: Path) -> None:
     """Remove folders of kernels that no process has used for a month."""
     for folder in base.glob("kernels-*"):

@@ -46,7 +46,7 @@ def flank_gap(
     return value, rate
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def evaluate_contact(
     contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray, row: int
 ) -> None:
@@ -57,7 +57,7 @@ def evaluate_contact(
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def evaluate_tangents(
     contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray
 ) -> None:
@@ -67,7 +67,7 @@ def evaluate_tangents(
     laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING] = law[0], law[1], law[2]
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def _evaluate_with_energy(
     contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray
 ) -> None:
@@ -77,7 +77,7 @@ def _evaluate_with_energy(
     laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING], laws[k, ENERGY] = law[0], law[1], law[2], law[3]
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def energy_at(
     contacts: Contacts, k: int, nominal_time: float, delta: float, laws: FloatArray, known: float, rate: float
 ) -> float:
@@ -123,7 +123,7 @@ def evaluate_friction(
     drag[2], drag[3] = viscous * a, viscous * b
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def evaluate_forces(contacts: Contacts, bearings: Bearings, nominal_time: float, scratch: Scratch) -> None:
     """Evaluate all nonlinear laws at the deflections and rates in ``scratch``: teeth, their friction, bearings.
 
@@ -210,7 +210,7 @@ def _follow_tangents(contacts: Contacts, bearings: Bearings, per: float, scratch
                 push[c + i] += scratch.tangents[number, i - first, j - first] * step[c + j, 0]
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def solve_contact_forces(
     contacts: Contacts,
     bearings: Bearings,

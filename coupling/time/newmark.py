@@ -229,7 +229,7 @@ def _work_on_teeth(contacts: Contacts, nominal_time0: float, nominal_time: float
     return 0.5 * work
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def _keep_teeth(contacts: Contacts, scratch: Scratch) -> None:
     """Keep compressions, rates and laws of the teeth for the end of the next step."""
     for k in range(contacts.phase.size):

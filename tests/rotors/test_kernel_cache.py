@@ -21,6 +21,7 @@ from gearwhine.numerics.compiled import counted
 COMPILED = Path(compiled.__file__).parent
 HOME = compiled.__name__.rpartition(".")[0]
 ROOMS = COMPILED.resolve().parent
+BANDED = ROOMS / "numerics" / "banded_kernels.py"
 
 
 def packages(root: Path) -> Path:
@@ -67,19 +68,23 @@ def test_a_changed_called_kernel_or_constant_is_compiled_anew(tmp_path: Path) ->
     package, compiling = packages(tmp_path), ["compiling g", "compiling f"]
     assert run(tmp_path) == (4.0, 0, compiling)
     assert run(tmp_path) == (4.0, 1, [])
-    called = package / "called.py"
+    caller, called = package / "caller.py", package / "called.py"
     called.write_text(called.read_text().replace("x + OFFSET", "x - OFFSET"))
     assert run(tmp_path) == (0.0, 0, compiling)
+    caller.write_text(caller.read_text().replace("2.0", "5.0"))
+    assert run(tmp_path) == (0.0, 0, compiling[:1])
     (package / "constants.py").write_text("OFFSET = 3.0\n")
-    assert run(tmp_path) == (-4.0, 0, compiling)
+    assert run(tmp_path) == (-10.0, 0, compiling)
 
 
-def test_the_digest_covers_every_kernel_and_what_it_imports() -> None:
+def test_the_digest_covers_every_kernel_that_a_file_reaches_and_what_it_imports() -> None:
     kernels = [factor, evaluate_contact, friction_history, penetration, by_pairs]
     files = {Path(kernel.py_func.__code__.co_filename).resolve() for kernel in kernels}  # type: ignore[attr-defined]
     files |= {Path(function.__code__.co_filename).resolve() for function in (counted, law_table)}
     assert len(files) >= 6
-    assert files <= set(compiled.kernel_sources(ROOMS))
+    integration = ROOMS / "coupling" / "collocation" / "integration_kernels.py"
+    assert files - set(compiled.kernel_sources(ROOMS, integration)) == {BANDED}
+    assert compiled.kernel_sources(ROOMS, BANDED) == sorted([BANDED, COMPILED.resolve() / "compiled.py"])
 
 
 def test_folders_not_used_for_a_month_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -93,7 +98,7 @@ def test_folders_not_used_for_a_month_go(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     compiled.cache_folder.cache_clear()
     try:
-        folder = Path(compiled.cache_folder())
+        folder = Path(compiled.cache_folder(BANDED))
     finally:
         compiled.cache_folder.cache_clear()
     assert folder.parent == tmp_path

@@ -70,14 +70,14 @@ _SETTLED = 1e-6
 """Correction of the pairs' compression after which their energy is exact to rounding."""
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def law_value(law: FloatArray, index: int) -> float:
     """Return the number of the contact law at a non-negative index."""
     value: float = law[np.uint64(index)]
     return value
 
 
-@inner(inline="always")
+@inner(forceinline=True)
 def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, float]:
     """Whole periods, interval of the period, position in it from 0 to 1, and one over its width."""
     number = np.floor(phase)
@@ -94,7 +94,7 @@ def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, f
     return number, interval, (x - law_value(law, place)) * per_width, per_width
 
 
-@inner(fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, forceinline=True)
 def penetration(
     law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, place: int
 ) -> tuple[float, int]:
@@ -110,7 +110,7 @@ def penetration(
     return compression - g0 - u * (g1 + u * (law_value(law, place + 2) + u * law_value(law, place + 3))), place
 
 
-@inner(fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, forceinline=True)
 def face_force(
     law: FloatArray, cell: int, unit: float, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float, float]:
@@ -155,7 +155,7 @@ def face_force(
     return force, tangent, energy, slope
 
 
-@inner(fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, forceinline=True)
 def face_force_and_tangent(
     law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float]:
@@ -182,7 +182,7 @@ def face_force_and_tangent(
     return force, by_r * per_r, curvature
 
 
-@inner(fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, forceinline=True)
 def pair_force_and_tangent(
     law: FloatArray, at: int, place: int, u: float, approach: float
 ) -> tuple[float, float, float]:
@@ -205,7 +205,7 @@ def pair_force_and_tangent(
     return k * approach, k, 0.0
 
 
-@inner(fastmath={"contract"}, inline="always")
+@inner(fastmath={"contract"}, forceinline=True)
 def pairs_compression(
     law: FloatArray, at: int, number: float, interval: int, u: float, compression: float, precision: float
 ) -> tuple[float, float]:
