@@ -9,6 +9,7 @@ from cyclopts import Parameter
 from gearwhine.cli.common import Common, hand_over
 
 if TYPE_CHECKING:
+    from gearwhine.exchange.rexs import ImportedCase
     from gearwhine.output.sections import Document, Section
 
 
@@ -36,6 +37,7 @@ def import_(
     json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
         False
     ),
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative=(), help="As of all commands.")] = False,
 ) -> None:
     """Make a case of a gear unit in a REXS file, and list what was assumed, changed and left out.
 
@@ -43,7 +45,9 @@ def import_(
     """
     from gearwhine.output.terminal import shown_by
 
-    hand_over(_import(file, output, load_case, housing, mass, mapping), Common(json=json), shown_by(_sections))
+    hand_over(
+        _import(file, output, load_case, housing, mass, mapping), Common(json=json, quiet=quiet), shown_by(_sections)
+    )
 
 
 def _import(
@@ -89,8 +93,30 @@ def _import(
     return {
         "folder": str(target.parent),
         "files": [target.name],
+        "case": str(target),
+        **_summary(imported),
         "imported": document_of(IMPORTED, imported),
         "warnings": [{"key": "case", "message": message} for message in warnings],
+    }
+
+
+def _summary(imported: "ImportedCase") -> dict[str, Any]:
+    """Return the number of parts by table of the case, what it has not, and values that the file does not have."""
+    from gearwhine.case.errors import NOTHING, key_of, look_up
+
+    def value(place: tuple[str | int, ...]) -> object:
+        found = look_up(imported.document, place) if place else NOTHING
+        return None if found is NOTHING else found
+
+    notes = imported.notes
+    return {
+        "taken": {kind: len(entries) for kind, entries in imported.document.items() if isinstance(entries, list)},
+        "left_out": [{"component": one.about, "why": one.text} for one in notes if one.kind == "left out"],
+        "assumed": [
+            {"key": key_of(one.at) if one.at else "", "value": value(one.at), "why": f"{one.about}: {one.text}"}
+            for one in notes
+            if one.kind == "assumed"
+        ],
     }
 
 

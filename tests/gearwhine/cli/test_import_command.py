@@ -1,6 +1,7 @@
 """The front doors to REXS files: `gearwhine import`, `check` on such a file, and `gw.load`."""
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,14 @@ def test_another_load_case_and_another_place(folder: Path, capsys: pytest.Captur
     assert document["files"] == ["second.toml"]
     assert document["imported"]["load_cases"][0].startswith("load case 2")
     assert {note["kind"] for note in document["imported"]["notes"]} == {"assumed", "changed", "left out"}
+    assert document["case"] == "made/second.toml"
+    written = tomllib.loads((folder / "made" / "second.toml").read_text(encoding="utf-8"))
+    assert document["taken"] == {kind: len(table) for kind, table in written.items() if isinstance(table, list)}
+    assert any(one["component"].startswith("lubricant") for one in document["left_out"])
+    assert any("no profile shift" in one["why"] for one in document["assumed"])
+    for one in document["assumed"]:
+        assert one.keys() == {"key", "value", "why"}
+        assert one["key"] or one["value"] is None
     operation = load_case(folder / "made" / "second.toml").case.operation
     assert operation is not None
     assert operation.torque == 40.0
