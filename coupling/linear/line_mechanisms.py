@@ -308,7 +308,7 @@ class LineMechanisms:
         rate, periods = 2.0 * np.pi * abs(contact.mesh_frequency), contact.contact.hunting_period
         order = round(frequency / rate)
         alike, _ = self.model.alike[number]
-        swings = number in self.model.swinging_meshes
+        swings = periods == 1 and number in self.model.swinging_meshes
         if order > 0 and abs(order * rate - frequency) <= reach:
             for swung in self.model.error_forces((number, order)) if swings else ():
                 if not any(swung.order):  # sidebands are among the loads of the system

@@ -436,10 +436,15 @@ class MeshHarmonicModel:
                 for law, _ in laws
             ]
             errors, varying = (np.array([getattr(one, name)[0] for one in under]) for name in ("error", "stiffness"))
-            found[number] = SwingingMesh(
-                {order: wave @ errors for order, wave in waves.items()},
-                {order: wave @ varying for order, wave in waves.items()},
+            by_turns, stiffness_by_turns = (
+                {order: wave @ one for order, wave in waves.items()} for one in (errors, varying)
             )
+            if contact.contact.hunting_period > 1:
+                # The mean over a turn has what differs between teeth, of which sidebands are left out.
+                mean = varying_mesh(number, contact, stiffness, self.meshes[number], between=False)
+                still = self.turning.model.still
+                by_turns[still], stiffness_by_turns[still] = mean.error[0], mean.stiffness[0]
+            found[number] = SwingingMesh(by_turns, stiffness_by_turns)
         return found
 
     @cached_property

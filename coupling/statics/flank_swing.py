@@ -56,9 +56,9 @@ LawsOverTurn = Mapping[int, Sequence[tuple[ToothContact, float]]]
 def swinging_laws(
     system: CoupledSystem, rest: tuple[Sequence[MeanMesh | None], FloatArray] | None = None
 ) -> LawsOverTurn:
-    """Laws and forces of the contacts whose gap over the face changes over a turn of the carriers.
+    """Laws of teeth alike and forces of the contacts whose gap over the face changes over a turn of the carriers.
 
-    Left out are contacts whose flanks part at an angle, and those of teeth that differ: their mean law stands.
+    Left out are contacts whose flanks part at an angle: their mean law stands.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def swinging_laws(
     swinging = [
         number
         for number, law in enumerate(laws)
-        if angles > 1 and law.faces is not None and len(law.faces.changes) == angles and law.hunting_period == 1
+        if angles > 1 and law.faces is not None and len(law.faces.changes) == angles
     ]
     found = dict[int, list[tuple[ToothContact, float]]]()
     for number, forces in forces_over_turn(system, rest).items() if swinging else ():
@@ -79,7 +79,8 @@ def swinging_laws(
         if number in swinging and faces is not None:
             gaps = [replace(faces, gap=faces.gap + change, changes=np.zeros((1, 1))) for change in faces.changes]
             found[number] = [
-                (replace(laws[number], faces=gap), force) for gap, force in zip(gaps, forces.tolist(), strict=True)
+                (replace(laws[number].teeth_alike, faces=gap), force)
+                for gap, force in zip(gaps, forces.tolist(), strict=True)
             ]
     return found
 
@@ -149,9 +150,12 @@ def swinging_shuttling(
 ) -> list[HarmonicLoad]:
     """Moments of load shuttling at mesh harmonics and their sidebands, of a contact whose flanks swing.
 
+    Of teeth that differ those at mesh harmonics are of the mean law, which has their differences.
+
     Parameters
     ----------
     face : MeshFace
+        With the mean law.
     contact : ContactConnector
     laws : sequence of (ToothContact, float)
         See `LawsOverTurn`.
@@ -165,11 +169,16 @@ def swinging_shuttling(
         }
         for law, force in laws
     ]
-    loads = []
+    loads, differ = list[HarmonicLoad](), face.contact.hunting_period > 1
+    if differ:
+        mean = float(np.mean([force for _, force in laws]))
+        loads += face.shuttling(mean, contact.phase, contact.mesh_frequency)[1]
     for frequency, load in sorted({w: load for loads in by_angle for w, load in loads.items()}.items()):
         nothing = np.zeros_like(load.amplitude)
         amplitudes = np.array([one[frequency].amplitude if frequency in one else nothing for one in by_angle])
         loads += [
-            replace(load, frequency=frequency + shift, amplitude=wave @ amplitudes) for shift, wave in waves.items()
+            replace(load, frequency=frequency + shift, amplitude=wave @ amplitudes)
+            for shift, wave in waves.items()
+            if shift != 0.0 or not differ
         ]
     return loads

@@ -187,15 +187,20 @@ def _left_lines(lines: Sequence[Document], load: Document) -> Iterator[str]:
 
 def _differences(load: Document) -> Iterator[str]:
     """Yield how unequal the planets of each set are under the mean load, and by what."""
+    over_turn = {one["name"]: one["load_shares"] for one in load.get("planetary_over_turn", ())}
     for one in load.get("planetary", ()):
-        shares = [planet["load_share"] for planet in one["planets"]]
+        means = over_turn.get(one["name"])
+        shares = [share["mean"] for share in means] if means else [planet["load_share"] for planet in one["planets"]]
         errors = [max(map(abs, planet["pin_error_m"])) for planet in one["planets"]]
         causes = [f"pins up to {1e6 * max(errors):.3g} µm off their places"] if max(errors) > 0.0 else []
         causes += ["gravity"] if load.get("gravity_m_per_s2") else []
         causes += ["a housing that yields differently around the set"] if load.get("seats") == "housing" else []
         by = f", by {' and '.join(causes)}" if causes else ""
-        listed = ", ".join(f"{share:.4f}" for share in shares)
-        yield f"The planets of {one['name']} carry {listed} of the torque{by}"
+        listed, mean = ", ".join(f"{share:.4f}" for share in shares), ""
+        if means:
+            least, most = min(share["min"] for share in means), max(share["max"] for share in means)
+            mean = f" in the mean over a turn, {least:.4f} to {most:.4f} at its angles"
+        yield f"The planets of {one['name']} carry {listed} of the torque{mean}{by}"
 
 
 def _beside_harmonic(row: Document) -> str:

@@ -726,8 +726,11 @@ def _content(document: Document) -> Iterator[str | Table]:
     phase = document.get("mesh_phase")
     about = "" if phase is None else f", the first pair's teeth at {phase:g} of their period"
     yield f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm{about}"
-    for mesh in document.get("mesh_stiffness", ()):
-        yield _mesh_sentence(mesh)
+    meshes = document.get("mesh_stiffness", ())
+    if len(meshes) > _MOST_MESH_SENTENCES:
+        yield from table_of(_MESH_COLUMNS, meshes, "Mesh stiffness [N/µm] between the rims, in series with the bodies")
+    else:
+        yield from map(_mesh_sentence, meshes)
     yield from (f"Gear body {line}." for line in gear_body_lines(document))
     yield from table_of(mode_columns(listed), listed)
     yield "Shares of the kinetic energy; teeth: share of the strain energy." + _whirl_legend(listed)
@@ -784,6 +787,17 @@ def _sum_rule(certificate: Document) -> str:
         f"missed by {size}: two of the modes are all but one, as at critical damping, so that the rule does not prove "
         "them complete; responses are solved directly, without them"
     )
+
+
+_MOST_MESH_SENTENCES = 3  # meshes beyond which their stiffness is a table
+_MESH_COLUMNS = (
+    Column("mesh", "name"),
+    Column("force [N]", "force_n", ".5g"),
+    Column("stiffness [N/µm]", "stiffness_n_per_m", ".4g"),
+    Column("taken", "taken"),
+    Column("mean without load [N/µm]", "unloaded_mean_n_per_m", ".4g"),
+    Column("gears' bodies behind the rims [N/µm]", "bodies_n_per_m", ".4g"),
+)
 
 
 def _mesh_sentence(mesh: Document) -> str:

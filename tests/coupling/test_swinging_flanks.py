@@ -241,6 +241,21 @@ def test_friction_of_flanks_that_swing_is_that_of_an_integration() -> None:
 
 
 @pytest.mark.slow
+def test_flanks_of_unequal_teeth_swing_as_those_of_an_integration() -> None:
+    """Pitch deviations of the ring, of a tenth of the teeth's deflection, return in a turn of the carrier."""
+    deviations = tuple((3e-7 * np.random.default_rng(3).standard_normal(RING)).tolist())
+    assembled = machine(PUSH, deviations=deviations)
+    contacts = assembled.system.contacts
+    gaps = np.array([contact.contact.pitch_gaps for contact in contacts[3:]])
+    expected = integrated(np.array([contact.phase for contact in contacts]), PUSH, gaps=gaps)
+    mechanisms, carrier = LineMechanisms(assembled), assembled.speeds["carrier"]
+    for turns in (-2, -1, 0, 1, 2):
+        parts, size = mechanisms.parts((RING + turns) * carrier), np.abs(expected[RING + turns])
+        found = [parts[name].together for name in "xy"]
+        assert found == pytest.approx(size.tolist(), abs=0.1 * size.max()), turns
+
+
+@pytest.mark.slow
 def test_motion_has_the_lines_of_flanks_that_swing() -> None:
     """Over the third turn of the carrier; its contact law knows neither lines nor orders."""
     assembled, count = machine(PUSH, SOFTER, mode_count=1), 4096
