@@ -273,6 +273,9 @@ def test_the_outline_of_a_ring_encloses_its_rim_alone(place: tuple[float, float]
     """Area within the outline, by its sides: π R² less the inside, which is passed the other way round."""
     centre, around = np.array(place), np.linspace(0.0, 2.0 * math.pi, 2000, endpoint=False)
     inside = centre + 60.0 * np.column_stack([np.cos(around), np.sin(around)])
-    x, y = _ring(inside, centre, 80.0).T
+    outline = _ring(inside, centre, 80.0)
+    x, y = outline.T
+    # The way in is straight across the rim.
+    assert np.linalg.norm(np.diff(outline, axis=0), axis=1).max() == pytest.approx(20.0, rel=1e-3)
     area = 0.5 * abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     assert area == pytest.approx(math.pi * (80.0**2 - 60.0**2), rel=5e-3)

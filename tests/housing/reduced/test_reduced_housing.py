@@ -366,12 +366,12 @@ def test_numbers_beyond_all_quantities_are_refused_by_their_place() -> None:
 
 
 def test_internal_coordinates_whose_mass_is_rounding_have_no_mode() -> None:
-    """Masses of 1 and 4 kg on springs of 9 and 100 N/m, beside two whose mass is a rounding error of either sign."""
+    """Masses of 1 and 4 kg on springs of 9 and 100 N/m, beside three whose mass is a rounding error."""
     matrices: Any = SimpleNamespace(
-        coordinates=[(number, 0) for number in range(4)],
-        mass=np.diag([1.0, -1e-18, 4.0, 1e-18]),
-        stiffness=np.diag([9.0, 5.0, 100.0, 6.0]),
+        coordinates=[(number, 0) for number in range(5)],
+        mass=np.diag([1.0, -1e-18, 4.0, -2e-18, 1e-18]),
+        stiffness=np.diag([9.0, 5.0, 100.0, 7.0, 6.0]),
     )
     assert _held_frequency(matrices) == pytest.approx(5.0)
-    matrices.mass = np.diag([-1e-18] * 4)
+    matrices.mass = np.diag([-1e-18] * 5)
     assert _held_frequency(matrices) is None
