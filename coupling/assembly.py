@@ -176,6 +176,12 @@ class CoupledMachine:
             for number, back in enumerate(_back_contacts(self.meshes))
         )
 
+    @property
+    def complete_below_hz(self) -> float | None:
+        """Frequency below which no mode of the housing is missing [Hz]; None without one, or of unknown modes."""
+        limit = None if self.housing is None else self.housing.complete_below
+        return None if limit is None else limit / (2.0 * math.pi)
+
     def rows(self, component: str, rows: FloatArray) -> FloatArray:
         """Rows over the coordinates of one component, shape (..., m), as rows over all of them, shape (..., n)."""
         components = self.system.components

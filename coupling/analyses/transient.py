@@ -324,8 +324,11 @@ def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
 
 
 def _trusted_limit(machine: CoupledMachine, fastest: float) -> float:
-    """Return the limit up to which the housing's modes are complete [Hz]; without a housing, that of the gears."""
-    if machine.housing is not None and machine.housing.complete_below is not None:
-        return machine.housing.complete_below / _TWO_PI
+    """Return the limit up to which the housing's modes are complete [Hz]; without a housing, that of the gears.
+
+    Only the first is one of trust: the second is how far a record and its pictures go.
+    """
+    if machine.complete_below_hz is not None:
+        return machine.complete_below_hz
     meshes = [fastest * abs(contact.mesh_frequency) for contact in machine.system.contacts]
     return _HARMONICS * max(meshes, default=1000.0)

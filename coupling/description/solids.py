@@ -151,6 +151,8 @@ def overlap_findings(
     radial: Iterable[str] = (),
     stand_ins: Iterable[str] = (),
     carriers: Mapping[str, str] | None = None,
+    *,
+    unplaced: bool = False,
 ) -> Iterator[Finding]:
     """Yield parts that stand in each other, each two of them once.
 
@@ -166,6 +168,8 @@ def overlap_findings(
         Gears whose body a disc at their place stands for.
     carriers : mapping of str to str, optional
         Carrier of each planet's shaft. A planet turns on its bearing, and its pin is in the carrier.
+    unplaced : bool
+        Whether nobody gave the axes of the shafts, which then all stand at one place.
     """
     carried = dict(carriers or {})
     pairs, holding, replaced = set(meshing), set(radial), set(stand_ins)
@@ -177,12 +181,18 @@ def overlap_findings(
                 break
             first, second = (one, other) if number < later else (other, one)
             key = frozenset(((first.part, first.attribute), (second.part, second.attribute)))
-            if key in found or not _foreign(first, second, pairs, holding, replaced) or _on_pin(first, second, carried):
+            if (
+                key in found
+                or not _foreign(first, second, pairs, holding, replaced, unplaced)
+                or _on_pin(first, second, carried)
+            ):
                 continue
             length = overlap(first, second)
             if length > 0.0:
                 found.add(key)
-                yield _overlapping(first, second, length)
+                # The axis at the origin is also that of shafts that stand for others, whose sizes mean little.
+                finding = _overlapping(first, second, length)
+                yield replace(finding, severity="warning") if first.axis == second.axis == (0.0, 0.0) else finding
 
 
 def _on_pin(first: PlacedSolid, second: PlacedSolid, carriers: Mapping[str, str]) -> bool:
@@ -205,6 +215,7 @@ def _foreign(
     meshing: set[frozenset[str]],
     radial: set[str],
     replaced: set[str],
+    unplaced: bool,
 ) -> bool:
     """Whether two solids are of parts that must be clear of each other."""
     kinds, names = (first.part[0], second.part[0]), (first.part[1], second.part[1])
@@ -221,8 +232,8 @@ def _foreign(
             others = [name for name, disc in zip(names, discs, strict=True) if not disc]
             return "gear" in kinds and not set(others) & replaced
         return True
-    if first.axis == second.axis == (0.0, 0.0):
-        return False  # shafts whose axes nobody gave
+    if unplaced and first.axis == second.axis:
+        return False
     if kinds == ("gear", "gear"):
         return frozenset(names) not in meshing
     return kinds != ("bearing", "bearing") and not _is_short(first, second)
@@ -470,7 +481,7 @@ def machine_findings(
         Diameters of the bores of seats [m], of shafts that are drawn with their journals: these go through bearings
         and seats. Without it a shaft may stand for one whose journals are left out.
     """
-    by_name = {shaft.name: shaft for shaft in shafts}
+    by_name, pairs = {shaft.name: shaft for shaft in shafts}, list(meshing)
     for shaft in shafts:
         yield from shaft_findings(shaft)
         yield from support_findings(shaft, [held for held in bearings if held.rotor == shaft.name])
@@ -497,7 +508,10 @@ def machine_findings(
     ]
     stand_ins = [mounted.name for mounted in gears if mounted.inertia is not None]
     carriers = {shaft.name: shaft.carrier for shaft in shafts if shaft.carrier is not None}
-    yield from overlap_findings(placed_solids(shafts, gears, bearings), meshing, radial, stand_ins, carriers)
+    # Gears in mesh cannot stand on one axis: where all shafts do, their centre distance alone is given.
+    unplaced = bool(pairs) and len({shaft.axis for shaft in shafts}) == 1
+    solids = placed_solids(shafts, gears, bearings)
+    yield from overlap_findings(solids, pairs, radial, stand_ins, carriers, unplaced=unplaced)
 
 
 def support_findings(shaft: Shaft, bearings: Sequence[MountedBearing]) -> Iterator[Finding]:

@@ -408,8 +408,9 @@ ENERGY = tuple(Quantity(key) for key in ("change", "loads", "lost", "teeth", "fr
 
 
 def _trusted(row: TracedTransient) -> dict[str, Any]:
-    """Return the frequency up to which a spectrum of the transient is complete [Hz]: above it modes are missing."""
-    return {"trusted_below_hz": float(row.transient.trusted_limit)}
+    """Return the frequency up to which a spectrum is complete [Hz]: above it modes of the housing are missing."""
+    limit = row.transient.machine.complete_below_hz
+    return {} if limit is None else {"trusted_below_hz": limit}
 
 
 def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tuple[Quantity, ...]:
@@ -494,16 +495,16 @@ LINES = (
 
 
 class _ModalSpectrum(NamedTuple):
-    """Names of modal coordinates, their spectrum, and the frequency up to which it is whole [Hz]."""
+    """Names of modal coordinates, their spectrum, and the limit up to which it is whole, as attributes."""
 
     names: list[str]
     spectrum: "Spectrum"
-    limit: float
+    trusted: dict[str, Any]
 
 
 def _modal_spectrum(row: TracedTransient) -> _ModalSpectrum | None:
     spectrum = row.transient.modal_spectrum()
-    return None if spectrum is None else _ModalSpectrum(*spectrum, float(row.transient.trusted_limit))
+    return None if spectrum is None else _ModalSpectrum(*spectrum, _trusted(row))
 
 
 MODAL = (
@@ -515,7 +516,7 @@ MODAL = (
         "spectrum.amplitude",
         f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
         "m kg0.5",
-        attributes=lambda row: {"window": row.spectrum.window, "trusted_below_hz": row.limit},
+        attributes=lambda row: {"window": row.spectrum.window} | row.trusted,
     ),
 )
 """Quantities of the modal spectrum."""
@@ -560,7 +561,7 @@ TRANSIENT: Fields = (
     Quantity("energy_error", "transient.result.energy.error"),
     Part("energy_j", "transient.result.energy", ENERGY),
     Quantity("coordinates", "transient.machine.system.size"),
-    Quantity("trusted_below_hz", lambda row: row.transient.trusted_limit),
+    Quantity("trusted_below_hz", "transient.machine.complete_below_hz"),
     Part("record", "transient", RECORD),
     Rows(
         "sensors",
@@ -786,7 +787,8 @@ class HistoryStream:
     def _attributes(self, history: HistoryQuantity) -> dict[str, Any]:
         """Return the attributes of a history; a filtered one also has its decimation and its own frequency limit."""
         attributes: dict[str, Any] = {"units": history.unit, "long_name": history.what}
-        attributes["trusted_below_hz"] = float(self.solved.trusted_limit)
+        if self.solved.machine.complete_below_hz is not None:
+            attributes["trusted_below_hz"] = self.solved.machine.complete_below_hz
         sampling = self.solved.record.sampling
         if sampling.is_long:
             attributes |= {"decimated_by": sampling.decimation.factor, "complete_below_hz": self.solved.trusted_limit}

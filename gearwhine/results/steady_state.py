@@ -448,7 +448,7 @@ def _method(solved: "SolvedSteady") -> str:
 STEADY = (
     Quantity("speed_rpm", "motions.0.speed"),
     Quantity("coordinates", "machine.system.size"),
-    Quantity("trusted_below_hz", lambda solved: solved.motions[0].trusted_limit),
+    Quantity("trusted_below_hz", "machine.complete_below_hz"),
     Quantity("method", _method),
     Rows(
         "motions",

@@ -562,11 +562,6 @@ def _order_lines(solved: "SolvedSystem") -> Any:
     return [_OrderLine(solved.order_lines, number) for number in np.flatnonzero(known).tolist()]
 
 
-def _trusted_below(solved: "SolvedSystem") -> float | None:
-    housing = solved.machine.housing
-    return None if housing is None or housing.complete_below is None else housing.complete_below / HERTZ
-
-
 SYSTEM = (
     Quantity("speed_rpm"),
     Quantity("mesh_phase"),
@@ -602,7 +597,7 @@ SYSTEM = (
     Quantity("conventions", lambda solved: _LINE_CONVENTIONS if solved.lines else ABSENT),
     LINE_LIMITS,
     Quantity("superposition_error"),
-    Quantity("trusted_below_hz", _trusted_below),
+    Quantity("trusted_below_hz", "machine.complete_below_hz"),
     Part(
         "campbell",
         lambda solved: ABSENT if solved.campbell is None else _Campbell(solved.campbell, solved.speed),

@@ -1,11 +1,13 @@
 """Helical gears in the coupled system: motions that strain no mesh, and the thrust and moments that bearings take."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from helical_pairs import helical
 
+import gearwhine as gw
 from gearwhine.coupling import (
     GearMesh,
     MachineLoads,
@@ -15,7 +17,7 @@ from gearwhine.coupling import (
     assemble_machine,
     static_equilibrium,
 )
-from gearwhine.coupling.gears import PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.gears import GearError, PotentialEnergyStiffness, load_gear_pair, tooth_contact
 from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.machine.components import rotor_component
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
@@ -101,3 +103,36 @@ def test_a_screw_along_its_own_helix_strains_no_mesh() -> None:
     assert contact @ q == pytest.approx(0.0, abs=1e-9)
     back = np.linalg.lstsq(rows, np.array([1.0, -gear.lead / (2.0 * math.pi)]), rcond=None)[0]
     assert contact @ back == pytest.approx(2.0 * gear.base_radius, rel=1e-9)
+
+
+@pytest.mark.parametrize("stiffening", [1.0, 1e6])
+def test_transmission_error_is_that_of_the_flanks_as_the_equilibrium_misaligns_them(stiffening: float) -> None:
+    """Of shafts and bearings that hardly yield, it is that of the aligned pair by itself."""
+    steel, angle = replace(gw.STEEL, youngs_modulus=2.1e11 * stiffening), math.radians(12.0)
+    bearing = np.diag([2e8, 2e8, 1e8, 0.0, 0.0]) * stiffening
+    gears = [
+        gw.Gear(name, teeth, 3e-3, math.radians(20.0), 0.03, helix_angle=helix, bore=0.03)
+        for name, teeth, helix in (("a", 27, angle), ("b", 41, -angle))
+    ]
+    axes = {"i": (0.0, 0.0), "o": (1.5e-3 * (27 + 41) / math.cos(angle), 0.0)}
+    described = gw.Machine(
+        [gw.Shaft(gw.Rotor(name, [gw.Segment(0.1, 0.03, 0.0, steel)]), axis=axis) for name, axis in axes.items()],
+        [
+            gw.MountedBearing(gw.Bearing(f"{name}{at}", at, bearing, np.zeros((5, 5))), name, None)
+            for name in axes
+            for at in (0.02, 0.08)
+        ],
+        [gw.ShaftGear(gear, name, at=0.05) for gear, name in zip(gears, axes, strict=True)],
+        [gw.GearPair("a", "b")],
+        speed=100.0,
+        torque=300.0,
+    )
+    point = described.operating_point()
+    (load,), (pair,) = point.pairs, described.at_operating_point(point).loaded_pairs()
+    error = load.peak_to_peak_transmission_error
+    assert error == pytest.approx(pair.static.peak_to_peak_transmission_error, rel=1e-9)
+    alone = load_gear_pair(gw.GearPair("a", "b"), described.pair_geometries[0], torque=300.0)
+    away = error / alone.static.peak_to_peak_transmission_error - 1.0
+    assert abs(away) < 1e-5 if stiffening > 1.0 else abs(away) > 5e-3
+    with pytest.raises(GearError, match="expected the inertias that rotate with its gears"):
+        _ = alone.contact

@@ -485,3 +485,29 @@ def test_a_gear_stiffens_its_shaft_by_its_own_modulus(young: float) -> None:
         shear = 0.9 * math.pi / 4.0 * (206e9 * outer**2 + young * (sleeve**2 - outer**2)) / 2.6
         expected += 2.0 * force * ((right**3 - left**3) / (12.0 * bending) + (right - left) / (4.0 * shear))
     assert sag == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.5])
+def test_a_shaft_may_stand_in_another_one_s_bore_alone(place: float) -> None:
+    """On the axis at the origin, where shafts that stand for others are, it is a warning."""
+
+    def coaxial(bore: float) -> Machine:
+        sizes = {"outer": (0.1, bore), "inner": (0.05, 0.0)}
+        shafts = [
+            Shaft(Rotor(name, [Segment(0.5, *diameters, STEEL)]), axis=(place, 0.0), start=start)
+            for (name, diameters), start in zip(sizes.items(), (0.0, 0.2), strict=True)
+        ]
+        held = [
+            MountedBearing(Bearing.isotropic(f"{name} {at}", at, 1e8), name, None)
+            for name in sizes
+            for at in (0.05, 0.45)
+        ]
+        return Machine(shafts, held, speed=10.0)
+
+    overlap = 'clear of shaft "outer"; they overlap over 300 mm'
+    assert not any(overlap in text for text in coaxial(0.06).warnings)
+    if place == 0.0:
+        assert any(overlap in text for text in coaxial(0.04).warnings)
+    else:
+        with pytest.raises(CouplingError, match=overlap):
+            coaxial(0.04)

@@ -353,7 +353,7 @@ class LoadedGearPair:
     static : LoadedMesh
         Static mesh of the flanks that carry over the first mesh period, by their own phase.
     inertias : tuple of float
-        Polar inertias that rotate with the driver and with the driven gear [kg m²].
+        Polar inertias that rotate with the driver and with the driven gear [kg m²]; None where not given.
     mesh_frequency : float or None
         Mesh frequency [Hz]; None where no speed is given.
     """
@@ -363,7 +363,7 @@ class LoadedGearPair:
     model: StiffnessModel
     undamped: ToothContact
     static: LoadedMesh
-    inertias: tuple[float, float]
+    inertias: tuple[float, float] | None
     mesh_frequency: float | None
 
     @cached_property
@@ -427,7 +427,7 @@ def load_gear_pair(
     geometry: GearPairGeometry,
     *,
     torque: float = 0.0,
-    inertias: tuple[float, float],
+    inertias: tuple[float, float] | None = None,
     speed: float | None = None,
 ) -> LoadedGearPair:
     """Contact law of a gear pair, and its mesh at rest under a mean torque.
@@ -439,8 +439,9 @@ def load_gear_pair(
     torque : float
         Mean torque that the pair takes from its driver [N m], of either sign; its amount is that of the pair's
         ``mean_force`` where it has one.
-    inertias : tuple of float
-        Polar inertias that rotate with the driver and with the driven gear [kg m²], for the damping ratio.
+    inertias : tuple of float, optional
+        Polar inertias that rotate with the driver and with the driven gear [kg m²], for the damping ratio; not needed
+        for the mesh at rest.
     speed : float, optional
         Signed speed of the driver [rad/s].
 
@@ -448,6 +449,13 @@ def load_gear_pair(
     ------
     GearError
         Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
+
+    Examples
+    --------
+    >>> wheel = Gear("wheel", teeth=62, module=2e-3, pressure_angle=0.349066, face_width=20e-3, bore=35e-3)
+    >>> pinion = Gear("pinion", teeth=31, module=2e-3, pressure_angle=0.349066, face_width=20e-3, bore=20e-3)
+    >>> loaded = load_gear_pair(GearPair("pinion", "wheel"), GearPairGeometry(pinion, wheel), torque=60.0)
+    >>> error = loaded.static.peak_to_peak_transmission_error  # also transmission_error over phases, mesh stiffness
     """
     force = abs(torque / geometry.driver.base_radius) if pair.mean_force is None else pair.mean_force
     stiffness = pair.stiffness
@@ -471,12 +479,14 @@ def _damping_coefficient(
     pair: GearPair,
     geometry: GearPairGeometry,
     mean_mesh_stiffness: Callable[[], float],
-    inertias: tuple[float, float],
+    inertias: tuple[float, float] | None,
 ) -> float:
     """Damping coefficient of the mesh [N s/m]."""
     if pair.damping is not None:
         return pair.damping
     if pair.damping_ratio == 0.0:
         return 0.0
+    if inertias is None:
+        raise GearError(f"{pair.label}: expected the inertias that rotate with its gears, which a damping_ratio needs")
     mass = equivalent_mass(*inertias, abs(geometry.driver.base_radius), abs(geometry.driven.base_radius))
     return mesh_damping(pair.damping_ratio, mean_mesh_stiffness(), mass)

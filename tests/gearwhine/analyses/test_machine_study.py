@@ -40,6 +40,9 @@ def test_motion_over_time_is_that_of_the_case_and_is_written(
         np.testing.assert_array_equal(found.dataset[name], expected.dataset[name])
     peaks = [pair["peak_force_n"] for pair in found.document["gear_pairs"]]
     assert peaks == [pair["peak_force_n"] for pair in expected.document["gear_pairs"]]
+    # No modes of a housing end anywhere.
+    assert found.proofs["trusted_below_hz"] is None
+    assert "trusted_below_hz" not in found.dataset["mesh_force_spectrum"].attrs
     files = found.write(tmp_path, pictures=False)
     assert {"results.nc", "summary.json"} <= set(files)
     with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
