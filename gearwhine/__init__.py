@@ -45,12 +45,15 @@ if TYPE_CHECKING:
     from gearwhine.coupling import Shaft as Shaft
     from gearwhine.coupling import ShaftForce as ShaftForce
     from gearwhine.coupling import ShaftGear as ShaftGear
+    from gearwhine.coupling import SupportBolt as SupportBolt
     from gearwhine.coupling import TorqueSupport as TorqueSupport
     from gearwhine.coupling import planet_copies as planet_copies
     from gearwhine.coupling.analyses.recording import TransientPlan as TransientPlan
     from gearwhine.coupling.gears import Gear as Gear
     from gearwhine.coupling.gears import GearError as GearError
     from gearwhine.coupling.gears.loaded.gear_pair import GearPair as GearPair
+    from gearwhine.coupling.sound import Acoustics as Acoustics
+    from gearwhine.coupling.sound import Microphone as Microphone
     from gearwhine.housing import STEEL as STEEL
     from gearwhine.housing import Housing as Housing
     from gearwhine.housing import HousingError as HousingError
@@ -69,6 +72,7 @@ if TYPE_CHECKING:
     from gearwhine.numerics.distributions import Triangular as Triangular
     from gearwhine.numerics.distributions import Uniform as Uniform
     from gearwhine.optimisation.scatter import Scatter as Scatter
+    from gearwhine.progress import print_progress as print_progress
     from gearwhine.rotors import Bearing as Bearing
     from gearwhine.rotors import Disc as Disc
     from gearwhine.rotors import Rotor as Rotor
@@ -94,12 +98,14 @@ _HOMES = {
         "Shaft",
         "ShaftForce",
         "ShaftGear",
+        "SupportBolt",
         "TorqueSupport",
         "planet_copies",
     ),
     "gearwhine.coupling.analyses.recording": ("TransientPlan",),
     "gearwhine.coupling.gears": ("Gear", "GearError"),
     "gearwhine.coupling.gears.loaded.gear_pair": ("GearPair",),
+    "gearwhine.coupling.sound": ("Acoustics", "Microphone"),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
@@ -125,6 +131,7 @@ _HOMES = {
     "gearwhine.meshes": ("GeometryError",),
     "gearwhine.numerics.distributions": ("Discrete", "Normal", "Triangular", "Uniform"),
     "gearwhine.optimisation.scatter": ("Scatter",),
+    "gearwhine.progress": ("print_progress",),
     "gearwhine.rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

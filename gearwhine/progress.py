@@ -116,6 +116,17 @@ def _lines() -> Progress:
     return progress
 
 
+_printed = _lines()
+
+
+def print_progress(message: str, fraction: float | None = None) -> None:
+    """Print the present work on standard error: a line where the words change, and of long work each half a minute.
+
+    It is meant for ``study.progress = gw.print_progress``. The times are those since its import.
+    """
+    _printed(message, fraction)
+
+
 def _time_left(begun: tuple[float, float], now: float, fraction: float) -> str:
     """Estimated time left; empty where it is short."""
     passed, done = now - begun[0], fraction - begun[1]

@@ -88,7 +88,10 @@ class Study(StudiedMachine, HousingAnalyses):
         Parameters
         ----------
         **settings
-            See :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings`: ``mode_count=8``, ``orders=(2.0,)``.
+            Attributes of :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings`: ``mode_count=8`` (by default
+            12), ``orders=(2.0,)`` of further critical speeds, ``gravity``, ``forces``, ``unbalances``, ``bow``,
+            ``probes``, ``torsion``, ``stiffness_map``; ``operation``, ``whirl_speeds``, ``diagram_speeds`` and
+            ``response_speeds`` [rad/s], for all rotors alike in place of those of the machine.
         """
         from gearwhine.analyses.machine_results import rotors_result
 
@@ -303,7 +306,9 @@ class Study(StudiedMachine, HousingAnalyses):
             Stretch of the motion, by default that of the settings; or its attributes by name: ``revolutions=40,
             discard=20``.
         **stretch
-            See :class:`gearwhine.coupling.analyses.recording.TransientPlan`.
+            Attributes of :class:`gearwhine.coupling.analyses.recording.TransientPlan`: ``revolutions`` or ``run``,
+            ``discard`` (by default half of the revolutions), ``points_per_revolution=200``, ``tolerance=5e-4``,
+            ``start="equilibrium"``, ``method="newmark"``, ``modal_coordinates=0``, ``indicators=False``.
 
         Raises
         ------
@@ -577,7 +582,9 @@ class Study(StudiedMachine, HousingAnalyses):
             Method and medium, floor and microphones; or its attributes by name: ``method="erp", floor=-0.02``. By
             default those of the settings, else boundary elements in free air.
         **settings
-            See :class:`gearwhine.coupling.sound.Acoustics`.
+            Attributes of :class:`gearwhine.coupling.sound.Acoustics`: ``method="boundary-elements"``, ``density``,
+            ``speed_of_sound``, ``mesh_size``, ``highest_frequency``, ``close_holes``, ``caps="move"``, ``floor``,
+            ``still``, ``faces``, ``microphone``, ``microphone_box``, ``lines=40``.
 
         Raises
         ------

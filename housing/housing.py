@@ -793,8 +793,13 @@ class HousingModes:
         """Meshes that were solved until the modes had the accuracy asked for, the last one this; else empty."""
         return list(self.record.notes.get("refinement", ()))
 
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences of :attr:`result_warnings`."""
+        return [str(entry["message"]) for entry in self.result_warnings]
+
     @cached_property
-    def warnings(self) -> list[ResultWarning]:
+    def result_warnings(self) -> list[ResultWarning]:
         """Warnings of its mesh, of errors by the mesh, of missed checks, parts off the surface and unused ratios."""
         return [
             *self.record.notes["warnings"],

@@ -387,7 +387,15 @@ class PlacedSet:
         kind : {"sun", "ring"}
         sense : int
             Sense in which that gear turns relative to the carrier, 1 counter-clockwise or -1.
+
+        Raises
+        ------
+        CouplingError
+            Where kind or sense is another.
         """
+        for argument, value, expected in (("kind", kind, ("sun", "ring")), ("sense", sense, (1, -1))):
+            if value not in expected:
+                raise CouplingError(f"phases: {argument} is {value!r}; expected {expected[0]!r} or {expected[1]!r}")
         name = self.of.sun if kind == "sun" else self.of.ring
         teeth = 0 if name is None else abs(self.gears[name].teeth)
         turns = [self.angle_from_first(group) / (2.0 * math.pi) for group in range(len(self.groups))]

@@ -566,7 +566,7 @@ def component_of_housing(modes: HousingModes, *, participates: bool, with_coarse
     return replace(
         _component_of_modes(modes, participation),
         coarser=coarser,
-        warnings=tuple(modes.warnings),
+        warnings=tuple(modes.result_warnings),
         displacement_field=modes.displacement_field,
         mass=modes.mass,
     )

@@ -39,7 +39,7 @@ def component_of_reduced_housing(housing: ReducedHousing) -> HousingComponent:
             for sensor in housing.sensors
         },
         complete_below=housing.limit,
-        warnings=tuple(housing.warnings),
+        warnings=tuple(housing.result_warnings),
     )
 
 

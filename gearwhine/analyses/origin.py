@@ -128,7 +128,7 @@ class Origin:
             joined(
                 {"title": self.title} | document | {"seconds": {"total": time.perf_counter() - begun}},
                 {"warnings": [*warnings, *self.warnings]},
-                {"warnings": [] if self.housing is None else self.housing.warnings},
+                {"warnings": [] if self.housing is None else self.housing.result_warnings},
             ),
             _arrays=arrays
             if callable(arrays)

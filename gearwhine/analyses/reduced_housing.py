@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def reduced_modes_result(housing: ReducedHousing, origin: Origin) -> Result[ReducedHousing]:
     """Return the result of the natural modes of a reduced housing."""
     document = reduced_modes_document(housing)
-    add_warnings(document, housing.warnings)
+    add_warnings(document, housing.result_warnings)
     return origin.result("modes", housing, document, (REDUCED_MODES, housing))
 
 

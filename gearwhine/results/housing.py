@@ -143,7 +143,7 @@ ORIGIN = (
     Quantity("reused", lambda solved: solved.source is not None),
     Quantity("modes_read_from", lambda solved: ABSENT if solved.source is None else str(solved.source)),
     Quantity("seconds_when_solved", lambda solved: ABSENT if solved.source is None else solved.record.notes["seconds"]),
-    Quantity("warnings"),
+    Quantity("warnings", "result_warnings"),
 )
 """Origin of the modes, for every command that uses them."""
 

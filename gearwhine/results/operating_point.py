@@ -552,18 +552,47 @@ PLANETARY_OVER_TURN = (
 
 
 BOLT = (
+    in_file("support_bolt", "", "name"),
     Quantity("shaft", heading="shaft"),
-    Quantity("angle_rad", "bolt.angle", heading="bolt at", shown=lambda row: f"{math.degrees(row['angle_rad']):.4g}°"),
-    Quantity("radial_force_n", "radial", heading="radial\n[N]", shown="z.0f"),
-    Quantity("tangential_force_n", "tangential", heading="tangential\n[N]", shown="z.0f"),
-    Quantity("axial_force_n", "axial", heading="axial\n[N]", shown="z.0f"),
+    Quantity(
+        "angle_rad",
+        "bolt.angle",
+        "support_bolt_angle",
+        heading="bolt at",
+        shown=lambda row: f"{math.degrees(row['angle_rad']):.4g}°",
+    ),
+    Quantity(
+        "radial_force_n",
+        "radial",
+        "support_bolt_radial_force",
+        long_name="force outwards of the shaft on the bolt",
+        heading="radial\n[N]",
+        shown="z.0f",
+    ),
+    Quantity(
+        "tangential_force_n",
+        "tangential",
+        "support_bolt_tangential_force",
+        long_name="force along the circle, counter-clockwise, of the shaft on the bolt",
+        heading="tangential\n[N]",
+        shown="z.0f",
+    ),
+    Quantity(
+        "axial_force_n",
+        "axial",
+        "support_bolt_axial_force",
+        long_name="force along z of the shaft on the bolt",
+        heading="axial\n[N]",
+        shown="z.0f",
+    ),
 )
 """Quantities of a bolt of a torque support: force of the shaft on it; a row is a :class:`_Bolt`."""
 
 
 class _Bolt(NamedTuple):
-    """Bolt of a torque support, the shaft that it holds, and its force outwards, along the circle and along z [N]."""
+    """Bolt of a torque support, its shaft and number, and its force outwards, along the circle and along z [N]."""
 
+    name: str
     shaft: str
     bolt: "SupportBolt"
     radial: float
@@ -574,9 +603,9 @@ class _Bolt(NamedTuple):
 def _bolts(solved: "SolvedLoad") -> Any:
     """Bolts of all torque supports; absent where no support has any."""
     return [
-        _Bolt(load.support.shaft, bolt, *force)
+        _Bolt(f"{load.support.shaft} {number}", load.support.shaft, bolt, *force)
         for load in solved.point.supports
-        for bolt, force in zip(load.support.bolts, load.bolt_forces.tolist(), strict=True)
+        for number, (bolt, force) in enumerate(zip(load.support.bolts, load.bolt_forces.tolist(), strict=True), start=1)
     ] or ABSENT
 
 
@@ -637,7 +666,7 @@ LOAD: Fields = (
     Rows("planetary", lambda solved: list(solved.planetary) or ABSENT, PLANETARY),
     Rows("planetary_over_turn", lambda solved: list(solved.planetary_over_turn) or ABSENT, PLANETARY_OVER_TURN),
     Quantity("turn_angles_rad", _turn_angles),
-    Rows("support_bolts", _bolts, BOLT),
+    Rows("support_bolts", _bolts, BOLT, "support_bolt"),
     Quantity("carrier_turns", _over_turns),
     _of_planets("loaded_planet", lambda planet: planet.shaft, "", ""),
     _of_planets("planet_load_share", lambda planet: planet.load_share, "1", "part of the set's torque"),

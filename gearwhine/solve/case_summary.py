@@ -238,7 +238,7 @@ def check_case(case: Case, progress: Progress = silent, imported: ImportedCase |
         component = reduced_component(case.reduced_housing, case.input_files)
         if machine is not None:
             describe_machine(case, component)
-        warnings += reduced.warnings
+        warnings += reduced.result_warnings
     rotors, pairs = checked_rotors(parts), tuple(checked_pairs(parts))
     for built, geometry in zip(parts.gear_pairs, parts.pair_geometries, strict=True):
         warnings += geometry_warnings(built, geometry)

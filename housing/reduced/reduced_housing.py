@@ -438,7 +438,12 @@ class ReducedHousing:
         return np.asarray(np.diag(2.0 * self.damping_ratio * self.modes.all_frequencies) + 0.5 * (own + own.T))
 
     @property
-    def warnings(self) -> list[ResultWarning]:
+    def warnings(self) -> list[str]:
+        """Sentences of :attr:`result_warnings`."""
+        return [str(entry["message"]) for entry in self.result_warnings]
+
+    @property
+    def result_warnings(self) -> list[ResultWarning]:
         """Warnings of rigid motions that nothing holds, and of matrices whose rigid motions are strained in part."""
         warnings = []
         if self.matrices.is_static:

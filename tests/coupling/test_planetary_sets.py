@@ -77,6 +77,9 @@ def test_phases_by_parker_and_lin(held: str, speed: float, sun: int, planet: int
         expected = placed.phases(kind, placed.sense(kind, of.speeds))  # type: ignore[arg-type]
         apart = phases - phases[0] - np.array(expected)
         np.testing.assert_allclose(apart, np.round(apart), atol=1e-6)
+    for sense in (0, 2, 7):
+        with pytest.raises(CouplingError, match=f"sense is {sense}; expected 1 or -1"):
+            placed.phases("sun", sense)
 
 
 @pytest.mark.slow

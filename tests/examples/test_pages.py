@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+import gearwhine as gw
 from gearwhine.case import Case
 from gearwhine.from_case import mesh
 from gearwhine.output.quantity import Fields, Quantity
@@ -78,6 +79,14 @@ def test_the_page_lists_every_variable_of_an_operating_point() -> None:
     section = (ROOT / "docs" / "python.md").read_text(encoding="utf-8").partition("| variable | dimensions |")[2]
     rows = section.partition("\n\n")[0].splitlines()[2:]
     assert {name for row in rows for name in re.findall(r"`(\w+)`", row.split("|")[1])} == set(named(LOAD))
+
+
+def test_the_front_door_has_every_object_of_the_page() -> None:
+    table = (ROOT / "docs" / "python.md").read_text(encoding="utf-8").partition("| object | from |")[2]
+    rows = table.partition("\n\n")[0].splitlines()[2:]
+    named = {name for row in rows for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+    assert len(named) > 30
+    assert {name for name in named if not hasattr(gw, name) or name not in gw.__all__} == set()
 
 
 def test_links_of_the_pages_lead_to_files_and_headings() -> None:

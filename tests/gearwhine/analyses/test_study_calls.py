@@ -2,7 +2,9 @@
 
 import math
 import pickle
+import re
 from collections.abc import Iterator
+from dataclasses import fields
 from typing import Any
 
 import pytest
@@ -13,6 +15,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Material, Rotor
 from gearwhine.housing import Housing
 from gearwhine.rotors import RotorError
+from gearwhine.rotors.analyses.solved_rotor import RotorSettings
 
 
 def test_the_points_of_a_sweep_are_made_of_the_case_with_its_changes(
@@ -112,3 +115,11 @@ def test_a_result_comes_back_from_a_pickle_with_all_its_numbers() -> None:
     assert again.dataset.identical(result.dataset)
     assert again.case == result.case
     assert again.warnings == result.warnings
+
+
+def test_help_names_every_setting_that_a_verb_takes_by_name() -> None:
+    study = gw.Study
+    kinds = {study.rotors: RotorSettings, study.simulate: gw.TransientPlan, study.sound: gw.Acoustics}
+    for verb, kind in kinds.items():
+        words = set(re.findall(r"\w+", str(verb.__doc__)))
+        assert {one.name for one in fields(kind)} - words == set()

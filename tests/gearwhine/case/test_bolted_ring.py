@@ -62,6 +62,11 @@ def test_load_has_the_force_on_every_bolt(tmp_path: Path) -> None:
     # Sun 24 and ring 84: the ring holds 50 N m · 84 / 24, on a circle of 110 mm.
     assert abs(0.110 * tangential.sum()) == pytest.approx(50.0 * 84.0 / 24.0, rel=1e-6)
     assert np.ptp(tangential) > 0.2 * np.abs(tangential).max()
+    in_file = result.dataset["support_bolt_tangential_force"]
+    assert (in_file.dims, in_file.attrs["units"]) == (("support_bolt",), "N")
+    ring = rows[0]["shaft"]
+    np.testing.assert_allclose(in_file.sel(support_bolt=[f"{ring} {number}" for number in (1, 2, 3)]), tangential)
+    np.testing.assert_allclose(result.dataset["support_bolt_angle"], [0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0])
     (table,) = (
         part
         for section in sections(result.document)
@@ -72,7 +77,9 @@ def test_load_has_the_force_on_every_bolt(tmp_path: Path) -> None:
         [f"{degrees}°", f"{row['radial_force_n']:.0f}", f"{row['tangential_force_n']:.0f}"]
         for degrees, row in zip((0, 120, 240), rows, strict=True)
     ]
-    assert "support_bolts" not in _loaded(stage(), tmp_path).document
+    without = _loaded(stage(), tmp_path)
+    assert "support_bolts" not in without.document
+    assert "support_bolt" not in without.dataset.dims
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+import gearwhine as gw
 from gearwhine.numerics import compiled
 from gearwhine.numerics.progress import in_order
 from gearwhine.progress import shown
@@ -73,3 +74,15 @@ def test_work_on_two_threads_is_handed_back_in_order() -> None:
 def test_an_error_in_a_thread_is_that_of_the_work() -> None:
     with pytest.raises(ZeroDivisionError):
         in_order(lambda number: 1 // number, [1, 0, 1], "quotients")
+
+
+def test_lines_are_printed_where_the_words_change(capsys: pytest.CaptureFixture[str]) -> None:
+    for part in range(301):
+        gw.print_progress("responses to the errors of the meshes", part / 300)
+    gw.print_progress("comparing with another modal basis")
+    written = capsys.readouterr()
+    lines = written.err.splitlines()
+    assert not written.out
+    assert [line.partition("] ")[2] for line in lines if "meshes" in line][-1].endswith(" 100 %")
+    assert "comparing with another modal basis" in lines[-1]
+    assert len(lines) <= 5

@@ -46,7 +46,7 @@ def test_elements_get_smaller_until_the_accuracy_is_reached(tmp_path: Path) -> N
     assert solved.modes.discretisation_errors is not None
     assert solved.modes.discretisation_errors.max() == last["largest_error"]
     assert [line for line in lines if "largest estimated error" in line][-1].endswith("9 % is wanted")
-    assert not [entry for entry in solved.warnings if entry["name"] == "discretisation"]
+    assert not [entry for entry in solved.result_warnings if entry["name"] == "discretisation"]
     assert solved.record.key == content_key(given_housing(case).cache_inputs())
     fixed = solve_housing(_case(tmp_path, size=f"mesh_size = {last['mesh_size_m']!r}"))
     assert (fixed.modes.frequencies == solved.modes.frequencies).all()
