@@ -245,3 +245,21 @@ def test_a_speed_without_a_line_is_a_gap_in_the_picture() -> None:
     (axes,) = dict(draw_variation("By hand", replace(study, nominal=silent)))["vary-speeds"].axes
     assert axes.get_ylim()[0] > 70.0
     assert np.isfinite(axes.lines[1].get_ydata()).tolist() == [True, False, True]
+
+
+def test_the_solved_housing_survives_an_interruption_of_the_samples(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    torque = {"variation.vary": {"operation.torque": {"uniform": ["50 N*m", "90 N*m"]}}, "variation.analyses": ["mass"]}
+    said = list[str]()
+    study = gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm"} | torque)
+    study.progress = lambda text, *_: said.append(text)
+    with monkeypatch.context() as patched:
+        patched.setattr("gearwhine.analyses.variation_result.run_samples", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            study.vary(2, folder=tmp_path)
+    study.vary(2, folder=tmp_path)
+    assert f"modes read from {tmp_path / 'modes.nc'} (unchanged housing)" in said
