@@ -88,6 +88,28 @@ def test_the_study_begins_with_the_gearboxes_beyond_each_limit_and_the_worst() -
     assert str(first.content[0]) == sentences[0]
 
 
+def test_a_class_of_pitches_beside_a_varied_runout_is_warned_of() -> None:
+    law = Normal(0.0, 1.0)
+    keys = ("gear.pinion.errors.pitch", "gear.pinion.errors.runout", "gear.wheel.errors.pitch")
+    study = told(TEN, np.zeros((10, 3)))
+    both = replace(study, inputs=tuple(Input(key, law, "um", (), ((key, 1.0),), "class 7") for key in keys))
+    (warned,) = [one for one in varied_document(both)["warnings"] if one["name"] == "runout twice"]
+    assert "gear.pinion.errors.pitch and gear.pinion.errors.runout" in warned["message"]
+    pitches_alone = replace(both, inputs=(both.inputs[0], both.inputs[2]), values=np.zeros((10, 2)))
+    assert not [one for one in varied_document(pitches_alone)["warnings"] if one["name"] == "runout twice"]
+
+
+def test_a_nominal_beyond_its_limit_and_too_few_samples_are_said_before_the_varied_keys() -> None:
+    study = told(TEN, np.zeros((10, 2)), limit=97.5)
+    study = replace(study, nominal=Evaluation({LEVEL: 110.0}, study.nominal.curves))
+    sentences, _ = shown(varied_document(study))
+    assert (
+        "The gearbox without changes itself is beyond the limit of sensor top, highest level over speed." in sentences
+    )
+    assert "10 gearboxes are too few to rank 2 inputs: take 20 or more." in sentences
+    assert any("lies outside 5 to 95 % of the production" in one and "a class adds" in one for one in sentences)
+
+
 def widened_study() -> VariedResult:
     """Forty gearboxes in three ways: as they are, and each of two inputs wider; the level is uniform up to 100."""
     points = widened_points(np.zeros((40, 2)), (0, 1))
