@@ -110,6 +110,14 @@ def test_a_nominal_beyond_its_limit_and_too_few_samples_are_said_before_the_vari
     assert any("lies outside 5 to 95 % of the production" in one and "a class adds" in one for one in sentences)
 
 
+def test_a_limit_far_from_all_gearboxes_is_within_the_axis_of_the_distributions() -> None:
+    (_, figure) = next(
+        one for one in draw_variation("By hand", told(TEN, limit=50.0)) if one[0] == "vary-distributions"
+    )
+    low, high = figure.axes[0].get_xlim()
+    assert low < 50.0 < 100.0 < high
+
+
 def widened_study() -> VariedResult:
     """Forty gearboxes in three ways: as they are, and each of two inputs wider; the level is uniform up to 100."""
     points = widened_points(np.zeros((40, 2)), (0, 1))
