@@ -271,10 +271,13 @@ class CaseStudy(Study):
         from gearwhine.results.check import CHECK
         from gearwhine.solve.case_summary import check_case
 
+        warnings = list[ResultWarning]()
         if self.case.variation is not None:
             from gearwhine.analyses.variation_result import plan_variation
+            from gearwhine.results.variation import runout_twice_warnings
 
-            plan_variation(self.case, self._source)
+            inputs, _ = plan_variation(self.case, self._source)
+            warnings = list(runout_twice_warnings(inputs))
         if self.case.detection is not None:
             from gearwhine.analyses.detection_result import plan_detection
 
@@ -284,6 +287,7 @@ class CaseStudy(Study):
 
             plan_optimisation(self._source, self.case.optimisation)
         checked = check_case(self.case, self.progress, self._source.imported)
+        checked.warnings.extend(warnings)
         return Result("check", self.case, checked, document_of(CHECK, checked))
 
     def mesh(self, suffix: Literal["msh", "vtu", "vtk", "inp", "med", "xdmf"] = "msh") -> "Result[Mesh]":

@@ -507,16 +507,21 @@ def in_solved_housing(varied: AnyVaried, folder: StudyFolder, command: str) -> t
     if case.housing is None or not case.rotor:
         return varied, None
     housing = solve_housing(case, folder.progress, command=command, folder=folder.path, fresh=folder.fresh)
-    radiated = None
+    housing, radiated = _kept_housing(housing, folder), None
     if varied.wanted.has_sound:
         radiated, housing = radiated_power_of(acoustics_of(case), housing, folder.progress)
-        if not housing.source_holds:
-            # Before the samples: what ends them leaves the radiation, which may take minutes.
-            with staging(folder.path) as place:
-                write_mode_cache(place, housing)
-            housing = replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
+        housing = _kept_housing(housing, folder)
     reduced, key = reduce_housing(case, housing, with_coarser=False), varied.key_of_housing(case)
     return replace(varied, solved=housing, housing=reduced, housing_key=key, radiated=radiated), housing
+
+
+def _kept_housing(housing: HousingModes, folder: StudyFolder) -> HousingModes:
+    """Keep modes, which took minutes, in the folder before the samples, so that an interruption leaves them."""
+    if housing.source_holds:
+        return housing
+    with staging(folder.path) as place:
+        write_mode_cache(place, housing)
+    return replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
 
 
 def is_count(value: object) -> bool:

@@ -105,7 +105,7 @@ def _histogram(axes: Axes, one: QuantityStatistics) -> None:
     for value in one.quantiles.values():
         axes.axvline(factor * value, color=GREY, lw=0.8)
     axes.axvline(factor * one.nominal, color=BLUE, lw=1.2)
-    for end in _limits_near(one, values, factor):
+    for end in _limits(one, factor):  # however far: the axis reaches to it
         axes.axvline(end, color=RED, lw=1.2)
     axes.set_xlabel(name)
     axes.set_ylabel("gearboxes")
@@ -122,8 +122,13 @@ def _limits_near(one: QuantityStatistics, values: FloatArray, factor: float) -> 
         return []
     low, high = float(values.min()), float(values.max())
     reach = _FAR * (high - low)
-    ends = [factor * end for end in (one.limit.at_least, one.limit.at_most) if end is not None]
-    return [end for end in ends if low - reach <= end <= high + reach]
+    return [end for end in _limits(one, factor) if low - reach <= end <= high + reach]
+
+
+def _limits(one: QuantityStatistics, factor: float) -> list[float]:
+    """Return the ends of a limit in the unit that is shown."""
+    ends = () if one.limit is None else (one.limit.at_least, one.limit.at_most)
+    return [factor * end for end in ends if end is not None]
 
 
 def _leading(one: QuantityStatistics) -> dict[str, float]:

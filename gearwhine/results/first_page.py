@@ -72,7 +72,7 @@ _CHAPTERS = {
     ),
     "Sweep": ("sound_of_sweep", "sound_left_out", "sweep_resolution"),
     "Updated numbers": ("shapes",),
-    "Varied gearboxes": ("failed samples", "few samples", "loudest speed"),
+    "Varied gearboxes": ("failed samples", "few samples", "loudest speed", "runout twice"),
     "Operating point": (
         "sensitivity",
         "static rating",
@@ -262,6 +262,8 @@ def _findings(summaries: Sequence[Summary], stale: Sequence[str]) -> tuple[str |
     passed, failed, warned = (sum(finding.passed is kind for finding in findings) for kind in (True, False, None))
     if not findings:
         return ()
+    if not passed and not failed:
+        return (f"No result here has a proof of its own; {counted(warned, 'warning')}.", *findings)
     verdict = f"{counted(passed, 'check')} passed" + (f", {failed} did not" if failed else ", none failed")
     return (f"{verdict}; {counted(warned, 'warning') if warned else 'no warnings'}.", *findings)
 

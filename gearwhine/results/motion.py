@@ -152,7 +152,7 @@ _NARROW_BAND = 0.5  # width of a band [dB] below which a line is shown with a di
 def band_words(row: Document) -> str:
     """Return the band of a line by damping, such as ``-2.1 +3.4``; empty where there is none."""
     band = row.get("band_db")
-    return NOTHING if band is None else "{:+.1f} {:+.1f}".format(*(value + 0.0 for value in band))
+    return NOTHING if band is None else "{:+z.1f} {:+z.1f}".format(*band)
 
 
 def _width(row: Document) -> float:

@@ -1020,7 +1020,7 @@ def _traced_lines(document: Document) -> Iterator[Table | str]:
 def _band(row: Document) -> str:
     """Return a line's band by damping in whole decibels, such as `` -3 +1``; empty where there is none."""
     band = row.get("band_db")
-    return "" if band is None else " {:+.0f} {:+.0f}".format(*(value + 0.0 for value in band))
+    return "" if band is None else " {:+z.0f} {:+z.0f}".format(*band)
 
 
 def _near(mode: Document | None) -> str:

@@ -219,7 +219,7 @@ def _mechanisms(row: Document) -> str:
     highest = max(levels.values())
     leading = sorted((name for name in levels if levels[name] > highest - _WEAKER), key=lambda name: -levels[name])
     first, *others = leading
-    return ", ".join([MECHANISMS[first], *(f"{MECHANISMS[name]} {levels[name] - highest:.0f} dB" for name in others)])
+    return ", ".join([MECHANISMS[first], *(f"{MECHANISMS[name]} {levels[name] - highest:z.0f} dB" for name in others)])
 
 
 _EXCITED = Column("excited by", _mechanisms, numbers=tuple(f"parts_equivalent_power_db.{name}" for name in MECHANISMS))

@@ -15,11 +15,13 @@ from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_
 
 if TYPE_CHECKING:
     from gearwhine.numerics.sobol_indices import SobolIndices
+    from gearwhine.variation.inputs import Input
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
 
 _MOST_INPUTS = 3  # of a quantity in the table of what matters
 _MOST_RANKS, _MOST_RANKED = 3, 4  # worst gearboxes of a quantity, and quantities up to which they are told
 _MANY_AT_END = 0.05  # part of the gearboxes that are the loudest at an end of the speeds above which it is warned of
+_SAMPLES_OF_AN_INPUT = 10  # gearboxes for each input below which they are said to be too few to rank inputs
 _WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
 
 
@@ -184,6 +186,7 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
             f"samples, some {2 ** int(np.ceil(np.log2(needed)))} in place of {varied.design.rows}"
         )
         yield warning("few samples", message)
+    yield from runout_twice_warnings(varied.inputs)
     for one in varied.headlines:
         part = varied.at_end_of_speeds(one.name)
         if part is not None and part > _MANY_AT_END:
@@ -192,6 +195,19 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
                 f"{100.0 * part:.0f} % of the gearboxes: beyond that end the level may be higher; take a wider range"
             )
             yield warning("loudest speed", message, share=part)
+
+
+def runout_twice_warnings(inputs: Sequence["Input"]) -> Iterator[ResultWarning]:
+    """Warn of gears whose eccentricity is drawn twice: as their runout, and in the slow part of their pitches."""
+    keys = {key for one in inputs for key, _ in one.keys}
+    for key in sorted(key for key in keys if key.endswith(".errors.pitch")):
+        table = key.removesuffix("pitch")
+        if twice := keys & {f"{table}runout", f"{table}eccentricity"}:
+            message = (
+                f"{key} and {twice.pop()} are both varied: pitch deviations of a class have a slow part over the turn, "
+                "which is the eccentricity of the teeth that a runout is, too; vary one of them, or it counts twice"
+            )
+            yield warning("runout twice", message)
 
 
 def _speeds(speeds: Any) -> str:
@@ -296,6 +312,7 @@ def summary(document: Document) -> Iterator[str | Table]:
         yield f"Yield: {share['good']} of {share['total']} gearboxes are within all limits, {_percents(share)}."
     limited = [row for row in _told(document) if "within" in row]
     yield from table_of(_LIMIT_COLUMNS, limited, "Gearboxes beyond the limits; in brackets: 95 % interval")
+    yield from _about_nominal(limited, document)
     ranks = _MOST_RANKS if len(document["headlines"]) <= _MOST_RANKED else 1
     files = ", each with a case of its own, worst-….toml" if any(row["tolerance"] for row in document["inputs"]) else ""
     worst = [row for row in document["worst"] if row["rank"] <= ranks]
@@ -303,7 +320,32 @@ def summary(document: Document) -> Iterator[str | Table]:
     if speeds := document["speeds_rpm"]:
         ends = _speeds(np.array(speeds) / RPM) if len(speeds) > 1 else f"{speeds[0]:.5g} rpm"
         yield f"{counted(len(speeds), 'speed')} of the first driver: {ends}."
+    yield from _what_matters([row for row in _told(document) if row["name"] in document["headlines"]])
+    few = _SAMPLES_OF_AN_INPUT * len(document["inputs"])
+    if document["representative"] < few and not any("sobol_total" in row for row in document["quantities"]):
+        yield (
+            f"{document['representative']} gearboxes are too few to rank {counted(len(document['inputs']), 'input')}: "
+            f"take {few} or more."
+        )
     yield from table_of(_INPUT_COLUMNS, document["inputs"], "Varied keys; mean and standard deviation as drawn")
+
+
+def _about_nominal(limited: Sequence[Document], document: Document) -> Iterator[str]:
+    """Yield which limits the gearbox without changes breaks, and why it may lie outside the production."""
+    beyond, outside = list[str](), list[str]()
+    for row in limited:
+        limit, nominal, ends = row["limit"], row["nominal"], row["quantiles"]
+        name = f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}"
+        if not limit.get("at_least", -math.inf) <= nominal <= limit.get("at_most", math.inf):
+            beyond.append(name)
+        if not ends["0.05"] <= nominal <= ends["0.95"]:
+            outside.append(name)
+    if beyond:
+        yield f"The gearbox without changes itself is beyond the limit of {'; '.join(beyond)}."
+    if outside:
+        of_class = any(row["tolerance"].startswith("class") for row in document["inputs"])
+        reason = ": it has none of the deviations that a class adds" if of_class else ""
+        yield f"The gearbox without changes lies outside 5 to 95 % of the production in {'; '.join(outside)}{reason}."
 
 
 def report(document: Document) -> Section:
@@ -324,7 +366,6 @@ def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
     yield from table_of(_COLUMNS, rows, "Distributions")
     leading = [row for row in rows if row["name"] in document["headlines"]]
-    yield from _what_matters(leading)
     by_range = any(row["key"].endswith(".errors.pitch") for row in document["inputs"])
     if by_range and not any("sobol_total" in row for row in leading):
         yield (

@@ -53,7 +53,9 @@ CRITICAL_SPEEDS = 3
 _AT_SENSOR, _OF_SOUND = "dB re 1 µm/s²", "dB re 1 pW"
 
 QUANTITIES = (
-    NamedQuantity("gears", "gear_pair", "transmission_error_peak_to_peak_m"),
+    NamedQuantity(
+        "gears", "gear_pair", "transmission_error_peak_to_peak_m", "transmission error p-p in the first mesh period"
+    ),
     NamedQuantity("gears", "gear_pair", "transmission_error_over_hunting_period_m", over_all_periods=True),
     *(
         NamedQuantity("gears", "gear_pair", f"transmission_error_harmonic_{one}_m", over_all_periods=True)

@@ -202,8 +202,7 @@ def _of_pairs(pairs: Sequence[LoadedGearPair]) -> Named:
     for pair in pairs:
         name, over = f"gear_pair.{pair.geometry.driver.name}-{pair.geometry.driven.name}", _OverAllPeriods(pair)
         yield f"{name}.transmission_error_peak_to_peak_m", pair.static.peak_to_peak_transmission_error
-        if over.periods > 1:
-            yield f"{name}.transmission_error_over_hunting_period_m", over.peak_to_peak
+        yield f"{name}.transmission_error_over_hunting_period_m", over.peak_to_peak
         for number in range(1, HARMONICS + 1):
             yield f"{name}.transmission_error_harmonic_{number}_m", partial(over.harmonic, number)
         yield f"{name}.mesh_stiffness_n_per_m", over.stiffness

@@ -95,11 +95,14 @@ def _findings(gear: Gear, tolerance_class: int) -> Iterator[Finding]:
 
 
 def random_pitch_deviations(tolerances: FlankTolerances, teeth: int, seed: int) -> tuple[float, ...]:
-    """Cumulative pitch deviations of a gear's teeth as they might come from the machine [m], of zero mean.
+    """Cumulative pitch deviations of a gear's teeth that passed inspection in its class [m], of zero mean.
 
-    The single pitches are normal with a third of their tolerance as standard deviation, none beyond it, and close over
-    the turn. A slow part with a lobe a turn, as of teeth cut about an axis beside their own, has normal components of a
-    twelfth of the cumulative tolerance. Where the result is beyond a tolerance, all of it is made smaller.
+    The single pitches are normal with a third of their tolerance as standard deviation σ. As a sum of z independent
+    steps the places would range over 1.25 σ √z and more (Brownian bridge), which of many teeth is beyond F_pT. Steps
+    therefore have a cumulative part with the standard deviation ``min(σ, F_pT / (2.6 √z))`` only; the rest is of places
+    that deviate each by itself, whose steps do not add up. A slow part with a lobe a turn, as of teeth cut about an
+    axis beside their own, has normal components of F_pT / 12. About 1 % of the gears are beyond F_pT; gears beyond a
+    tolerance are rejected and drawn anew, so that none are heaped at the limit.
 
     Parameters
     ----------
@@ -107,13 +110,18 @@ def random_pitch_deviations(tolerances: FlankTolerances, teeth: int, seed: int) 
     teeth : int
     seed : int
     """
-    rng = np.random.default_rng(seed)
-    steps = np.clip(rng.normal(size=teeth), -3.0, 3.0) * tolerances.single_pitch / 3.0
-    places = np.cumsum(steps - steps.mean())
-    slow = rng.normal(size=2) * tolerances.cumulative_pitch / 12.0
+    single, cumulative = tolerances.single_pitch, tolerances.cumulative_pitch
+    deviation = min(single / 3.0, cumulative / 5.0)  # the second, beyond any class, keeps most gears within F_pT
+    of_steps = min(deviation, cumulative / (2.6 * math.sqrt(teeth)))
+    of_places = math.sqrt(0.5 * (deviation**2 - of_steps**2))
     angles = 2.0 * np.pi * np.arange(teeth) / teeth
-    places += slow[0] * np.cos(angles) + slow[1] * np.sin(angles)
-    places -= places.mean()
-    largest_step = float(np.abs(np.diff(places, append=places[:1])).max())
-    beyond = max(float(np.ptp(places)) / tolerances.cumulative_pitch, largest_step / tolerances.single_pitch, 1.0)
-    return tuple((places / beyond).tolist())
+    rng = np.random.default_rng(seed)
+    while True:
+        steps = of_steps * rng.normal(size=teeth)
+        slow = rng.normal(size=2) * cumulative / 12.0
+        places = np.cumsum(steps - steps.mean()) + of_places * rng.normal(size=teeth)
+        places += slow[0] * np.cos(angles) + slow[1] * np.sin(angles)
+        places -= places.mean()
+        largest_step = float(np.abs(np.diff(places, append=places[:1])).max())
+        if largest_step <= single and float(np.ptp(places)) <= cumulative:
+            return tuple(places.tolist())

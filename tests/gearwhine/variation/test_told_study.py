@@ -88,6 +88,36 @@ def test_the_study_begins_with_the_gearboxes_beyond_each_limit_and_the_worst() -
     assert str(first.content[0]) == sentences[0]
 
 
+def test_a_class_of_pitches_beside_a_varied_runout_is_warned_of() -> None:
+    law = Normal(0.0, 1.0)
+    keys = ("gear.pinion.errors.pitch", "gear.pinion.errors.runout", "gear.wheel.errors.pitch")
+    study = told(TEN, np.zeros((10, 3)))
+    both = replace(study, inputs=tuple(Input(key, law, "um", (), ((key, 1.0),), "class 7") for key in keys))
+    (warned,) = [one for one in varied_document(both)["warnings"] if one["name"] == "runout twice"]
+    assert "gear.pinion.errors.pitch and gear.pinion.errors.runout" in warned["message"]
+    pitches_alone = replace(both, inputs=(both.inputs[0], both.inputs[2]), values=np.zeros((10, 2)))
+    assert not [one for one in varied_document(pitches_alone)["warnings"] if one["name"] == "runout twice"]
+
+
+def test_a_nominal_beyond_its_limit_and_too_few_samples_are_said_before_the_varied_keys() -> None:
+    study = told(TEN, np.zeros((10, 2)), limit=97.5)
+    study = replace(study, nominal=Evaluation({LEVEL: 110.0}, study.nominal.curves))
+    sentences, _ = shown(varied_document(study))
+    assert (
+        "The gearbox without changes itself is beyond the limit of sensor top, highest level over speed." in sentences
+    )
+    assert "10 gearboxes are too few to rank 2 inputs: take 20 or more." in sentences
+    assert any("lies outside 5 to 95 % of the production" in one and "a class adds" in one for one in sentences)
+
+
+def test_a_limit_far_from_all_gearboxes_is_within_the_axis_of_the_distributions() -> None:
+    (_, figure) = next(
+        one for one in draw_variation("By hand", told(TEN, limit=50.0)) if one[0] == "vary-distributions"
+    )
+    low, high = figure.axes[0].get_xlim()
+    assert low < 50.0 < 100.0 < high
+
+
 def widened_study() -> VariedResult:
     """Forty gearboxes in three ways: as they are, and each of two inputs wider; the level is uniform up to 100."""
     points = widened_points(np.zeros((40, 2)), (0, 1))
@@ -245,3 +275,21 @@ def test_a_speed_without_a_line_is_a_gap_in_the_picture() -> None:
     (axes,) = dict(draw_variation("By hand", replace(study, nominal=silent)))["vary-speeds"].axes
     assert axes.get_ylim()[0] > 70.0
     assert np.isfinite(axes.lines[1].get_ydata()).tolist() == [True, False, True]
+
+
+def test_the_solved_housing_survives_an_interruption_of_the_samples(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    torque = {"variation.vary": {"operation.torque": {"uniform": ["50 N*m", "90 N*m"]}}, "variation.analyses": ["mass"]}
+    said = list[str]()
+    study = gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm"} | torque)
+    study.progress = lambda text, *_: said.append(text)
+    with monkeypatch.context() as patched:
+        patched.setattr("gearwhine.analyses.variation_result.run_samples", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            study.vary(2, folder=tmp_path)
+    study.vary(2, folder=tmp_path)
+    assert f"modes read from {tmp_path / 'modes.nc'} (unchanged housing)" in said

@@ -62,6 +62,22 @@ def test_random_pitches_are_within_the_class_and_close_over_the_turn() -> None:
     assert random_pitch_deviations(tolerances, 25, 3) == random_pitch_deviations(tolerances, 25, 3)
 
 
+@pytest.mark.parametrize("teeth", [23, 61, 400])
+def test_rejected_gears_leave_no_heap_at_a_pitch_tolerance(teeth: int) -> None:
+    gear = Gear("wheel", teeth, 2.25e-3, np.radians(20.0), 24e-3)
+    tolerances = flank_tolerances(gear, 8)
+    places = np.array([random_pitch_deviations(tolerances, teeth, seed) for seed in range(400)])
+    total = np.ptp(places, axis=1) / tolerances.cumulative_pitch
+    single = np.abs(np.diff(places, axis=1, append=places[:, :1])).max(axis=1) / tolerances.single_pitch
+    for largest in (total, single):
+        assert largest.max() <= 1.0
+        # All values differ, and F_p thins out towards its limit.
+        assert len(np.unique(largest.round(9))) == 400
+    counts, _ = np.histogram(total, np.linspace(0.0, 1.0, 11))
+    assert counts[-1] < counts[-2] < counts[-3] < counts[-4]
+    assert 0.45 < np.median(total) < 0.7
+
+
 @pytest.mark.parametrize(
     ("zone", "millimetres", "low", "high"),
     [
