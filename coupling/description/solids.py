@@ -192,7 +192,8 @@ def overlap_findings(
                 found.add(key)
                 # The axis at the origin is also that of shafts that stand for others, whose sizes mean little.
                 finding = _overlapping(first, second, length)
-                yield replace(finding, severity="warning") if first.axis == second.axis == (0.0, 0.0) else finding
+                apart = first.shaft != second.shaft and first.axis == second.axis == (0.0, 0.0)
+                yield replace(finding, severity="warning") if apart else finding
 
 
 def _on_pin(first: PlacedSolid, second: PlacedSolid, carriers: Mapping[str, str]) -> bool:

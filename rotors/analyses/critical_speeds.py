@@ -85,8 +85,9 @@ def critical_speeds(
     over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
     Where stiffness depends on speed or its cross-coupling drives whirl (k_xy ≠ k_yx, λ with a real part), they are the
     crossings of a Campbell diagram of 60 speeds: in the range that the tables share, or of constants from rest to
-    1.2 times the highest root of the eigenproblem. Damping is left out, which is the usual definition; the damped
-    whirl frequency crosses a little elsewhere, where `gearwhine.rotors.Campbell.crossings` has it.
+    1.2 times the highest root of the eigenproblem, as far as the rotor can turn. Damping is left out, which is the
+    usual definition; the damped whirl frequency crosses a little elsewhere, where `gearwhine.rotors.Campbell.crossings`
+    has it.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def critical_speeds(
     roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
     speeds = roots.eigenvalues.imag
     if speeds.size and not is_conservative(free):
-        high = speed_limit or DIAGRAM_REACH * float(speeds.max())
+        high = min(speed_limit or DIAGRAM_REACH * float(speeds.max()), rotor.highest_speed)
         return _crossed_speeds(rotor, free, 0.0, high, speed_limit, count or speeds.size)
     order = np.argsort(speeds)
     motion = roots.motion

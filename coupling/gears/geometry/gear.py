@@ -550,7 +550,7 @@ def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
 
 _RULES: dict[str, Rule] = {
     "name": Text(),
-    "module": Number(above=0.0, below=1.0, unit="m"),  # a value in mm is refused as such
+    "module": Number(above=0.0, at_most=1.0, unit="m"),  # a value in mm is refused as such
     **dict.fromkeys(("face_width", "addendum", "dedendum", "youngs_modulus", "density"), Number(above=0.0)),
     **dict.fromkeys(("bore", "eccentricity", "tooth_thinning"), Number(at_least=0.0)),
     **dict.fromkeys(("rim_thickness", "web_thickness", "hub_diameter", "hub_width"), Number(above=0.0, optional=True)),

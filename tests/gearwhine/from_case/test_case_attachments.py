@@ -229,10 +229,10 @@ def test_damping_ratios_of_more_modes_than_there_are_are_warned_of() -> None:
         return solve_housing(parse_case({"material": {"steel": steel}, "housing": table}))
 
     longer = solved(8)
-    (found,) = (warning for warning in longer.warnings if warning["name"] == "damping")
+    (found,) = (warning for warning in longer.result_warnings if warning["name"] == "damping")
     assert "lists 8 ratios for 6 modes: the first 6 are taken in order" in found["message"]
     assert longer.damping_ratios.tolist() == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.05, 0.06])
-    assert not [warning for warning in solved(6).warnings if warning["name"] == "damping"]
+    assert not [warning for warning in solved(6).result_warnings if warning["name"] == "damping"]
     with pytest.raises(
         CaseError, match=r"damping_ratio: expected a ratio for each of the 6 modes found, got '5 ratios'"
     ):
