@@ -307,9 +307,7 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(  # a case may have a housing of reduced matrices
-        self, *, detail: bool = False
-    ) -> "Result[HousingModes] | Result[ReducedHousing]":
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes] | Result[ReducedHousing]":
         """Natural modes of the housing, certified complete, with checks of the model.
 
         Of a housing of reduced matrices the modes of these, with what is proved of them.
