@@ -46,15 +46,15 @@ Where the load is uneven across the face, the bodies that pairs share also tilt 
 (:mod:`gearwhine.coupling.gears.stiffness.body_over_face`). Static solutions
 (:func:`gearwhine.coupling.gears.loaded.transmission_error.loaded_transmission_error`) have that at every load. The
 table that motion follows holds one pair alone, and pairs of which each tilts the bodies under the others are no sum of
-such pairs. There the tilt counts at the mean load F of the mesh: a deflection g(p) that repeats with the mesh adds to
-all gaps,
+such pairs. There the tilt counts at the mean load F of the mesh: a deflection g(p) adds to all gaps,
 
     g(p) = delta_tilting(p; F) - delta_even(p; F),
 
 both by the equilibrium of the slices, with and without tilt. So at the mean load motion has the deflection of the
 static solution at every phase, and near it the tangent of bodies that do not tilt, whose mean is within one per cent.
-g is some ten to a hundred nanometres, of the size of the transmission error of good helical gears. Apart from the mean
-load it stays as it is; pitch deviations and damaged teeth do not change it.
+g is some ten to a hundred nanometres, of the size of the transmission error of good helical gears. It repeats with the
+mesh, and where teeth differ with the hunting period: pitch deviations move the load along the face. Apart from the mean
+load it stays as it is.
 """
 
 from __future__ import annotations
@@ -101,6 +101,10 @@ _TRIED = 5
 """Points of an interval of a given stiffness at which its greatest value is looked for."""
 _TILT_PHASES, _TILT_HARMONICS, _TILT_KNOTS = 128, 20, 80
 """Phases at which the tilt of the bodies is solved, number of mesh harmonics retained, and knots of their spline."""
+_TOOTH_TILT_PARTS = 16
+"""Parts of a mesh period at whose ends the tilt is solved tooth by tooth."""
+_MOST_HUNTING = 4000
+"""Mesh periods of a hunting period that is solved whole: a second or two, and 2 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +185,7 @@ class ToothContact:
         Compliance that pairs in contact at once share, C [m/N]; below that of any pair alone.
     mean_load : float
         Mean mesh force along the line of action, negative where the back flanks carry it [N]; the tilt of bodies under
-        an uneven load counts in motion at this load.
+        an uneven load counts in motion at this load, tooth by tooth.
     tooth_counts : tuple of int
         Numbers of teeth of the driver and the driven gear; zeros where the pairs are not known by gears.
     """
@@ -264,7 +268,13 @@ class ToothContact:
             else face_force_table(self.table_faces, self.variant_curves, self.module)
         )
         return law_table(
-            curves, self.entering, self.damping, self.damping_depth, self.shared_compliance, self.body_tilt
+            curves,
+            self.entering,
+            self.damping,
+            self.damping_depth,
+            self.shared_compliance,
+            self.body_tilt,
+            self.tooth_tilts,
         )
 
     @property
@@ -283,30 +293,57 @@ class ToothContact:
     def body_tilt(self) -> PiecewiseCubic | None:
         """Deflection g of the mesh by tilting gear bodies at the mean load [m], over the phase from 0 to 1.
 
-        None where the face is loaded evenly or the bodies are not known, and of flanks without a mean load.
+        That of teeth alike; `tooth_tilts` have what differs. None where the face is loaded evenly or the bodies are not
+        known, and of flanks without a mean load.
         """
-        faces = self.faces
-        if faces is None or not faces.shared.size or self.mean_load <= 0.0:
+        if not self._bodies_tilt:
             return None
-        alike = replace(self.teeth_alike, mean_load=0.0)
-        phases = np.arange(_TILT_PHASES) / _TILT_PHASES
-        places = alike.pairs(phases)
-        slices = places.faces
-        assert slices is not None
-        owner, force = np.nonzero(places.present)[0], np.full(phases.size, self.mean_load)
-        even, loads = face_equilibrium(
-            replace(faces, shared=np.zeros((0, 0))), slices.base, slices.gap, slices.meeting, owner, force
-        )
-        tilting, _ = face_equilibrium(
-            faces, slices.base, slices.gap, slices.meeting, owner, force, touching=loads.touching
-        )
-        deflection = tilting - even
+        deflection = self.teeth_alike._tilt_at(np.arange(_TILT_PHASES) / _TILT_PHASES)
         # Slices come into touch one by one: higher harmonics are their steps.
         harmonics = np.fft.rfft(deflection)[: _TILT_HARMONICS + 1]
-        values = np.fft.irfft(harmonics, _TILT_KNOTS) * (_TILT_KNOTS / phases.size)
-        knots = np.arange(_TILT_KNOTS + 1.0) / _TILT_KNOTS
-        curve = CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
-        return PiecewiseCubic(knots, piecewise.unit_coefficients(curve))
+        values = np.fft.irfft(harmonics, _TILT_KNOTS) * (_TILT_KNOTS / deflection.size)
+        return PiecewiseCubic(np.arange(_TILT_KNOTS + 1.0) / _TILT_KNOTS, _periodic_cubics(values))
+
+    @cached_property
+    def tooth_tilts(self) -> tuple[FloatArray, ...]:
+        """Deflection of the mesh by tilting bodies [m] beside `body_tilt`, as the teeth in mesh differ.
+
+        Cubics on even parts of each mesh period of the hunting period, (h, k, 4). Where that is long, those of the
+        driver's teeth and of the driven gear's, whose sum lacks what the teeth of both do together.
+        """
+        alike = self.body_tilt
+        if alike is None or not self.hunting_numbers:
+            return ()
+        by_gear = self.teeth_of(driver=True), self.teeth_of(driven=True)
+        whole = self.hunting_numbers <= max(_MOST_HUNTING, *(law.hunting_numbers for law in by_gear))
+        tilts = []
+        for law in (self,) if whole else by_gear:
+            phases = np.arange(law.hunting_numbers * _TOOTH_TILT_PARTS) / _TOOTH_TILT_PARTS
+            # Some periods at once, for the memory of their slices.
+            few = np.array_split(phases, math.ceil(phases.size / _TILT_PHASES))
+            beside = np.concatenate([law._tilt_at(part) for part in few]) - alike(phases % 1.0)
+            tilts.append(_periodic_cubics(beside).reshape(-1, _TOOTH_TILT_PARTS, 4))
+        return tuple(tilts)
+
+    @property
+    def _bodies_tilt(self) -> bool:
+        return self.faces is not None and self.faces.shared.size > 0 and self.mean_load > 0.0
+
+    def _tilt_at(self, phases: FloatArray) -> FloatArray:
+        """Deflection of the mesh by tilting bodies at the mean load [m], at `phases` (n,), from the statics."""
+        assert self.faces is not None
+        places = self.pairs(phases)
+        slices = places.faces
+        assert slices is not None
+        owner, column = np.nonzero(places.present)
+        gap = slices.gap + places.pitch_gap[owner, column][:, None]
+        force = np.full(phases.size, self.mean_load)
+        level = replace(self.faces, shared=np.zeros((0, 0)))
+        even, loads = face_equilibrium(level, slices.base, gap, slices.meeting, owner, force)
+        tilting, _ = face_equilibrium(
+            self.faces, slices.base, gap, slices.meeting, owner, force, touching=loads.touching
+        )
+        return tilting - even
 
     @property
     def entering(self) -> FloatArray:
@@ -561,6 +598,12 @@ class ToothContact:
         return np.asarray(
             states.stiffness * np.maximum(0.0, after_shared[:, None] - states.deviation), dtype=np.float64
         )
+
+
+def _periodic_cubics(values: FloatArray) -> FloatArray:
+    """Cubics of a spline through values on even parts of a period, (n, 4), each in a variable from 0 to 1."""
+    curve = CubicSpline(np.arange(values.size + 1.0), np.append(values, values[0]), bc_type="periodic")
+    return piecewise.unit_coefficients(curve)
 
 
 @lru_cache(maxsize=64)  # keyed by identity of the curve, which many contacts share

@@ -29,7 +29,9 @@ The row begins with `HEADER` numbers, at the places named below; then come
   at phase n, at n mod h [m], and its variant; none where all pairs are alike;
 * the cells of the bicubic tables, `CELL` numbers each, by depth, variant and position;
 * with cells, the guesses: the pairs' part of the mesh's compression in the mean over the mesh period, both counted from
-  `FIRST_TOUCH`, at ``DEPTH_UNIT r^2`` of the mesh's for r = 0, 1, ... to one beyond the cells.
+  `FIRST_TOUCH`, at ``DEPTH_UNIT r^2`` of the mesh's for r = 0, 1, ... to one beyond the cells;
+* the tilts of bodies as teeth differ: cubics of a deflection that adds to the gaps of all pairs [m], on even parts of
+  each mesh period of a hunting period, or of that of the driver's teeth and then of that of the driven gear's.
 """
 
 from __future__ import annotations
@@ -274,7 +276,9 @@ INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT = 12, 13, 14, 15
 SHARED, GUESS_AT = 16, 17
 """Compliance that all pairs share, of their gears' bodies [m/N]; where the first guesses of the pairs' fraction of the
 mesh's compression begin, by the depth of cells."""
-HEADER = 18
+TILTS_AT, TILT_PARTS, TILT_PERIOD, OTHER_TILT_PERIOD = 18, 19, 20, 21
+"""Where the tilts begin, the number of their parts in a mesh period, and the mesh periods of both, 0 for none."""
+HEADER = 22
 INTERVAL, PAIR, ENTERING = 2, 8, 2
 
 _PARTS_PER_INTERVAL = 4
@@ -291,6 +295,7 @@ def law_table(
     damping_depth: float,
     shared_compliance: float = 0.0,
     deflection: PiecewiseCubic | None = None,
+    tilts: Sequence[FloatArray] = (),
 ) -> FloatArray:
     """Row of numbers of a contact law.
 
@@ -306,6 +311,8 @@ def law_table(
         [m/N]
     deflection : PiecewiseCubic, optional
         Deflection that adds to the gaps of all pairs, by the phase from 0 to 1 [m].
+    tilts : sequence of ndarray, shape (h, k, 4)
+        Further ones over none, one or two hunting periods [m], see `ToothContact.tooth_tilts`.
     """
     others = [] if deflection is None else [deflection.knots]
     if isinstance(curves, FaceForceTable):
@@ -327,9 +334,10 @@ def law_table(
     intervals = np.column_stack([knots, np.append(1.0 / np.diff(knots), 0.0)])
     # No cubic c0 + c1 u + ... falls below c0 and its negative coefficients together on 0 <= u <= 1.
     lowest = first[..., 0] + np.minimum(first[..., 1:], 0.0).sum(axis=-1)
+    # Beside the tilts, which the kernels take from the compression.
     first_touch = lowest.min() + entering[:, 0].min(initial=0.0)
     guesses = _guesses(curves, first_touch, shared_compliance) if isinstance(curves, FaceForceTable) else np.zeros(0)
-    sections = [array.ravel() for array in (begins, intervals, pairs, entering, cells, guesses)]
+    sections = [array.ravel() for array in (begins, intervals, pairs, entering, cells, guesses, *tilts)]
     at = HEADER + np.cumsum([0, *(section.size for section in sections)])
     header = np.zeros(HEADER)
     header[FIRST_TOUCH] = first_touch
@@ -337,7 +345,9 @@ def law_table(
     header[[FIRST_PAIR, VARIANT_STEP]] = math.floor(gaps[0].knots[0]), pairs[0].size
     header[[DAMPING, DAMPING_DEPTH, HUNTING]] = damping, damping_depth, len(entering)
     header[SHARED] = shared_compliance
-    header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT, GUESS_AT]] = at[1:6]
+    header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT, GUESS_AT, TILTS_AT]] = at[1:7]
+    for period, tilt in zip((TILT_PERIOD, OTHER_TILT_PERIOD), tilts, strict=False):
+        header[[TILT_PARTS, period]] = tilt.shape[1], len(tilt)
     if isinstance(curves, FaceForceTable):
         header[[DEPTH_UNIT, DEPTHS, DEPTH_STEP]] = curves.depth_unit, cells.shape[0], cells[0].size
     return np.concatenate([header, *sections])

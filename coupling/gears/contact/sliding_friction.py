@@ -136,4 +136,4 @@ def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
     weights = (np.ones_like, share(0), share(1))
     table = face_force_table(faces, contact.variant_curves, contact.module, weights, breaks=(friction.pitch_point,))
     entering = contact.entering * [1.0, len(weights)]
-    return law_table(table, entering, 0.0, 0.0, contact.shared_compliance, contact.body_tilt)
+    return law_table(table, entering, 0.0, 0.0, contact.shared_compliance, contact.body_tilt, contact.tooth_tilts)

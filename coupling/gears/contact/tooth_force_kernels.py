@@ -49,11 +49,15 @@ from gearwhine.coupling.gears.contact.lookup_tables import (
     HUNTING,
     INTERVAL,
     INTERVALS_AT,
+    OTHER_TILT_PERIOD,
     PAIR,
     PAIRS,
     PAIRS_AT,
     PARTS,
     SHARED,
+    TILT_PARTS,
+    TILT_PERIOD,
+    TILTS_AT,
     VARIANT_STEP,
 )
 from gearwhine.numerics.compiled import counted, inner, uncounted
@@ -92,6 +96,31 @@ def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, f
         interval += 1
     per_width = law_value(law, place + 1)
     return number, interval, (x - law_value(law, place)) * per_width, per_width
+
+
+@inner(fastmath={"contract"}, forceinline=True)
+def tooth_tilt(law: FloatArray, at: int, phase: float) -> tuple[float, float]:
+    """Deflection of the mesh by tilting bodies as teeth differ [m], and its derivative by the phase."""
+    value, slope = 0.0, 0.0
+    first = int(law_value(law, at + TILT_PERIOD))
+    if first > 0:
+        per_period = law_value(law, at + TILT_PARTS)
+        parts, number = int(per_period), int(np.floor(phase))
+        u = (phase - np.floor(phase)) * per_period
+        part = min(int(u), parts - 1)
+        u -= part
+        start, second = at + int(law_value(law, at + TILTS_AT)), int(law_value(law, at + OTHER_TILT_PERIOD))
+        place = start + 4 * (parts * (number % first) + part)
+        c1, c2, c3 = law_value(law, place + 1), law_value(law, place + 2), law_value(law, place + 3)
+        value = law_value(law, place) + u * (c1 + u * (c2 + u * c3))
+        slope = c1 + u * (2.0 * c2 + 3.0 * u * c3)
+        if second > 0:
+            place = start + 4 * (parts * (first + number % second) + part)
+            c1, c2, c3 = law_value(law, place + 1), law_value(law, place + 2), law_value(law, place + 3)
+            value += law_value(law, place) + u * (c1 + u * (c2 + u * c3))
+            slope += c1 + u * (2.0 * c2 + 3.0 * u * c3)
+        slope *= per_period
+    return value, slope
 
 
 @inner(fastmath={"contract"}, forceinline=True)
@@ -270,6 +299,12 @@ def ranked_penetration(phase: float, compression: float, law: FloatArray, at: in
     their number it gives the distance to the next change. Before the pair touches, the pairs ahead of it carry the load
     and their gears' bodies deflect by ``c F``.
     """
+    return _ranked(phase, compression - tooth_tilt(law, at, phase)[0], law, at, rank)
+
+
+@uncounted(fastmath={"contract"})
+def _ranked(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
+    """`ranked_penetration` by the compression beside `tooth_tilt`."""
     number, interval, u, _ = locate(law, at, phase)
     pairs, hunting = int(law_value(law, at + PAIRS)), int(law_value(law, at + HUNTING))
     start = at + int(law_value(law, at + PAIRS_AT)) + PAIR * pairs * interval
@@ -292,6 +327,8 @@ def ranked_penetration(phase: float, compression: float, law: FloatArray, at: in
 @inner(fastmath={"contract"}, forceinline=True)
 def _contact_force_and_energy(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
     """Evaluate the law, as `tooth_force` returns it; where it is inlined, what a caller leaves is not computed."""
+    tilt, tilt_slope = tooth_tilt(law, at, phase)
+    compression -= tilt
     if compression <= law_value(law, at + FIRST_TOUCH):
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     number, interval, u, per_width = locate(law, at, phase)
@@ -356,7 +393,7 @@ def _contact_force_and_energy(phase: float, compression: float, rate: float, law
         if abs(excess - nearest) <= doubt and not uneven:
             # Within rounding of its first touch a pair counts if the search for that event counts it.
             # At least one touches; max() is no literal, for which the kernel would be compiled anew.
-            touches = ranked_penetration(phase, compression, law, at, max(touching, 1)) > 0.0
+            touches = _ranked(phase, compression, law, at, max(touching, 1)) > 0.0
         if touches:
             energy += excess * (0.5 * excess * tangent - force)
             slope += excess * (excess * curve - slope_by_x)
@@ -369,7 +406,7 @@ def _contact_force_and_energy(phase: float, compression: float, rate: float, law
     energy += 0.5 * shared * force * force
     gain = 1.0 / (1.0 + shared * tangent)
     tangent *= gain
-    slope *= per_width
+    slope = slope * per_width - force * tilt_slope
     damping, damping_depth = law_value(law, at + DAMPING), law_value(law, at + DAMPING_DEPTH)
     if deepest < damping_depth:
         tangent += damping * rate / damping_depth * gain
@@ -445,6 +482,7 @@ def tooth_energy(phase: float, compression: float, force: float, law: FloatArray
     force : float
         Elastic force of the pairs [N], about.
     """
+    compression -= tooth_tilt(law, at, phase)[0]
     if compression <= law_value(law, at + FIRST_TOUCH):
         return 0.0
     number, interval, u, _ = locate(law, at, phase)
@@ -534,6 +572,7 @@ def friction_shares(
     pitch_point, path_end : float
         Distances as in `gearwhine.coupling.gears.contact.sliding_friction.SlidingFriction`.
     """
+    compression -= tooth_tilt(law, at, phase)[0]
     number, interval, u, _ = locate(law, at, phase)
     # Compression of the pairs without that of the gears' bodies.
     flank_compression, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)

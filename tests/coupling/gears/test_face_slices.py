@@ -28,7 +28,9 @@ from gearwhine.coupling.gears.contact.face_slices import (
     slice_stiffness,
     tooth_coupling,
 )
-from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.contact.lookup_tables import TILT_PERIOD
+from gearwhine.coupling.gears.contact.tooth_force_kernels import ranked_penetration, tooth_force, tooth_force_history
+from gearwhine.numerics.arrays import FloatArray
 
 ALPHA = math.radians(20.0)
 MODEL = PotentialEnergyStiffness()
@@ -305,12 +307,10 @@ def test_what_a_table_misses_beside_a_spall_is_what_the_slices_miss() -> None:
 
 @pytest.mark.parametrize("back", [False, True])
 def test_at_the_mean_load_the_table_carries_what_slices_on_tilting_bodies_carry(uneven, back: bool) -> None:  # type: ignore[no-untyped-def]
-    """On the flanks that carry it; the others have no mean load. Pitch deviations leave the tilt as it is."""
+    """On the flanks that carry it; the others have no mean load."""
     given = uneven.with_damping(0.0).under_load(-FORCE if back else FORCE)
     loaded, other = (given.back_flanks, given) if back else (given, given.back_flanks)
     assert other.body_tilt is None
-    pitched = replace(loaded, pitch_gaps=np.array([0.0, 3e-6]))
-    np.testing.assert_array_equal(pitched.body_tilt(PHASES), loaded.body_tilt(PHASES))
     without = loaded.under_load(0.0)
     mesh = loaded_transmission_error(loaded, FORCE, PHASES)
     forces = np.array(
@@ -322,6 +322,65 @@ def test_at_the_mean_load_the_table_carries_what_slices_on_tilting_bodies_carry(
     misses = np.abs(forces / FORCE - 1.0).max(axis=0)
     assert misses[0] < 1e-3
     assert misses[1] > 4.0 * misses[0]
+
+
+@pytest.fixture(scope="module")
+def unequal(uneven) -> object:  # type: ignore[no-untyped-def]
+    """Every pair of teeth with a gap of its own."""
+    z1, z2 = PINION.teeth, WHEEL.teeth
+    random = np.random.default_rng(3)
+    of_driver, of_driven = random.normal(0.0, 4e-6, z1), random.normal(0.0, 4e-6, z2)
+    number = np.arange(math.lcm(z1, z2))
+    gaps = of_driver[number % z1] + of_driven[number % z2]
+    return replace(
+        uneven.with_damping(0.0).under_load(FORCE), pitch_gaps=gaps, back_pitch_gaps=gaps, tooth_counts=(z1, z2)
+    )
+
+
+@pytest.mark.parametrize(("whole", "better"), [(True, 2.0), (False, 1.3)])
+def test_at_the_mean_load_the_table_carries_what_unequal_teeth_carry(unequal, whole, better, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    """Tooth by tooth, as these move the load along the face; by the teeth of each gear where there are too many."""
+    if not whole:
+        monkeypatch.setattr("gearwhine.coupling.gears.contact.contact_law._MOST_HUNTING", 1)
+    law = replace(unequal)
+    phases = np.random.default_rng(5).uniform(-unequal.hunting_period, 2.0 * unequal.hunting_period, 200)
+    mesh = loaded_transmission_error(unequal, FORCE, phases)
+    misses = [
+        np.std(tooth_force_history(phases, mesh.transmission_error, 0.0 * phases, *kernel)[:, 0] / FORCE)
+        for kernel in (law.kernel_arguments, frozen(law))
+    ]
+    assert misses[0] < 2e-3
+    assert misses[1] > better * misses[0]
+
+
+def frozen(law) -> tuple[FloatArray, int]:  # type: ignore[no-untyped-def]
+    """Law with the bodies' tilt of teeth alike."""
+    numbers, at = law.kernel_arguments
+    alike = numbers.copy()
+    alike[TILT_PERIOD] = 0
+    return alike, at
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_the_force_of_unequal_teeth_is_the_slope_of_their_energy(unequal, whole, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    """And the pairs that touch are those whose penetration is positive."""
+    if not whole:
+        monkeypatch.setattr("gearwhine.coupling.gears.contact.contact_law._MOST_HUNTING", 1)
+    law, at = replace(unequal).kernel_arguments
+    random = np.random.default_rng(6)
+    phases, depths, still = random.uniform(-9.0, 90.0, 60), random.uniform(4e-6, 30e-6, 60), np.zeros(60)
+
+    def evaluated(later: float, deeper: float) -> FloatArray:
+        return tooth_force_history(phases + later, depths + deeper, still, law, at)
+
+    force, slope, touching = evaluated(0.0, 0.0)[:, [0, 4, 5]].T
+    by_depth = (evaluated(0.0, 1e-10) - evaluated(0.0, -1e-10))[:, 3] / 2e-10
+    by_phase = (evaluated(1e-6, 0.0) - evaluated(-1e-6, 0.0))[:, 3] / 2e-6
+    np.testing.assert_allclose(by_depth, force, atol=1e-5 * FORCE)
+    np.testing.assert_allclose(by_phase, slope, atol=1e-5 * np.abs(slope).max())
+    for phase, depth, count in zip(phases, depths, touching, strict=True):
+        ranks = [ranked_penetration(phase, depth, law, at, rank) > 0.0 for rank in (int(max(count, 1)), int(count) + 1)]
+        assert ranks == [count > 0, False]
 
 
 @pytest.mark.slow
