@@ -277,7 +277,7 @@ class CaseStudy(Study):
             from gearwhine.results.variation import runout_twice_warnings
 
             inputs, _ = plan_variation(self.case, self._source)
-            warnings = list(runout_twice_warnings(inputs))
+            warnings = list(runout_twice_warnings(inputs, self.case.gear))
         if self.case.detection is not None:
             from gearwhine.analyses.detection_result import plan_detection
 

@@ -498,7 +498,7 @@ def plan_optimisation(
         if any(YIELD in names for names in goals.values()):
             refusal.add(*name_problems(case, wanted, ("variation", "limit"), good))
         refusal.add(*name_problems(case, wanted, ("optimisation", "quantities"), optimisation.quantities))
-    refusal.require_none()
+    refusal.require_none(source.name)
     return inputs, _scatter(optimisation.robust, variation, plain, inputs), wanted_of(case, asked, "optimise")
 
 

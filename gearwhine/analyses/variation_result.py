@@ -35,7 +35,7 @@ from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points
 from gearwhine.output import file_stems, staging
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import RPM
-from gearwhine.results.variation import VARIED, varied_document
+from gearwhine.results.variation import VARIED, runout_twice_warnings, varied_document
 from gearwhine.settings import Settings
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
@@ -120,7 +120,8 @@ def solve_variation(
                 (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
         return {}
 
-    return _result(origin, result, start, worst_cases, varied.start_warnings)
+    warnings = [*varied.start_warnings, *runout_twice_warnings(inputs, case.gear)]
+    return _result(origin, result, start, worst_cases, warnings)
 
 
 @dataclass(frozen=True)
@@ -259,14 +260,16 @@ def plan_variation(case: Case, source: CaseSource) -> tuple[tuple[Input, ...], W
     if not variation.vary:
         raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
     inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
-    refusal.add(*_value_problems(source.without("variation"), inputs))
+    tied = np.zeros(len(inputs), dtype=bool)
     with refusal:
-        correlation_matrix(inputs, variation)
+        matrix = correlation_matrix(inputs, variation)
+        tied |= False if matrix is None else (matrix != np.eye(len(inputs))).any(axis=0)
+    refusal.add(*_value_problems(source.without("variation"), inputs, tied.tolist()))
     with refusal:
         wanted = wanted_of(case, variation)
         refusal.add(*name_problems(case, wanted, ("variation", "quantities"), variation.quantities))
         refusal.add(*name_problems(case, wanted, ("variation", "limit"), variation.limit))
-    refusal.require_none()
+    refusal.require_none(source.name)
     return inputs, wanted_of(case, variation)
 
 
@@ -637,20 +640,38 @@ def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
         raise CaseError(Problem(f"variation.quantities[{place}]", name, expected) for place, name in without)
 
 
-def _value_problems(source: CaseSource, inputs: Sequence[Input]) -> Iterator[Problem]:
-    """Yield problems of keys that do not take their median, or one of their values.
+def _value_problems(source: CaseSource, inputs: Sequence[Input], tied: Sequence[bool]) -> Iterator[Problem]:
+    """Yield problems of keys that do not take their median, an end of their range, or one of their values.
 
-    Those of several keys together are told by their gearbox.
+    A value of a list may fail alone, and an input that a correlation ties to others may fit the case with these alone:
+    there only the key itself is checked.
     """
-    for one in inputs:
-        every = one.law.values[:_MOST_CHECKED] if isinstance(one.law, Discrete) else ()
-        for texts in map(list, map(one.overrides_of, every) if every else [one.overrides(0.5)]):
+    for one, with_others in zip(inputs, tied, strict=True):
+        for texts in map(list, _tried(one)):
             try:
-                source.changed(texts)
+                source.changed_case(texts)
             except CaseError as error:
                 sources = [f"--set {text}" for text in texts]
                 own = [problem for problem in error.problems if problem.source in sources]
-                yield from (replace(problem, source=f"variation.vary, {one.name}") for problem in own)
+                told = own or ([] if with_others or isinstance(one.law, Discrete) else error.problems)
+                # A problem of another key does not show the value.
+                value = "" if own else f" = {texts[0].partition('=')[2]}"
+                yield from (
+                    replace(problem, source=f"{source.name}: variation.vary, {one.name}{value}") for problem in told
+                )
+                if told:
+                    break
+
+
+def _tried(one: Input) -> Iterator[Iterator[str]]:
+    """Yield the changes by an input's values: all of a list, or its median and the ends of its range."""
+    if isinstance(one.law, Discrete):
+        yield from map(one.overrides_of, one.law.values[:_MOST_CHECKED])
+        return
+    yield one.overrides(0.5)
+    if not isinstance(one.law, Pitches):
+        ends = one.law.quantile(np.array([0.0, 1.0]))
+        yield from map(one.overrides_of, ends[np.isfinite(ends)].tolist())
 
 
 def _result(

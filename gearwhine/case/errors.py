@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 Location = tuple[str | int, ...]
 """Where a value stands in a case file: table keys and list indices from the top."""
@@ -139,15 +139,15 @@ class Refusal:
         """Keep problems."""
         self.problems |= dict.fromkeys(problems)
 
-    def require_none(self) -> None:
-        """Refuse what has been found.
+    def require_none(self, source: str = "") -> None:
+        """Refuse what has been found, in the file `source` where a problem names no other.
 
         Raises
         ------
         CaseError
         """
         if self.problems:
-            raise CaseError(self.problems)
+            raise CaseError([replace(problem, source=problem.source or source) for problem in self.problems])
 
 
 LOOK_UP = _Nothing()

@@ -214,7 +214,7 @@ def built_distribution(varied: Varied) -> tuple[Distribution, str] | None:
         words = []
         for one in error.findings:
             name = _NAMED.get(one.attribute, one.attribute)
-            words.append(f"{one.expected} {unit}".strip() + f" as {name}, which is {one.value} {unit}".rstrip())
+            words.append(f"{one.expected} {unit}".strip() + f" as {name}, got {one.value:g} {unit}".rstrip())
         raise ValueError("; ".join(words)) from None
 
 
@@ -233,6 +233,8 @@ def in_one_unit(amounts: tuple[float | str, ...]) -> tuple[list[float], str]:
         unit = own if place == 0 else unit
         ratio = units.unit_ratio(own, unit)
         if ratio is None:
-            raise ValueError(f"numbers that measure the same as {amounts[0]!r}, with a unit each")
+            raise ValueError(
+                f"numbers that measure the same as {amounts[0]!r}, with a unit each, got {amounts[place]!r}"
+            )
         numbers.append(float(number) * float(ratio))
     return numbers, unit

@@ -14,6 +14,7 @@ from gearwhine.results.many_solutions import ending, failed_sentences, failed_so
 from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
+    from gearwhine.case.gears import Gear
     from gearwhine.numerics.sobol_indices import SobolIndices
     from gearwhine.variation.inputs import Input
     from gearwhine.variation.statistics import QuantityStatistics, VariedResult
@@ -186,7 +187,6 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
             f"samples, some {2 ** int(np.ceil(np.log2(needed)))} in place of {varied.design.rows}"
         )
         yield warning("few samples", message)
-    yield from runout_twice_warnings(varied.inputs)
     for one in varied.headlines:
         part = varied.at_end_of_speeds(one.name)
         if part is not None and part > _MANY_AT_END:
@@ -197,15 +197,32 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
             yield warning("loudest speed", message, share=part)
 
 
-def runout_twice_warnings(inputs: Sequence["Input"]) -> Iterator[ResultWarning]:
-    """Warn of gears whose eccentricity is drawn twice: as their runout, and in the slow part of their pitches."""
-    keys = {key for one in inputs for key, _ in one.keys}
-    for key in sorted(key for key in keys if key.endswith(".errors.pitch")):
-        table = key.removesuffix("pitch")
-        if twice := keys & {f"{table}runout", f"{table}eccentricity"}:
+def runout_twice_warnings(inputs: Sequence["Input"], gears: Sequence["Gear"] = ()) -> Iterator[ResultWarning]:
+    """Warn of gears whose eccentricity counts twice: as their runout, and in the slow part of their pitches.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+    gears : sequence of Gear
+        Gears of the case: what these have without being varied counts, too.
+    """
+    varied = {key for one in inputs for key, _ in one.keys}
+    written = dict[str, str]()
+    for gear in gears:
+        for key in ("pitch", "spacing", "runout", "eccentricity"):
+            if getattr(gear.errors, key):
+                written[f"gear.{gear.name}.errors.{key}"] = "written"
+    told = written | dict.fromkeys(varied, "varied")
+    for table in sorted({key.rpartition(".")[0] for key in varied if ".errors." in key}):
+        pitches, offsets = (
+            [key for name in names if (key := f"{table}.{name}") in told]
+            for names in (("pitch", "spacing"), ("runout", "eccentricity"))
+        )
+        if pitches and offsets and {*pitches, *offsets} & varied:
             message = (
-                f"{key} and {twice.pop()} are both varied: pitch deviations of a class have a slow part over the turn, "
-                "which is the eccentricity of the teeth that a runout is, too; vary one of them, or it counts twice"
+                f"{pitches[0]} is {told[pitches[0]]} and {offsets[0]} is {told[offsets[0]]}: the deviations of all "
+                "pitches have a slow part over the turn, which is the eccentricity of the teeth that a runout is, too; "
+                "give one of them, or it counts twice"
             )
             yield warning("runout twice", message)
 

@@ -224,13 +224,13 @@ class _Keys:
         if varied.independent:
             for place in places:
                 name = key_of(_named_place(document, place))
-                yield Input(name, *self._law(place, varied), ((key_of(place), 1.0),), varied.words)
+                yield Input(name, *self._law(place, varied), ((name, 1.0),), varied.words)
             return
         if (varied.kind == "class" or (varied.fit and varied.size is None)) and len(places) > 1:
             raise _CannotVaryError(
                 f"independent = true beside {varied.kind!r}: each of the {len(places)} entries has a size of its own"
             )
-        keys = tuple((key_of(place), _factor(document, place, varied)) for place in places)
+        keys = tuple((key_of(_named_place(document, place)), _factor(document, place, varied)) for place in places)
         yield Input(key, *self._law(places[0], varied), keys, varied.words)
 
     def _refusal(self, override: str) -> str | None:

@@ -19,7 +19,7 @@ from gearwhine.numerics.distributions import Discrete, Normal
 from gearwhine.numerics.sampling import sobol_points, widened_points
 from gearwhine.output.sections import Document, Table
 from gearwhine.results.first_page import first_page
-from gearwhine.results.variation import sections, varied_document
+from gearwhine.results.variation import runout_twice_warnings, sections, varied_document
 from gearwhine.variation.inputs import Input
 from gearwhine.variation.quantities import Evaluation
 from gearwhine.variation.statistics import VariedResult
@@ -89,14 +89,23 @@ def test_the_study_begins_with_the_gearboxes_beyond_each_limit_and_the_worst() -
 
 
 def test_a_class_of_pitches_beside_a_varied_runout_is_warned_of() -> None:
-    law = Normal(0.0, 1.0)
     keys = ("gear.pinion.errors.pitch", "gear.pinion.errors.runout", "gear.wheel.errors.pitch")
-    study = told(TEN, np.zeros((10, 3)))
-    both = replace(study, inputs=tuple(Input(key, law, "um", (), ((key, 1.0),), "class 7") for key in keys))
-    (warned,) = [one for one in varied_document(both)["warnings"] if one["name"] == "runout twice"]
-    assert "gear.pinion.errors.pitch and gear.pinion.errors.runout" in warned["message"]
-    pitches_alone = replace(both, inputs=(both.inputs[0], both.inputs[2]), values=np.zeros((10, 2)))
-    assert not [one for one in varied_document(pitches_alone)["warnings"] if one["name"] == "runout twice"]
+    pitch, runout, other = (Input(key, Normal(0.0, 1.0), "um", (), ((key, 1.0),), "class 7") for key in keys)
+    (warned,) = runout_twice_warnings([pitch, runout, other])
+    assert "gear.pinion.errors.pitch is varied and gear.pinion.errors.runout is varied" in warned["message"]
+    assert not list(runout_twice_warnings([pitch, other]))
+
+
+def test_a_class_of_pitches_beside_a_runout_of_the_case_is_warned_of(tmp_path: Path) -> None:
+    bundled = bundled_case("spur-pair")
+    assert bundled is not None
+    text = bundled.read_text().replace('name = "wheel"', 'name = "wheel"\nerrors = { runout = "20 um" }', 1)
+    varied = '[variation.vary]\n"gear.*.errors.pitch" = { class = 7, independent = true }\n'
+    path = tmp_path / "case.toml"
+    path.write_text(f"{text}\n{varied}")
+    twice = [text for text in gw.load(path).check().warnings if "counts twice" in text]
+    assert len(twice) == 1
+    assert "gear.wheel.errors.pitch is varied and gear.wheel.errors.runout is written" in twice[0]
 
 
 def test_a_nominal_beyond_its_limit_and_too_few_samples_are_said_before_the_varied_keys() -> None:

@@ -36,14 +36,14 @@ def _inputs(tmp_path: Path, text: str, case: str = "helical-pair", changes: Sequ
 def test_tied_keys_have_one_value_times_their_factor(tmp_path: Path) -> None:
     text = 'vary = { "gear.*.helix_angle" = { uniform = ["12 deg", "16 deg"], factor = { wheel = -1 } } }'
     (one,) = _inputs(tmp_path, text)
-    assert list(one.overrides(0.25)) == ["gear[0].helix_angle=13.0 deg", "gear[1].helix_angle=-13.0 deg"]
+    assert list(one.overrides(0.25)) == ["gear.pinion.helix_angle=13.0 deg", "gear.wheel.helix_angle=-13.0 deg"]
 
 
 def test_a_star_stands_for_every_entry_that_takes_the_key(tmp_path: Path) -> None:
     """The pinion has a helix table, the wheel none; both are varied, each by itself, at its own tolerance."""
     pinion, wheel = _inputs(tmp_path, f'vary = {{ "gear.*.{HELIX}" = {{ class = 5, independent = true }} }}')
     assert (pinion.name, wheel.name) == (f"gear.pinion.{HELIX}", f"gear.wheel.{HELIX}")
-    assert [key for key, _ in (*pinion.keys, *wheel.keys)] == [f"gear[0].{HELIX}", f"gear[1].{HELIX}"]
+    assert [key for key, _ in (*pinion.keys, *wheel.keys)] == [f"gear.pinion.{HELIX}", f"gear.wheel.{HELIX}"]
     for one, teeth in ((pinion, 23), (wheel, 41)):
         diameter = teeth * 3.0 / np.cos(np.radians(15.0))
         tolerance = 0.05 * np.sqrt(diameter) + 0.35 * np.sqrt(25.0) + 4.0
@@ -55,7 +55,7 @@ def test_a_star_stands_for_every_entry_that_takes_the_key(tmp_path: Path) -> Non
 def test_a_star_leaves_out_entries_that_do_not_take_the_key(tmp_path: Path) -> None:
     """Two of the four bearings have a matrix, which has no xx."""
     (one,) = _inputs(tmp_path, 'vary = { "bearing.*.stiffness.xx" = { uniform = ["1e8 N/m", "2e8 N/m"] } }')
-    assert [key for key, _ in one.keys] == ["bearing[1].stiffness.xx", "bearing[3].stiffness.xx"]
+    assert [key for key, _ in one.keys] == ["bearing.input-right.stiffness.xx", "bearing.output-right.stiffness.xx"]
 
 
 def test_units_of_one_distribution_may_differ(tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_pitch_deviations_are_those_of_all_teeth_and_stand_in_the_case(tmp_path:
     (first,), (second,) = list(one.overrides(0.3)), list(one.overrides(0.7))
     key, _, listed = first.partition("=")
     deviations = np.array([float(text) for text in listed.strip("[]").split(",")])
-    assert key == "gear[0].errors.pitch"
+    assert key == "gear.pinion.errors.pitch"
     assert deviations.size == 23
     assert one.value(0.3) == np.ptp(deviations)
     assert first != second
@@ -134,10 +134,10 @@ def test_words_and_whole_numbers_are_written_as_they_stand(tmp_path: Path) -> No
     text = 'vary = { "rotor.input.mass" = { values = ["lumped", "distributed"], weights = [1, 3] }, '
     mass, teeth = _inputs(tmp_path, text + '"gear.pinion.teeth" = { values = [22, 23] } }')
     assert [list(mass.overrides(at)) for at in (0.2, 0.3)] == [
-        ["rotor[0].mass=lumped"],
-        ["rotor[0].mass=distributed"],
+        ["rotor.input.mass=lumped"],
+        ["rotor.input.mass=distributed"],
     ]
-    assert list(teeth.overrides(0.1)) == ["gear[0].teeth=22"]
+    assert list(teeth.overrides(0.1)) == ["gear.pinion.teeth=22"]
 
 
 def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> None:

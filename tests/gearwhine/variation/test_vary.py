@@ -297,6 +297,14 @@ def test_a_median_that_the_key_does_not_take_is_refused_before_anything_is_solve
         gw.load(_shaft(tmp_path, wrong)).vary(4, folder=tmp_path / "out", workers=1)
 
 
+def test_an_end_that_makes_no_gearbox_is_refused_before_anything_is_solved(tmp_path: Path) -> None:
+    """Teeth thinned by 2 mm are undercut, though the key takes any length."""
+    text = '[variation.vary]\n"gear.pinion.tooth_thinning" = { uniform = ["0 mm", "2 mm"] }\n'
+    pattern = r"case\.toml: variation\.vary, gear\.pinion\.tooth_thinning = 2\.0 mm: gear\[0\]"
+    with pytest.raises(CaseError, match=pattern):
+        gw.load(_written(tmp_path, "spur-pair", text)).check()
+
+
 def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
     """The critical speed of a stiff disc on a massless shaft in short bearings goes as the square of its diameter."""
     steel = gw.ShaftMaterial(207e9, 80e9, 1e-3)
