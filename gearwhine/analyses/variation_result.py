@@ -32,7 +32,7 @@ from gearwhine.numerics.names import one_of
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints, index_points, sobol_points, widened_points
-from gearwhine.output import file_stems, staging
+from gearwhine.output import staging
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import RPM
 from gearwhine.results.variation import VARIED, runout_twice_warnings, varied_document
@@ -112,12 +112,11 @@ def solve_variation(
 
     def worst_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
         """Write the worst gearboxes as cases."""
-        for one, stem in zip(result.headlines, file_stems([one.name for one in result.headlines]), strict=True):
-            for worst in result.worst_gearboxes(one):
-                sample = varied.case(result.points[worst.number])
-                told = _told(worst, sample.title, sample.notes, sample.operation if wanted.speeds else None)
-                text = dump_case(sample.model_copy(update=told))
-                (place / f"worst-{stem}-{worst.rank}.toml").write_text(text, encoding="utf-8")
+        for worst in result.worst_gearboxes:
+            sample = varied.case(result.points[worst.number])
+            told = _told(worst, sample.title, sample.notes, sample.operation if wanted.speeds else None)
+            assert worst.file is not None
+            (place / worst.file).write_text(dump_case(sample.model_copy(update=told)), encoding="utf-8")
         return {}
 
     warnings = [*varied.start_warnings, *runout_twice_warnings(inputs, case.gear)]

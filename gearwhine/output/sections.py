@@ -39,6 +39,8 @@ class Column:
         Takes the text of the cell from the row for the terminal and the report, in place of the value by its format.
     numbers : tuple of str
         Keys of further numbers in the text, which exported tables have in columns of their own.
+    file : str, optional
+        Key of the name of a file beside the report, to which the cell links.
     """
 
     heading: str
@@ -48,6 +50,7 @@ class Column:
     link: Callable[[Row], Sequence[str]] | None = None
     shown: Callable[[Row], str] | None = None
     numbers: tuple[str, ...] = ()
+    file: str = ""
 
     def text(self, row: Row) -> str:
         """Return the cell of a row; empty where there is no value."""

@@ -132,13 +132,14 @@ VARIED = (
     Quantity("speeds_rpm", lambda varied: (np.abs(varied.speeds) * RPM).tolist()),
     Rows(
         "worst",
-        lambda varied: [worst for one in varied.headlines for worst in varied.worst_gearboxes(one)],
+        "worst_gearboxes",
         (
             Quantity("quantity", "name"),
             Quantity("rank"),
             Quantity("gearbox", "number"),
             Quantity("value"),
             Quantity("speed_rpm", lambda one: None if one.speed is None else abs(one.speed) * RPM, optional=True),
+            Quantity("case", "file", optional=True),
         ),
     ),
     Part("yield", "yielded", SHARE, optional=True),
@@ -296,7 +297,7 @@ _LIMIT_COLUMNS = (
 _WORST_COLUMNS = (
     Column("of", lambda row: part_of(row["quantity"])),
     Column("quantity", lambda row: shown_quantity(row["quantity"])[0]),
-    Column("gearbox", "gearbox", "d"),
+    Column("gearbox", "gearbox", "d", file="case"),
     Column("value", _number(lambda row: row["value"], ".5g")),
     Column("at [rpm]", "speed_rpm", ".5g"),
 )
@@ -331,7 +332,7 @@ def summary(document: Document) -> Iterator[str | Table]:
     yield from table_of(_LIMIT_COLUMNS, limited, "Gearboxes beyond the limits; in brackets: 95 % interval")
     yield from _about_nominal(limited, document)
     ranks = _MOST_RANKS if len(document["headlines"]) <= _MOST_RANKED else 1
-    files = ", each with a case of its own, worst-….toml" if any(row["tolerance"] for row in document["inputs"]) else ""
+    files = ", each with a case of its own, worst-….toml" if any("case" in row for row in document["worst"]) else ""
     worst = [row for row in document["worst"] if row["rank"] <= ranks]
     yield from table_of(_WORST_COLUMNS, worst, f"Worst gearboxes{files}")
     if speeds := document["speeds_rpm"]:

@@ -15,6 +15,7 @@ from gearwhine.numerics.arrays import BoolArray, FloatArray
 from gearwhine.numerics.explained_parts import explained_parts
 from gearwhine.numerics.sampling import IndexPoints, WidenedPoints
 from gearwhine.numerics.sobol_indices import CONFIDENCE, SobolIndices, sobol_indices
+from gearwhine.output import file_stems
 from gearwhine.output.quantity import unit_of
 from gearwhine.solutions import Failure
 from gearwhine.variation.inputs import Input
@@ -28,7 +29,8 @@ WORST = 3
 """Number of the worst gearboxes of a quantity that are written as cases."""
 CHANCE = 0.001
 """Probability by chance of an explained part or a rank correlation above which it is not told."""
-_LEADING = ("level_db", "sound_power_db", "transmission_error_peak_to_peak_m")
+_OF_ONE_PERIOD, _OF_ALL_PERIODS = "transmission_error_peak_to_peak_m", "transmission_error_over_hunting_period_m"
+_LEADING = ("level_db", "sound_power_db", _OF_ONE_PERIOD)
 _LEAST_SPEEDS = 3  # below which every speed is an end
 _LEAST_FOR_RANKS = 8  # samples below which no correlation is told
 _ROUNDING = 1e-9  # range of values over the largest that solutions to their tolerance may have without any input
@@ -272,6 +274,8 @@ class WorstGearbox:
     value : float
     speed : float or None
         Signed speed at which the value is the highest over speed [rad/s]; None of a quantity without speeds.
+    file : str or None
+        Name of the file with its case; None of a machine of Python.
     """
 
     name: str
@@ -279,6 +283,7 @@ class WorstGearbox:
     number: int
     value: float
     speed: float | None
+    file: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -359,12 +364,23 @@ class VariedResult:
             [one.numbers.get(name, math.nan) if isinstance(one, Evaluation) else math.nan for one in self.outcomes]
         )
 
-    def worst_gearboxes(self, one: QuantityStatistics) -> list[WorstGearbox]:
-        """Return the worst gearboxes of a quantity, the worst first."""
-        return [
-            WorstGearbox(one.name, rank, number, float(one.values[number]), self.speed_of_highest(one.name, number))
+    @cached_property
+    def worst_gearboxes(self) -> tuple[WorstGearbox, ...]:
+        """The worst gearboxes of each headline, the worst first."""
+        of_case = any(one.tolerance for one in self.inputs)
+        stems = file_stems([one.name for one in self.headlines], "worst-")
+        return tuple(
+            WorstGearbox(
+                one.name,
+                rank,
+                number,
+                float(one.values[number]),
+                self.speed_of_highest(one.name, number),
+                f"{stem}-{rank}.toml" if of_case else None,
+            )
+            for one, stem in zip(self.headlines, stems, strict=True)
             for rank, number in enumerate(one.worst, start=1)
-        ]
+        )
 
     def speed_of_highest(self, name: str, number: int) -> float | None:
         """Signed speed at which a quantity of a sample is the highest over speed [rad/s]; None of another quantity."""
@@ -435,10 +451,19 @@ class VariedResult:
 
     @property
     def headlines(self) -> tuple[QuantityStatistics, ...]:
-        """Quantities that are drawn: those with a limit, else levels and transmission errors, else all."""
-        varying = [one for one in self.quantities if one.scatters]
-        limited = [one for one in varying if one.limit is not None]
-        return tuple(limited or [one for one in varying if one.name.endswith(_LEADING)] or varying)
+        """Quantities that are drawn: those with a limit, else levels and transmission errors, else all.
+
+        The transmission error is that over the hunting period where teeth differ: its first mesh period has one pair of
+        many.
+        """
+        varying = {one.name: one for one in self.quantities if one.scatters}
+        limited = [one for one in varying.values() if one.limit is not None]
+        leading = list[QuantityStatistics]()
+        for name, one in varying.items():
+            if name.endswith(_LEADING):
+                whole = varying.get(name.replace(_OF_ONE_PERIOD, _OF_ALL_PERIODS), one)
+                leading.append(one if np.array_equal(one.values, whole.values, equal_nan=True) else whole)
+        return tuple(limited or leading or varying.values())
 
 
 def _cost(one: WidenedInput) -> tuple[float, float]:

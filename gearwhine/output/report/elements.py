@@ -6,6 +6,7 @@ Every text comes from outside and is escaped here.
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from urllib.parse import quote
 
 from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, arrowed, is_number
@@ -187,8 +188,9 @@ class Writer:
         parts = []
         for column, text, kind in zip(columns, texts, classes, strict=True):
             content = in_cell(text) if text != NOTHING else "–"
-            target = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
-            parts.append(f"<td{kind}>" + (f'<a href="#{target}">{content}</a>' if target else content) + "</td>")
+            place = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
+            target = quote(str(row[column.file])) if row.get(column.file) else f"#{place}" if place else None
+            parts.append(f"<td{kind}>" + (f'<a href="{target}">{content}</a>' if target else content) + "</td>")
         return "".join(parts)
 
 

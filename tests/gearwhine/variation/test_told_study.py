@@ -88,6 +88,15 @@ def test_the_study_begins_with_the_gearboxes_beyond_each_limit_and_the_worst() -
     assert str(first.content[0]) == sentences[0]
 
 
+def test_the_transmission_error_that_is_told_is_that_of_all_teeth() -> None:
+    """Over the hunting period where pairs of teeth differ; without a limit, which would say what is wanted."""
+    one, other = (f"gear_pair.{name}.transmission_error_peak_to_peak_m" for name in "ab")
+    alike, whole = (name.replace("peak_to_peak", "over_hunting_period") for name in (one, other))
+    found = [Evaluation({one: 1.0 + n, alike: 1.0 + n, other: 2.0 + n, whole: 9.0 - n}, {}) for n in range(4)]
+    study = replace(told(np.zeros((4, 3)), np.zeros((4, 1))), nominal=found[0], outcomes=tuple(found))
+    assert [row.name for row in study.headlines] == [one, whole]
+
+
 def test_a_class_of_pitches_beside_a_varied_runout_is_warned_of() -> None:
     keys = ("gear.pinion.errors.pitch", "gear.pinion.errors.runout", "gear.wheel.errors.pitch")
     pitch, runout, other = (Input(key, Normal(0.0, 1.0), "um", (), ((key, 1.0),), "class 7") for key in keys)

@@ -19,6 +19,8 @@ from gearwhine.cli import run_command
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.numerics.distributions import Normal, Uniform
 from gearwhine.numerics.sampling import sobol_points
+from gearwhine.output.report.elements import fragment
+from gearwhine.results.variation import report
 from gearwhine.rotors.rolling_bearings import catalogue_bearing
 from gearwhine.variation import run
 from gearwhine.variation.samples import FOLDER
@@ -383,6 +385,10 @@ def test_the_command_writes_the_study_and_its_worst_gearboxes_as_cases(
     load = worst.operating_point().document["bearings"][0]
     assert np.linalg.norm(load["force_n"]) == pytest.approx(max(row["quantiles"].values()), rel=0.05)
     assert tomllib.loads((out / "worst-bearing.left.force_n-1.toml").read_text())["title"].startswith("A shaft")
+    assert {row["case"] for row in document["worst"]} == {path.name for path in out.glob("worst-*.toml")}
+    first = gw.load(out / document["worst"][0]["case"])
+    assert f"gearbox {document['worst'][0]['gearbox']}, " in first.case.title
+    assert f'<a href="{document["worst"][0]["case"]}">' in fragment([report(document)])
     assert run_command(["vary", str(_shaft(tmp_path)), "-n", "64", "-o", str(out), "--json", "-q"]) == 0
     assert json.loads(capsys.readouterr().out)["resumed"] == 64
     assert run_command(["vary", "spur-pair", "-o", str(out)]) == 2
