@@ -72,6 +72,8 @@ def material_findings(part: Part, youngs_modulus: float, poisson_ratio: float, d
         yield Finding(part, "youngs_modulus", youngs_modulus, expected)
     elif not _SOFTEST <= youngs_modulus <= _STIFFEST:
         expected = "an elastic modulus of 0.5 to 1300 GPa, as plastics, metals and ceramics have (steel has 207 GPa)"
+        if _SOFTEST <= 1e3 * youngs_modulus <= _STIFFEST:
+            expected += "; is GPa meant in place of MPa?"
         yield Finding(part, "youngs_modulus", youngs_modulus, expected, "warning")
     if not Number(above=0.0).accepts(density):
         yield Finding(part, "density", density, "a density above 0 kg/m^3")

@@ -375,7 +375,7 @@ def build_radiation(acoustics: Acoustics, housing: HousingField, progress: Progr
             still=acoustics.still,
             natural_modes=len(housing.modes.shapes),
             highest_frequency=limit,
-            progress=lambda step: progress(f"{work}: {step}"),
+            progress=lambda step, fraction=None: progress(f"{work}: {step}", fraction),
         )
     except HousingError as error:
         refuse([unwrapped(acoustics, edge, error)], AcousticsError)

@@ -8,7 +8,7 @@ turns it into a pressure on the surface:
 - *ERP*, the equivalent radiated power: ρ c v at every point, a radiation efficiency of 1. It is an estimate.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol, TypeVar
@@ -405,7 +405,7 @@ def wrapped(
     edge: float,
     close_holes: float,
     floor: HardPlane | None = None,
-    progress: Callable[[str], None] = lambda step: None,
+    progress: Progress = silent,
 ) -> RadiatingSurface:
     """Wrap a housing in triangles, and set it down on a floor where its vertices are within 2 % of an edge of it.
 
@@ -418,7 +418,7 @@ def wrapped(
         Diameter of the largest hole that is capped [m].
     floor : HardPlane, optional
     progress : callable
-        Called with a line of text before each step.
+        Called with the words of each step, and its completed fraction in long ones.
 
     Raises
     ------
@@ -478,7 +478,7 @@ class HousingRadiation:
         still: Sequence[str] = (),
         natural_modes: int | None = None,
         highest_frequency: float | None = None,
-        progress: Callable[[str], None] = lambda step: None,
+        progress: Progress = silent,
     ) -> "HousingRadiation":
         """Wrap the whole housing, by boundary elements or as an estimate.
 
@@ -504,7 +504,7 @@ class HousingRadiation:
         highest_frequency : float, optional
             Highest frequency that boundary elements are to solve [Hz].
         progress : callable
-            Called with a line of text before each step.
+            Called with the words of each step, and its completed fraction in long ones.
 
         Raises
         ------

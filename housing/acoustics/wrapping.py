@@ -12,7 +12,6 @@ MICCAI 1998, Lecture Notes in Computer Science 1496, 888-898 (the mesh); T. Ju, 
 "Dual contouring of Hermite data", ACM Transactions on Graphics 21 (2002), 339-346 (the squared distances from planes).
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
@@ -26,6 +25,7 @@ from gearwhine.housing.acoustics.skin import skin_of
 from gearwhine.housing.errors import HousingError, TriangleSizeError
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.arrays import BoolArray, FloatArray, IntArray
+from gearwhine.numerics.progress import Progress, silent
 
 _FINE_CELLS_PER_CELL = 3  # fine cells along a cell of the wrap
 _MOST_CELLS = 3e7  # cells of the fine grid: about 2 GB
@@ -49,9 +49,7 @@ _HALVED_EDGE = 1.7  # cells above which an edge is halved in the end
 _LARGEST_MENDING_MOVE = 0.1  # cells that mending may move the surface; shape below which a triangle has no plane
 
 
-def wrap(
-    mesh: Mesh, edge: float, close_holes: float, progress: Callable[[str], None] = lambda step: None
-) -> RadiatingSurface:
+def wrap(mesh: Mesh, edge: float, close_holes: float, progress: Progress = silent) -> RadiatingSurface:
     """Wrap a housing in a closed surface of triangles of about the same size.
 
     Parameters
@@ -63,7 +61,7 @@ def wrap(
     close_holes : float
         Diameter of the largest bore or opening of the cavity that is capped [m].
     progress : callable
-        Called with a line of text before each step.
+        Called with the words of each step, and its completed fraction in long ones.
 
     Returns
     -------
@@ -304,16 +302,14 @@ class _OuterSkin:
         return self.places[sample_numbers], self.normals[sample_numbers]
 
 
-def _on_skin(
-    points: FloatArray, quads: IntArray, skin: _OuterSkin, progress: Callable[[str], None]
-) -> tuple[FloatArray, IntArray]:
+def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin, progress: Progress) -> tuple[FloatArray, IntArray]:
     """Move the vertices of a net onto the skin and split its quadrilaterals."""
     for number in range(_ROUNDS):
-        progress(f"vertices onto the skin, round {number + 1} of {_ROUNDS}")
+        progress("vertices onto the skin", number / _ROUNDS)
         points = _moved(points, quads, skin, (_FIRST_REACH if number < _ROUNDS // 3 else _REACH) * skin.cell)
     triangles = _split(points, quads)
     for number in range(_MENDINGS):
-        progress(f"badly shaped triangles, round {number + 1} of {_MENDINGS}")
+        progress("badly shaped triangles", number / _MENDINGS)
         points, triangles = _mended(points, triangles, skin.cell)
         for _ in range(3):
             points = _moved(points, triangles, skin, _REACH * skin.cell)

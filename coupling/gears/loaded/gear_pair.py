@@ -323,9 +323,12 @@ def operation_findings(geometry: GearPairGeometry, torque: float, speed: float) 
     pressure = math.sqrt(force / (math.cos(base_helix) * length) * contact_modulus * curvature / math.pi)
     root = _FORM_AND_NOTCH * force / (geometry.face_width * driver.module)
     if pressure > _PRESSURE or root > _BENDING:
+        # As of a torque in kN m that is meant in N m.
+        thousandth = math.sqrt(1e-3) * pressure <= _PRESSURE and 1e-3 * root <= _BENDING and root > 10.0 * _BENDING
         expected = (
             f"a load that teeth bear: {force:.4g} N press their flanks with {1e-9 * pressure:.3g} GPa and bend their "
-            f"roots with {1e-9 * root:.3g} GPa, where steel bears {1e-9 * _PRESSURE:g} and {1e-9 * _BENDING:g} at most"
+            f"roots with {1e-9 * root:.3g} GPa, where steel bears {1e-9 * _PRESSURE:g} GPa and {1e-9 * _BENDING:g} GPa "
+            "at most" + ("; is it a thousand times too much?" if thousandth else "")
         )
         yield Finding(part, "torque", float(torque), expected, "warning")
     line_speed = abs(speed * geometry.working_pitch_radii[0])

@@ -140,7 +140,9 @@ def test_a_load_that_teeth_do_not_bear_has_the_pressure_of_hertz_at_the_pitch_po
     assert (found.part, found.attribute, found.value) == (("gear pair", "pinion -> wheel"), "torque", -torque)
     root = 3.5 * along / (25e-3 * 4e-3)
     assert f"{along:.4g} N press their flanks with {1e-9 * pressure:.3g} GPa" in found.expected
-    assert f"bend their roots with {1e-9 * root:.3g} GPa, where steel bears 3 and 2 at most" in found.expected
+    assert f"bend their roots with {1e-9 * root:.3g} GPa, where steel bears 3 GPa and 2 GPa at most" in found.expected
+    (found,) = operation_findings(geometry, 100e3, 100.0)
+    assert found.expected.endswith("; is it a thousand times too much?")
     assert list(operation_findings(geometry, 100.0, 1e3)) == []
     (fast,) = operation_findings(geometry, 100.0, -1.001 * 600.0 / radii[0])
     assert "a pitch-line speed at which no rim bursts, at most 600 m/s; it is 600.6 m/s" in fast.expected
