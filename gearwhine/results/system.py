@@ -711,7 +711,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def _content(document: Document) -> Iterator[str | Table]:
     if "stability" in document:
-        yield from _stability(document["stability"])
+        yield from _stability(document["stability"], document["modes"], document.get("trusted_below_hz"))
     yield from _highest_line(document)
     if "load" in document:
         yield from brief(document["load"])
@@ -901,14 +901,19 @@ def _highest_line(document: Document) -> Iterator[str]:
         )
 
 
-def _stability(stability: Document) -> Iterator[str]:
+def _stability(stability: Document, modes: Sequence[Document], trusted: float | None) -> Iterator[str]:
     if stability["stable"]:
-        least = stability["least_damped"]
+        least, within = stability["least_damped"], ""
         sentence = "Stable: no mode grows."
+        if least is not None and trusted is not None and least["frequency_hz"] > trusted:
+            # Damping of modes beyond those of the housing is as little trusted as their frequency.
+            swinging = [mode for mode in modes if 0.0 < mode["frequency_hz"] <= trusted and mode["damping_ratio"] < 1.0]
+            least = min(swinging, key=lambda mode: mode["damping_ratio"], default=None)
+            within = f" up to {trusted:.0f} Hz"
         if least is not None:
             sentence += (
                 # Rounding leaves a mode without damping as much below zero as above.
-                f" Least damped: {max(least['damping_ratio'], 0.0):.2g} at {least['frequency_hz']:.1f} Hz "
+                f" Least damped{within}: {max(least['damping_ratio'], 0.0):.2g} at {least['frequency_hz']:.1f} Hz "
                 f"({_named(least)})."
             )
         yield sentence

@@ -189,7 +189,9 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     ]
     heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
     height = HEAD + FOOT + sum(heights) + _BARS_GAP * len(groups)
-    note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: forces on the housing"
+    note = f"{title}; parts in phase with the line in percent of it; left: housing modes, right: forces on the housing"
+    if any(part > 1.0 for _, _, *sides in groups for side in sides for _, part in side):
+        note += "; each side sums to 100 %, parts in red take from it"
     figure = sheet(height, "Where the lines come from", note)
     up = height - HEAD
     for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
