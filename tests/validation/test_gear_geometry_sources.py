@@ -2,6 +2,8 @@
 
 [1] MESYS AG, online calculation of helical gear geometry after ISO 21771, its example (mesys.ag/calc/helicalgear.fcgi):
     z 20, m_n 1 mm, alpha_n 20 deg, x 0, rack addendum 1, dedendum 1.25, tip radius 0.25; balls of 1.7 mm, span over 2.
+    The same after Ondrives' settings (mesys.ch/calc/ondrives.fcgi): z 30, m_n 1 mm, rack tip radius 0.2, the teeth
+    thinned by 0.06 and by 0.03 mm, balls of 1.7 mm.
 [2] A spreadsheet of profile shifts after ISO 21771, "Gear generating profile shift calculations" (scribd.com, document
     376176518): z 31 and 30, m_n 3.5 mm, alpha_n 20 deg, alpha_t 21.2990642859 deg (so a helix angle of 21 deg), working
     centre distance 116.5 mm.
@@ -14,6 +16,8 @@
     21771, rack of DIN 867.
 [6] ISO/TR 6336-30:2022, example 1, as the tests of gearcore quote it: module 8 mm, helix angle 15.8 degrees, centre
     distance 500 mm, x_2 = 0, from which it calculates x_1 = 0.145 22. They do not quote its teeth, 17 / 103.
+[7] SDP/SI, Elements of Metric Gear Technology, tables 10-1, 10-3 and 10-4: normal tooth thicknesses of a spur gear, of
+    a helical one with a profile shift by the normal system, and of one by the transverse system.
 """
 
 import math
@@ -36,6 +40,7 @@ FULL_DEPTH = "Full-depth gears of 20 degrees, closed form"
 MESYS = "MESYS helical gear geometry (ISO 21771), example"
 BOLSOVER = "Bolsover, Utilities for Alibre, pairs with profile shift"
 DIN_21771 = "din3990 (DIN ISO 21771), external pair 19 / 104"
+SDP_SI = "SDP/SI, Elements of Metric Gear Technology, section 10"
 TR_6336_30 = "ISO/TR 6336-30:2022, example 1"
 SHIFTS = "Profile shifts at a centre distance (ISO 21771), spreadsheet"
 
@@ -63,6 +68,73 @@ SPAN = span_measurement(EXAMPLE, 2)
 )
 def test_sizes_of_the_example(quantity: str, printed: float, metres: float, published: Published) -> None:
     published(MESYS, quantity, printed, 1e3 * metres, "mm", abs=0.5e-4)
+
+
+@pytest.mark.parametrize(
+    ("thinning", "root", "form", "at_tip", "shift", "centre", "over", "touching"),
+    [
+        (60e-6, 27.3352, 28.3762, 0.6734, -0.0824, 16.0821, 32.1641, 29.8612),
+        (30e-6, 27.4176, 28.4047, 0.7054, -0.0412, 16.1190, 32.2380, 29.9256),
+    ],
+)
+def test_thinned_teeth(
+    thinning: float,
+    root: float,
+    form: float,
+    at_tip: float,
+    shift: float,
+    centre: float,
+    over: float,
+    touching: float,
+    published: Published,
+) -> None:
+    gear = Gear("thinned", 30, 1e-3, ALPHA, 20e-3, root_radius=0.2e-3, tooth_thinning=thinning)
+    balls = over_balls(gear, 1.7e-3)
+    for quantity, value, ours in (
+        ("root diameter", root, 2e3 * gear.root_circle_radius),
+        ("root form diameter", form, 2e3 * gear.form_radius),
+        ("tooth thickness on the tip circle", at_tip, 1e3 * normal_tooth_thickness(gear, gear.tip_radius)),
+        ("generating shift", shift, gear.generating_shift),
+        ("radius to the far side of a ball", centre, 1e3 * balls.centre_radius + 0.85),
+        ("dimension over balls", over, 1e3 * balls.length),
+        ("diameter where the balls touch", touching, 2e3 * balls.contact_radius),
+    ):
+        unit = "" if quantity == "generating shift" else "mm"
+        published(MESYS, f"{quantity}, z 30 thinned by {1e6 * thinning:.0f} µm", value, ours, unit, abs=0.51e-4)
+    if thinning == 60e-6:
+        published(
+            MESYS, "generating shift at the limit of undercut, z 30", -0.6363, gear.least_generating_shift, abs=0.5e-4
+        )
+
+
+TRANSVERSE_HELIX = math.radians(22.5)
+
+
+@pytest.mark.parametrize(
+    ("table", "module", "angle", "teeth", "shift", "helix", "printed"),
+    [
+        ("10-1, spur", 10e-3, ALPHA, 12, 0.3, 0.0, 17.8918),
+        ("10-3, normal system", 5e-3, ALPHA, 16, 0.2, math.radians(25.0), 8.5819),
+        (
+            *("10-4, transverse system", 4e-3 * math.cos(TRANSVERSE_HELIX)),
+            math.atan(math.tan(ALPHA) * math.cos(TRANSVERSE_HELIX)),
+            *(20, 0.3 / math.cos(TRANSVERSE_HELIX), TRANSVERSE_HELIX, 6.6119),
+        ),
+    ],
+)
+def test_tooth_thickness(
+    table: str,
+    module: float,
+    angle: float,
+    teeth: int,
+    shift: float,
+    helix: float,
+    printed: float,
+    published: Published,
+) -> None:
+    gear = Gear("thick", teeth, module, angle, 60e-3, profile_shift=shift, helix_angle=helix, allow_undercut=True)
+    found = 1e3 * normal_tooth_thickness(gear, gear.pitch_radius)
+    published(SDP_SI, f"normal tooth thickness, table {table}", printed, found, "mm", abs=0.51e-4)
 
 
 def test_least_shift_of_the_example(published: Published) -> None:
