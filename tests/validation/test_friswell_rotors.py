@@ -2,9 +2,9 @@
 
 Examples 5.9.1 and 5.9.2: a shaft of 1.5 m × 50 mm with two discs, on isotropic and on anisotropic bearings;
 printed in rad/s for six beam elements, at rest and at 4000 rpm. Examples 5.9.3 to 5.9.5: the same on bearings of very
-different stiffness, with cross-coupling, and with dashpots of 3 kN s/m; printed in Hz. Example 5.9.9: an overhung disc.
-Example 5.9.7: the first rotor under
-axial loads. Example 9.7.1: a torsional chain. The values of 5.9.3 to 5.9.9 are taken from the tests and pages of ROSS.
+different stiffness, with cross-coupling, and with dashpots of 3 kN s/m; printed in Hz. Example 5.9.7: the first rotor
+under axial loads. Example 5.9.9: an overhung disc. Example 9.7.1: a torsional chain. The values of 5.9.3 to 5.9.9 are
+taken from the tests and pages of ROSS.
 
 A finite-element model is too stiff, so an exact one lies at or below the printed value by the six elements'
 own error, which grows with frequency: within 3e-5 (rounding, and a little) for the first two pairs, and
