@@ -15,7 +15,8 @@
 [5] The pair 19 / 104 of module 4 mm that din3990 (github.com/hanslhansl/din3990, tests/test_1.py) prints after DIN ISO
     21771, rack of DIN 867.
 [6] ISO/TR 6336-30:2022, example 1, as the tests of gearcore quote it: module 8 mm, helix angle 15.8 degrees, centre
-    distance 500 mm, x_2 = 0, from which it calculates x_1 = 0.145 22. They do not quote its teeth, 17 / 103.
+    distance 500 mm, x_2 = 0, from which it calculates x_1 = 0.145 22. Its teeth, 17 / 103, are quoted elsewhere
+    (test_gear_tables.py).
 [7] SDP/SI, Elements of Metric Gear Technology, tables 10-1, 10-3 and 10-4: normal tooth thicknesses of a spur gear, of
     a helical one with a profile shift by the normal system, and of one by the transverse system.
 """
@@ -41,7 +42,7 @@ MESYS = "MESYS helical gear geometry (ISO 21771), example"
 BOLSOVER = "Bolsover, Utilities for Alibre, pairs with profile shift"
 DIN_21771 = "din3990 (DIN ISO 21771), external pair 19 / 104"
 SDP_SI = "SDP/SI, Elements of Metric Gear Technology, section 10"
-TR_6336_30 = "ISO/TR 6336-30:2022, example 1"
+TR_6336_30 = "ISO/TR 6336-30, example 1"
 SHIFTS = "Profile shifts at a centre distance (ISO 21771), spreadsheet"
 
 ALPHA = math.radians(20.0)
