@@ -7,9 +7,9 @@ Sources
     body of Sainsot, Velex & Duverger (2004), J. Mech. Des. 126(4); numbers as printed by the validation suite of ROSS
     (62 / 62 teeth, module 2 mm, 20 degrees, width 20 mm, bore 35 mm, E 206 GPa, nu 0.3).
 [3] ISO 6336-1:2006, clause 9, method B, spur, h_fP = 1.25 m: c'_th / c' / c_gamma in N/(mm um).
-[4] ISO/TR 6336-30:2017, example 1, as G. Rebouças (NTNU) holds his program against it (github.com/gfsReboucas,
-    Drivetrain/ISO_6336.m): 17 / 103 teeth, module 8 mm, 20 degrees, helix angle 15.8 degrees, face width 100 mm, x 0.145
-    and 0, 500 mm apart, rack D of ISO 53.
+[4] ISO/TR 6336-30:2017, example 1, as G. Rebouças (NTNU) holds his program against it (ISO_6336.m of
+    github.com/gfsReboucas/Drivetrain): 17 / 103 teeth, module 8 mm, 20 degrees, helix angle 15.8 degrees, face width
+    100 mm, x 0.145 and 0, 500 mm apart, rack D of ISO 53.
 """
 
 import math

@@ -4,8 +4,8 @@ Sources
 -------
 [1] KISSsoft 03/2017 after ISO 21771:2007: reports of both planetary stages of the NREL 5 MW reference gearbox (Nejad,
     Guo, Gao & Moan, 2016, Wind Energy 19(6)), by G. Rebouças, NTNU, 2020: github.com/gfsReboucas/Drivetrain, folder
-    @NREL_5MW, stage_01.rtf and stage_02.rtf. Lengths have three printed decimals, profile shifts four. Of its third
-    stage, a helical pair (stage_03.rtf), sliding and the stiffness after ISO 6336-1:2006 as well.
+    @NREL_5MW, stage_01.rtf and stage_02.rtf. Lengths have three printed decimals, profile shifts four. The
+    stiffness is after ISO 6336-1:2006; the third stage, stage_03.rtf, is a helical pair.
 [2] L. Kos, Analysis of planetary transmissions, LECAD, University of Ljubljana: listing of the test run,
     lecad.uni-lj.si/~leon/FS/PlanetryTransmissions/node8.html. Lengths have four printed decimals.
 
@@ -60,6 +60,7 @@ class Stage:
     span_lengths: Sequence[Three]
     working_pressure_angles: tuple[float, float]
     contact_ratios: tuple[float, float]
+    stiffness: tuple[tuple[float, float], tuple[float, float]]  # c' and c_γα of both meshes [N/(mm µm)]
     sliding: Sequence[tuple[float, float]]  # at the tip and the root of sun, planet to the sun, to the ring, and ring
 
     def gears(self) -> list[Gear]:
@@ -73,6 +74,7 @@ class Stage:
                 profile_shift=shift,
                 addendum=1.0 + alteration / self.module,
                 root_radius=radius * self.module * MM,
+                youngs_modulus=206e9,
                 allow_undercut=True,
             )
             for name, teeth, shift, alteration, radius in zip(
@@ -98,6 +100,7 @@ FIRST = Stage(
     span_lengths=((363.082, 362.917, 362.842), (367.520, 367.356, 367.281), (1047.070, 1047.474, 1047.624)),
     working_pressure_angles=(28.118, 17.161),
     contact_ratios=(1.115, 1.278),
+    stiffness=((12.362, 13.426), (13.289, 16.063)),
     sliding=((0.491, -1.341), (0.573, -0.967), (0.416, -0.037), (0.035, -0.711)),
 )
 SECOND = Stage(
@@ -117,6 +120,7 @@ SECOND = Stage(
     span_lengths=((165.869, 165.747, 165.690), (296.803, 296.638, 296.563), (676.615, 676.916, 677.038)),
     working_pressure_angles=(24.169, 15.630),
     contact_ratios=(1.370, 1.618),
+    stiffness=((12.240, 15.640), (14.053, 20.563)),
     sliding=((0.533, -1.588), (0.614, -1.143), (0.309, 0.005), (-0.005, -0.447)),
 )
 stages = pytest.mark.parametrize("stage", [FIRST, SECOND], ids=lambda stage: stage.name)
@@ -160,11 +164,20 @@ def test_meshes(stage: Stage, published: Published) -> None:
         angle = math.degrees(pair.working_pressure_angle)
         published(KISSSOFT, f"{told}: working angle", stage.working_pressure_angles[number], angle, "deg", abs=6e-4)
         published(KISSSOFT, f"{told}: contact ratio", stage.contact_ratios[number], pair.contact_ratio, abs=6e-4)
+        # The report has blanks of C_R = 0.862 in both gears, rings too: rims of 3.5 modules, webs of a quarter.
+        values, blank = iso6336_stiffness(pair), 1.0 + math.log(0.25) / (5.0 * math.exp(0.7))
+        for quantity, printed, ours in zip(
+            ("single pair c'", "mesh c_γα"),
+            stage.stiffness[number],
+            (values.single_pair, values.mesh_mean),
+            strict=True,
+        ):
+            published(KISSSOFT, f"{told}: {quantity}", printed, blank * ours / 1e9, "N/(mm µm)", abs=1.5e-3)
         path = path_of_contact(pair)
         slides += [path.driver_sliding[[-1, 0]], path.driven_sliding[[0, -1]]]
     flanks = ("sun", "planet to the sun", "planet to the ring", "ring")
-    for flank, printed, ours in zip(flanks, stage.sliding, slides, strict=True):
-        for end, value, found in zip(("tip", "root"), printed, ours, strict=True):
+    for flank, ends, slide in zip(flanks, stage.sliding, slides, strict=True):
+        for end, value, found in zip(("tip", "root"), ends, slide, strict=True):
             published(KISSSOFT, f"{stage.name}, specific sliding at the {end}, {flank}", value, float(found), abs=1e-3)
 
 
