@@ -2,8 +2,9 @@
 
 Examples 5.9.1 and 5.9.2: a shaft of 1.5 m × 50 mm with two discs, on isotropic and on anisotropic bearings;
 printed in rad/s for six beam elements, at rest and at 4000 rpm. Examples 5.9.3 to 5.9.5: the same on bearings of very
-different stiffness, with cross-coupling, and with dashpots of 3 kN s/m; printed in Hz. Example 5.9.9: an overhung disc.
-Example 9.7.1: a torsional chain. The values of 5.9.3 to 5.9.9 are taken from the tests and pages of ROSS.
+different stiffness, with cross-coupling, and with dashpots of 3 kN s/m; printed in Hz. Example 5.9.7: the first rotor
+under axial loads. Example 5.9.9: an overhung disc. Example 9.7.1: a torsional chain. The values of 5.9.3 to 5.9.9 are
+taken from the tests and pages of ROSS.
 
 A finite-element model is too stiff, so an exact one lies at or below the printed value by the six elements'
 own error, which grows with frequency: within 3e-5 (rounding, and a little) for the first two pairs, and
@@ -37,6 +38,8 @@ SIX_ELEMENTS = (
     "Printed for six beam elements. The model here is exact, so it lies at or below by the elements' own error, which "
     "grows with frequency; the tests hold that side too."
 )
+
+AXIAL_LOAD = f"{BOOK}, example 5.9.7, as ROSS's example 22 prints it"
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 
@@ -143,6 +146,26 @@ def test_damped_bearings(published: Published, speed: float, natural: list[float
         state = f"{kind}, {speed * 30 / np.pi:.0f} rpm"
         for quantity, value, ours in zip(numbered(len(printed), state), printed, found / (2 * np.pi), strict=False):
             published(DAMPED, quantity, value, ours, "Hz", **({"abs": 0.0051} if value < 60.0 else {"rel": 2e-3}))
+
+
+@pytest.mark.parametrize(
+    ("kilonewtons", "at_rest", "at_speed"),
+    [
+        (10, [13.935788, 43.913150, 114.759565], [13.739728, 14.111493, 40.330147, 47.154123, 96.087639, 132.403364]),
+        (100, [15.020440, 46.132265, 120.620287], [14.867629, 15.156882, 42.570013, 49.325073, 100.969101, 139.063735]),
+        (-10, [13.642635, 43.401542, 113.394556], [13.434622, 13.829336, 39.813547, 46.654356, 94.950323, 130.856441]),
+    ],
+)
+def test_axial_load(kilonewtons: int, at_rest: list[float], at_speed: list[float], published: Published) -> None:
+    """Six elements, whose errors grow with frequency; the load is along the whole shaft, tension positive."""
+    segments = [Segment(0.5, 0.05, 0.0, STEEL, axial_force=1e3 * kilonewtons)] * 3
+    rotor = Rotor("Friswell 5.9.7", segments, SHAFT.discs)
+    for speed, printed, state in ((0.0, at_rest, "at rest"), (SPEED, at_speed, "4000 rpm")):
+        found = solve_whirl(rotor, bearings(1e6), speed, count=6).frequencies / (2.0 * np.pi)
+        for number, (value, ours) in enumerate(zip(printed, found[:: 6 // len(printed)], strict=True), start=1):
+            assert ours < value
+            quantity = f"frequency {number} under {kilonewtons} kN, {state}"
+            published(AXIAL_LOAD, quantity, value, ours, "Hz", rel=3e-5 if value < 60.0 else 6e-4)
 
 
 def test_overhung_disc(published: Published) -> None:

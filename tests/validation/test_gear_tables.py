@@ -7,6 +7,9 @@ Sources
     body of Sainsot, Velex & Duverger (2004), J. Mech. Des. 126(4); numbers as printed by the validation suite of ROSS
     (62 / 62 teeth, module 2 mm, 20 degrees, width 20 mm, bore 35 mm, E 206 GPa, nu 0.3).
 [3] ISO 6336-1:2006, clause 9, method B, spur, h_fP = 1.25 m: c'_th / c' / c_gamma in N/(mm um).
+[4] ISO/TR 6336-30:2017, example 1, as G. Rebouças (NTNU) holds his program against it (ISO_6336.m of
+    github.com/gfsReboucas/Drivetrain): 17 / 103 teeth, module 8 mm, 20 degrees, helix angle 15.8 degrees, face width
+    100 mm, x 0.145 and 0, 500 mm apart, rack D of ISO 53.
 """
 
 import math
@@ -33,6 +36,7 @@ Published = Callable[..., None]
 
 FULL_DEPTH = "Full-depth gears of 20 degrees, closed form"
 MA_2014 = "Ma et al. (2014), body after Sainsot et al. (2004)"
+TR_6336_30 = "ISO/TR 6336-30, example 1"
 ISO_6336 = "ISO 6336-1:2006, clause 9, method B"
 
 ALPHA = math.radians(20.0)
@@ -109,6 +113,23 @@ def test_stiffness_by_the_norm(
         ("mesh c_γα", mesh, values.mesh_mean),
     ):
         published(ISO_6336, f"{quantity}, {teeth} / {teeth} teeth", printed, found / 1e9, "N/(mm µm)", abs=1e-3)
+
+
+def test_stiffness_of_a_helical_pair_by_the_norm(published: Published) -> None:
+    """To the digits printed; the mean over the mesh to that of tip diameters given to 0.01 mm."""
+    helix = math.radians(15.8)
+    rack = Gear("rack D", 103, 8e-3, ALPHA, 0.1, dedendum=1.4, root_radius=0.39 * 8e-3, youngs_modulus=206e9)
+    wheel = replace(rack, helix_angle=helix)
+    pinion = replace(rack, teeth=17, profile_shift=0.145, helix_angle=-helix)
+    values = iso6336_stiffness(GearPairGeometry(pinion, wheel, 0.5))
+    for quantity, printed, found, unit, digit in (
+        ("virtual teeth of the pinion", 18.905, pinion.virtual_teeth, "", 1e-3),
+        ("virtual teeth of the wheel", 114.543, wheel.virtual_teeth, "", 1e-3),
+        ("theoretical c'_th", 17.85584, values.theoretical / 1e9, "N/(mm µm)", 1e-5),
+        ("single pair c'", 12.37047, values.single_pair / 1e9, "N/(mm µm)", 1e-5),
+        ("mesh c_γα", 17.46485, values.mesh_mean / 1e9, "N/(mm µm)", 5e-3),
+    ):
+        published(TR_6336_30, quantity, printed, found, unit, abs=0.51 * digit)
 
 
 def test_tip_relief_of_the_gear_noise_rig_suits_its_torque() -> None:

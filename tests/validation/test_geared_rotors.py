@@ -7,6 +7,11 @@ toolkit with eight elements per span, whose own error is 1.1e-3 % to 0.04 % in t
 
 Friswell et al., torsion of a geared branch: a motor drives a shaft with two rotors through gears of equal
 size in rigid contact.
+
+Torsion of other geared trains and of a long string, with data and frequencies as openTorsion holds itself against them
+(github.com/Aalto-Arotor/openTorsion, opentorsion/tests/tests.py and examples/marine_steam_turbine_forced_response.py):
+Friswell et al., example 9.6.3 and section 9.9; Chen & Gunter, Introduction to Dynamics of Rotor-Bearing Systems (2001),
+example 8.1.
 """
 
 from collections.abc import Callable
@@ -28,6 +33,7 @@ from gearwhine.coupling import (
 from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.geometry.involute import module_from_base_radius
+from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.machine.components import Component, rotor_component
 from gearwhine.coupling.machine.connectors import ContactConnector
@@ -54,6 +60,10 @@ REMARK = (
     "The values beside ours were computed apart from this toolkit with eight of ROSS's elements per span."
 )
 BRANCH = "Friswell, Penny, Garvey & Lees (2010), torsion of a geared branch"
+
+TWO_SHAFTS = "Friswell, Penny, Garvey & Lees (2010), example 9.6.3, an engine geared to two shafts"
+STRING = "Friswell, Penny, Garvey & Lees (2010), section 9.9, string of 800 m in torsion"
+STEAM_TURBINE = "Gunter & Chen (2001), example 8.1, marine steam turbine of two geared branches"
 
 STEEL = ShaftMaterial(207e9, 79.5e9, 7800.0)
 SPEED = 1500.0 * 2.0 * np.pi / 60.0
@@ -171,24 +181,40 @@ def test_turbo_generator_error_finds_its_modes() -> None:
     assert force.max() > 2.0 * max(force[0], force[-1])
 
 
+def geared_chains(
+    chains: dict[str, tuple[list[float], list[float]]],
+    meshes: list[tuple[str, int, float, str, int, float]],
+    stiffness: float,
+) -> CoupledModes:
+    """Modes in torsion of chains of discs [kg m²] and shafts [N m/rad], geared together.
+
+    A mesh names a chain, its disc and a radius, twice; its stiffness along the line of action is in N/m.
+    """
+    solved = {name: solve_torsional_chain(*chain) for name, chain in chains.items()}
+    components = tuple(
+        Component(
+            name, ("torsion",) * chain.count, np.diag(chain.frequencies**2), *np.zeros((2, chain.count, chain.count))
+        )
+        for name, chain in solved.items()
+    )
+    contact = ToothContact(1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0))
+    springs = []
+    for number, (first, disc, radius, second, mate, mate_radius) in enumerate(meshes):
+        arms = {first: radius * solved[first].angle[:, disc], second: mate_radius * solved[second].angle[:, mate]}
+        direction = np.concatenate([arms.get(name, np.zeros(chain.count)) for name, chain in solved.items()])
+        springs.append(ContactConnector(f"gears {number}", direction, contact, 0.0, 0.0, np.empty((0, 3))))
+    load = np.zeros(sum(chain.count for chain in solved.values()))
+    rest = (0.0,) * len(components)
+    return coupled_modes(CoupledSystem(components, rest, contacts=tuple(springs), load=load))
+
+
 def test_geared_branch_in_torsion(published: Published) -> None:
     """Rigid contact stands in as a spring 1e5 times as stiff as the shafts, in torsion about the base circles.
 
     The printed values are those of 50e-6 kg m² in gears: 25e-6 on the motor's shaft, 25e-6 between the two rotors.
     """
-    radius, stiffness = 0.1, 1e11
-    motor = solve_torsional_chain([400e-6, 25e-6], [1e4])
-    rotors = solve_torsional_chain([700e-6, 25e-6, 700e-6], [5e3, 5e3])
-    components = tuple(
-        Component(
-            name, ("torsion",) * chain.count, np.diag(chain.frequencies**2), *np.zeros((2, chain.count, chain.count))
-        )
-        for name, chain in (("motor", motor), ("rotors", rotors))
-    )
-    contact = ToothContact(1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0))
-    direction = radius * np.concatenate([motor.angle[:, 1], rotors.angle[:, 1]])
-    mesh = ContactConnector("gears", direction, contact, 0.0, 0.0, np.empty((0, 3)))
-    modes = coupled_modes(CoupledSystem(components, (0.0, 0.0), contacts=(mesh,), load=np.zeros(5)))
+    chains = {"motor": ([400e-6, 25e-6], [1e4]), "rotors": ([700e-6, 25e-6, 700e-6], [5e3, 5e3])}
+    modes = geared_chains(chains, [("motor", 1, 0.1, "rotors", 1, 0.1)], stiffness=1e11)
     for number, (value, ours) in enumerate(zip([0.0, 425.4, 634.1, 3247.2], modes.frequencies_hz[:4], strict=True)):
         published(BRANCH, f"torsional {number}" if number else "rigid rotation", value, ours, "Hz", abs=0.051)
     assert modes.kinds == ("rigid", "torsion", "torsion", "torsion", "mesh")
@@ -200,3 +226,55 @@ def test_geared_branch_in_torsion(published: Published) -> None:
     np.testing.assert_allclose(modes.shares.kinetic[1], [0.0, 1.0], atol=1e-9)
     # The two rotors against each other, the gears at rest: √(5e3 / 700e-6).
     assert modes.frequencies_hz[1] == pytest.approx(np.sqrt(5e3 / 700e-6) / (2.0 * np.pi), rel=1e-9)
+
+
+def test_engine_geared_to_two_shafts(published: Published) -> None:
+    """Two pinions of 0.5 m on an engine's shaft drive wheels of 0.8 m."""
+
+    def shaft(diameter: float, length: float) -> float:
+        return 68e9 * np.pi / 32.0 * diameter**4 / length
+
+    branch = ([800.0, 450.0], [shaft(0.25, 3.5)])
+    chains = {"engine": ([3200.0, 2.0 * 200.0], [shaft(0.2, 2.5)]), "left": branch, "right": branch}
+    meshes = [("engine", 1, 0.5, name, 0, 0.8) for name in ("left", "right")]
+    found = geared_chains(chains, meshes, stiffness=1e12).frequencies_hz
+    for number, (value, ours) in enumerate(zip([10.304, 20.479, 24.423], found[1:4], strict=True), start=1):
+        published(TWO_SHAFTS, f"torsional {number}", value, ours, "Hz", abs=0.51e-3)
+
+
+def test_marine_steam_turbine(published: Published) -> None:
+    """Two turbines, each by two reductions, on one propeller; inertias and stiffnesses in lbf in s² and lbf in/rad.
+
+    The ends of quill shafts are discs of no inertia there; 1e-9 of the smallest other is none in these modes.
+    """
+    inch = 0.11298
+    given = {
+        "propeller": ([2.454e6, 0.826e6], [826e6]),
+        "low pressure, first": ([1e-6, 1.283e4], [203.94e6]),
+        "low pressure, turbine": ([1e-6, 1.509e4], [30.51e6]),
+        "high pressure, first": ([1e-6, 2.723e4], [24.17e6]),
+        "high pressure, turbine": ([1e-6, 2.612e2], [14.26e6]),
+    }
+    chains = {name: ([inch * i for i in discs], [inch * k for k in shafts]) for name, (discs, shafts) in given.items()}
+    meshes = []
+    for side, ratio in (("low", 40.0424), ("high", 78.2365)):
+        meshes.append(("propeller", 1, 9.4094, f"{side} pressure, first", 0, 1.0))
+        meshes.append((f"{side} pressure, first", 1, ratio / 9.4094, f"{side} pressure, turbine", 0, 1.0))
+    found = 60.0 * geared_chains(chains, meshes, stiffness=1e13).frequencies_hz
+    for number, (value, ours) in enumerate(zip([177.7, 220.2, 1282.6], found[1:4], strict=True), start=1):
+        published(STEAM_TURBINE, f"torsional {number}", value, ours, "1/min", abs=0.051)
+
+
+def test_long_string_in_torsion(published: Published) -> None:
+    """A shaft of 800 m with an inertia at either end: exact here, n² π² / 6e4 too high with elements of 16 m."""
+    steel = ShaftMaterial(2.0 * 75e9 * 1.3, 75e9, 8000.0)
+    ends = [Disc(0.0, 1e3, 200.0, 100.0), Disc(800.0, 100.0, 10.0, 5.0)]
+    found = solve_torsional_modes(Rotor("string", [Segment(800.0, 0.78, 0.65, steel)], ends), count=5).frequencies
+    # Of 8 and of 50 elements, whose error goes as their length squared.
+    for number, (coarse, fine) in enumerate(
+        ((1.9225, 1.9106), (3.9187, 3.8232), (6.0625, 5.7394), (8.4185, 7.6613)), 1
+    ):
+        limit = fine - (coarse - fine) / (50.0**2 / 8.0**2 - 1.0)
+        ours = found[number] / (2.0 * np.pi)
+        published(STRING, f"torsional {number}, of elements of no length", limit, ours, "Hz", rel=1e-4 * number**2)
+        assert ours < fine

@@ -22,6 +22,11 @@
   (Harris and Kotzalas 2006, Essential Concepts, chapter 8; Palmgren 1959).
 - Hertz's elliptic contact: a*, b*, δ* against F(ρ) in the table of Harris and Kotzalas (2006, chapter 6), whose last
   digits are its own.
+- Characteristic frequencies as orders of the shaft: MB ER-16K (Curtin University's records on a fault simulator, its
+  readme in github.com/vibraneur-capstone/dataset); SKF 6205 and 6203 of Case Western Reserve University, where
+  a "rolling element" is counted by its strikes, two a turn. The ratio of ball to pitch diameter is the only unknown of
+  their four orders, so that these confirm it; the cages' printed orders, 0.39828 and 0.3817, are not quite those of the
+  outer raceways over the count, 0.39831 and 0.38163.
 """
 
 import math
@@ -49,6 +54,7 @@ from gearwhine.rotors.rolling_bearings import (
     spherical_groove,
     static_rating,
 )
+from gearwhine.rotors.rolling_bearings.frequencies import characteristic_frequencies
 from gearwhine.rotors.rolling_bearings.life import reference_revolutions
 
 Published = Callable[..., None]
@@ -59,6 +65,8 @@ ESSENTIALS = "Harris & Kotzalas, Essential Concepts of Bearing Technology (2006)
 SJOEVALL = f"{ESSENTIALS}, table 7.4, one row"
 TWO_ROWS = f"{ESSENTIALS}, table 7.5, two rows"
 NJ_207 = "Nguyen-Schäfer (2019), section 2.9, cylindrical roller bearing NJ 207"
+ORDERS = "Characteristic orders of ball bearings, Curtin University and Case Western Reserve"
+INCH = 25.4e-3
 CATALOGUE = "SKF general catalogue 6000, ratings of insides estimated from main dimensions"
 
 
@@ -411,3 +419,20 @@ def test_preloaded_pairs_lose_an_opposed_row_at_palmgrens_load(balls: bool) -> N
     for factor, loaded in ((0.98, True), (1.02, False)):
         state = rolling_equilibrium(pair, [0.0, 0.0, factor * free, 0.0, 0.0], held=held)
         assert (state.rows[1].loaded > 0) == loaded
+
+
+@pytest.mark.parametrize(
+    ("name", "row", "printed", "rel"),
+    [
+        ("MB ER-16K", (9, 7.9375e-3, 38.50e-3), (0.3969, 3.572, 5.428, 2.0 * 2.32), 1e-3),
+        ("SKF 6205", (9, 0.3126 * INCH, 1.537 * INCH), (0.39828, 3.5848, 5.4152, 4.7135), 2e-4),
+        ("SKF 6203", (8, 0.2656 * INCH, 1.122 * INCH), (0.3817, 3.0530, 4.9469, 3.9874), 2e-4),
+    ],
+)
+def test_characteristic_orders(
+    name: str, row: tuple[int, float, float], printed: tuple[float, ...], rel: float, published: Published
+) -> None:
+    """To the digits of the balls' diameters, or of the orders of ER-16K."""
+    found = characteristic_frequencies(BallRow(*row), 1.0).named()
+    for quantity, value in zip(("cage", "outer raceway", "inner raceway", "rolling element"), printed, strict=True):
+        published(ORDERS, f"{quantity}, {name}", value, found[quantity], rel=rel)

@@ -7,6 +7,9 @@ Sources, and the scatter that they allow:
   mode has the closed form √(G/ρ) / 2L.
 - *FV32*, "Cantilevered tapered membrane": NAFEMS, The Standard NAFEMS Benchmarks, TNSB Rev. 3, 1990 (±0.1 %). Here the
   membrane is half of a solid plate: its middle plane does not move across, its outer face is free, as in plane stress.
+- *FV12*, "Free thin square plate", and *FV16*, "Cantilevered thin square plate", of the same benchmarks, as FinEALE has
+  them (github.com/PetrKryslUCSD/FinEALE; ±0.7 %). Its values are of thin plates; here they are solids, clamped in all
+  directions along the edge.
 
 Each shape is met from gmsh's geometry, and from mesh files with other kinds of elements.
 """
@@ -34,9 +37,15 @@ RING = "code_aster V2.03.109 (SDLS109), free thick ring"
 CYLINDER = "FinEtools, free solid cylinder, after the Abaqus C3D10 benchmark"
 FV32 = "NAFEMS FV32 (TNSB Rev. 3, 1990), cantilevered tapered membrane"
 
+FV12 = "NAFEMS FV12 (TNSB Rev. 3, 1990), free thin square plate"
+FV16 = "NAFEMS FV16 (TNSB Rev. 3, 1990), cantilevered thin square plate"
+
 RING_HZ = [205.89, 205.89, 210.55, 210.55, 587.92, 587.92, 588.88, 588.88]
 CYLINDER_HZ = [2546.8, 2546.8, 2560.7, 4100.0, 4693.3, 4693.3, 5121.3]
 FV32_HZ = [44.623, 130.03, 162.70, 246.05, 379.90, 391.44]
+
+FV12_HZ = [1.622, 2.360, 2.922, 4.190, 4.190, 7.356, 7.356, 7.668]
+FV16_HZ = [0.421, 1.029, 2.582, 3.306, 3.753, 6.555]
 
 
 def _solid(build: Callable[[Any], None], size: float, path: Path) -> Mesh:
@@ -210,3 +219,13 @@ def _check_membrane(mesh: Mesh, published: Published, of: str = "") -> None:
     modes = solve_modes(attach_fixtures(matrices, mesh, supports), frequency_limit=2 * np.pi * 400.0)
     assert len(modes.frequencies) == len(FV32_HZ)
     _check(published, FV32, FV32_HZ, modes, rigid=0, rel=0.001, mesh=of)
+
+
+def test_thin_square_plates(published: Published, block_of: Callable[..., Mesh]) -> None:
+    """A side of 10 m, 50 mm thick, one brick of 20 nodes across."""
+    mesh = block_of("hexahedron20", cells=(20, 20, 1), bend=lambda points: points * [10.0, 10.0, THIN])
+    plate = assemble(mesh, Material(200e9, 0.3, 8000.0))
+    _check(published, FV12, FV12_HZ, solve_modes(plate, count=6 + len(FV12_HZ)), rigid=6, rel=0.007)
+    edge = Support("edge", box=((-1e-6, -1.0, -1.0), (1e-6, 11.0, 1.0)), fixed=(True, True, True))
+    held = solve_modes(attach_fixtures(plate, mesh, [edge]), count=len(FV16_HZ))
+    _check(published, FV16, FV16_HZ, held, rigid=0, rel=0.007)

@@ -16,7 +16,7 @@ blanks or racks the mean is taken.  Other materials scale by their mean modulus 
 100 N/mm by their fourth root.  The mean over the mesh is ``c_gamma = c' (0.75 eps_alpha + 0.25)``, meant for
 ``eps_alpha`` of 1.2 and more, and helix angles to 30 degrees.
 
-C_R was written from the norm's formula as it is commonly quoted; the norm's graph was not at hand.
+C_R was written from the norm's formula as it is commonly quoted, without its graph; KISSsoft has the same value.
 """
 
 from __future__ import annotations
