@@ -26,6 +26,7 @@ ANGLES, NATURAL, LAG = np.radians([0.0, 130.0, 240.0]), (900.0, 1300.0), 3e-6
 BEARING, TILT = 1e8, 2.52e5
 """Stiffness of both bearings of a shaft, across and along it, and against tilting."""
 BODIES = ("sun", "carrier", "ring", "planet", "planet", "planet")
+pytestmark = pytest.mark.usefixtures("few_slices")
 LIMIT = 2.0 * np.pi * 1300.0
 RING = TEETH[0] + 2 * TEETH[1]
 STIFF = ShaftMaterial(youngs_modulus=2e13, shear_modulus=8e12, density=1.0)

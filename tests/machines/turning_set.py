@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -86,6 +87,7 @@ def turning_set(
     return Machine(**parts, housing=housing(natural_hz, damping_ratio=0.03 * damping), speed=speed, torque=200.0)
 
 
+@cache
 def turning_machine(natural_hz: Sequence[float], **how: Any) -> CoupledMachine:
-    """The machine of `turning_set`, assembled."""
+    """The machine of `turning_set`, assembled: one for all tests of a process."""
     return turning_set(natural_hz, **how).assembled

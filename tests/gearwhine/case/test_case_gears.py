@@ -16,6 +16,7 @@ from gearwhine.results.check import check_document
 from gearwhine.results.gears import gears_document, sections
 from gearwhine.solve.gear_pairs import analyse_pairs
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
 TOOTH = {"module": "3.175 mm", "face_width": "30 mm", "material": "steel"}
 

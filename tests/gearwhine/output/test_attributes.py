@@ -14,6 +14,8 @@ from gearwhine.output.quantity import HERTZ, RPM, Quantity, document_of, factor_
 from gearwhine.results.gears import GEARS
 from gearwhine.results.rotors import ROTORS
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
+
 
 @dataclass(frozen=True)
 class Part:

@@ -16,6 +16,7 @@ from gearwhine.output.sections import Column, Table
 from gearwhine.results.sweep import sections
 from gearwhine.results_folder import export_results, write_report
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
 THIRD = 1.0 / 3.0
 
 

@@ -13,6 +13,8 @@ from gearwhine.output import files as output_files
 from gearwhine.output import staging
 from gearwhine.output.manifest import MANIFEST, listed_digests, require_as_written
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
+
 
 def write_set(folder: Path, command: str, mark: str, drawings: tuple[str, ...] = ("a.png",)) -> None:
     """A command's results, each file with a mark of its own run."""

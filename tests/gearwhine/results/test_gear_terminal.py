@@ -14,6 +14,7 @@ from gearwhine.output.terminal import show
 from gearwhine.results.gears import gears_document, report, sections
 from gearwhine.solve.gear_pairs import analyse_pairs
 
+pytestmark = pytest.mark.usefixtures("few_reliefs_tried")
 Document = dict[str, Any]
 
 

@@ -153,7 +153,7 @@ samples = 2
         for bearing in load["bearings"]:
             force = np.linalg.norm(bearing["force_n"])
             assert row[f"bearing.{bearing['name']}.force_n"] == pytest.approx(force, rel=1e-9)
-        gears = single.gears().document["pairs"][0]
+        gears = single.gears(without=("harris-map", "relief")).document["pairs"][0]
         assert row[TE] == pytest.approx(gears["transmission_error_m"]["peak_to_peak"], rel=1e-9)
         # The lines of a sensor at each speed are those of `system` there.
         for place, speed in enumerate((2500, 5500)):

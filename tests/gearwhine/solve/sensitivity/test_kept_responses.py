@@ -38,6 +38,7 @@ def numbers(value: Any) -> list[float]:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_slices")
 def test_a_second_ranking_solves_no_response_again(tmp_path: Path) -> None:
     """The same numbers without a factorisation; another torque keeps the sensors' residual modes alone."""
     first, at_first = ranked(tmp_path, {})
