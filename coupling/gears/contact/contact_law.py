@@ -311,17 +311,18 @@ class ToothContact:
         Cubics on even parts of each mesh period of the hunting period, (h, k, 4). Where that is long, those of the
         driver's teeth and of the driven gear's, whose sum lacks what the teeth of both do together.
         """
-        alike = self.body_tilt
-        if alike is None or not self.hunting_numbers:
+        if not (self._bodies_tilt and self.hunting_numbers):
             return ()
         by_gear = self.teeth_of(driver=True), self.teeth_of(driven=True)
         whole = self.hunting_numbers <= max(_MOST_HUNTING, *(law.hunting_numbers for law in by_gear))
         tilts = []
+        # Solved alike, not smoothed as in `body_tilt`: steps of slices and spur teeth cancel where pairs are alike.
+        alike = self.teeth_alike._tilt_at(np.arange(_TOOTH_TILT_PARTS) / _TOOTH_TILT_PARTS)
         for law in (self,) if whole else by_gear:
             phases = np.arange(law.hunting_numbers * _TOOTH_TILT_PARTS) / _TOOTH_TILT_PARTS
             # Some periods at once, for the memory of their slices.
             few = np.array_split(phases, math.ceil(phases.size / _TILT_PHASES))
-            beside = np.concatenate([law._tilt_at(part) for part in few]) - alike(phases % 1.0)
+            beside = np.concatenate([law._tilt_at(part) for part in few]) - np.tile(alike, law.hunting_numbers)
             tilts.append(_periodic_cubics(beside).reshape(-1, _TOOTH_TILT_PARTS, 4))
         return tuple(tilts)
 

@@ -353,6 +353,16 @@ def test_at_the_mean_load_the_table_carries_what_unequal_teeth_carry(unequal, wh
     assert misses[1] > better * misses[0]
 
 
+def test_teeth_with_the_same_gap_tilt_the_bodies_as_teeth_alike(uneven, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    """By the teeth of both together, or of each gear: a gap of all pairs moves no load."""
+    same = replace(uneven.under_load(FORCE), pitch_gaps=np.full(6, 5e-6), tooth_counts=(2, 3))
+    for most in (6, 0):
+        monkeypatch.setattr("gearwhine.coupling.gears.contact.contact_law._MOST_HUNTING", most)
+        tilts = replace(same).tooth_tilts
+        assert [len(tilt) for tilt in tilts] == ([6] if most else [2, 3])
+        assert max(np.abs(tilt).max() for tilt in tilts) < 1e-14
+
+
 def frozen(law) -> tuple[FloatArray, int]:  # type: ignore[no-untyped-def]
     """Law with the bodies' tilt of teeth alike."""
     numbers, at = law.kernel_arguments
