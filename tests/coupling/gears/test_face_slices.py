@@ -1,10 +1,12 @@
 """Uneven faces: the spur law as the limit, the slices against dense quadratic programming, and the compiled table."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 from scipy.linalg import block_diag
 from scipy.optimize import nnls
 
@@ -369,6 +371,36 @@ def frozen(law) -> tuple[FloatArray, int]:  # type: ignore[no-untyped-def]
     alike = numbers.copy()
     alike[TILT_PERIOD] = 0
     return alike, at
+
+
+def test_unequal_teeth_move_as_with_the_statics_at_every_step(uneven) -> None:  # type: ignore[no-untyped-def]
+    """A mass on the mesh, with the force of static solutions about the load, and with that of the table."""
+    pairs, steps = 6, 64
+    gaps = np.random.default_rng(3).normal(0.0, 3e-6, pairs)
+    law = replace(uneven.with_damping(0.0).under_load(FORCE), pitch_gaps=gaps, tooth_counts=(pairs, pairs + 1))
+    phases = np.arange(pairs * steps) / steps
+    loads = FORCE * np.array([0.7, 0.85, 0.95, 1.0, 1.05, 1.15, 1.3])
+    depths = np.array([loaded_transmission_error(law, load, phases).transmission_error for load in loads])
+    stiffness = (loads[4] - loads[2]) / (depths[4] - depths[2]).mean()
+    step = 2.0 * math.pi / 0.4 / steps  # times the natural frequency, of which the mesh frequency is 0.4
+    statics = [CubicSpline(column, loads) for column in depths.T]
+
+    def lines(force: Callable[[int, float], float]) -> FloatArray:
+        x, rate, path = depths[3, 0], 0.0, []
+        for at in 10 * list(range(phases.size)):
+            rate += ((FORCE - force(at, x)) / stiffness - 0.2 * rate) * step
+            x += rate * step
+            path.append(x)
+        return np.fft.rfft(path[-phases.size :])[1 : 4 * pairs + 1]
+
+    expected = lines(lambda at, x: float(statics[at](x)))
+    tilting, alike = (
+        lines(lambda at, x, kernel=kernel: tooth_force(phases[at], x, 0.0, *kernel)[0])
+        for kernel in (law.kernel_arguments, frozen(law))
+    )
+    misses = [np.linalg.norm(found - expected) / np.linalg.norm(expected) for found in (tilting, alike)]
+    assert misses[0] < 5e-3
+    assert misses[1] > 3.0 * misses[0]
 
 
 @pytest.mark.parametrize("whole", [True, False])
