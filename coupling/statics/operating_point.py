@@ -201,7 +201,7 @@ class PairLoad:
         Of helical teeth, which have none, it is `fine`.
         """
         phases = mesh_period_phases(self.pair.contact.tooth_contact)
-        more = phases.size > self.fine.phases.size
+        more = phases.size > even_phases().size
         return self.pair.contact.under_force(self.loading, self.shape, phases) if more else self.fine
 
     @property
