@@ -901,7 +901,7 @@ def _highest_line(document: Document) -> Iterator[str]:
         )
 
 
-def _stability(stability: Document, modes: Sequence[Document], trusted: float | None) -> Iterator[str]:
+def _stability(stability: Document, modes: Sequence[Document] = (), trusted: float | None = None) -> Iterator[str]:
     if stability["stable"]:
         least, within = stability["least_damped"], ""
         sentence = "Stable: no mode grows."
