@@ -608,7 +608,7 @@ class MeshHarmonicModel:
         contacts, found = self.machine.system.contacts, dict[int, list[tuple[LoadedMesh, FloatArray | None]]]()
         for number, forces in forces_over_turn(self.machine.system, self._at_rest).items():
             contact = contacts[number]
-            if number not in self.loaded or contact.sliding is None:
+            if number not in self.loaded or contact.sliding is None or not np.all(forces > 0.0):
                 continue
             if number not in self._laws_over_turn:
                 found[number] = [alike_teeth(contact, force) for force in forces.tolist()]

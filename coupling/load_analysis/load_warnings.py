@@ -220,7 +220,8 @@ def _face_warnings(number: int, points: Sequence[OperatingPoint]) -> Iterator[Re
             if len(parted) == len(points)
             else f"{label}: the load holds the flanks apart with {_angles(parted, carriers)}, "
             "and the pairs that share the torque carry its part; linear analyses and motion have the mean stiffness "
-            "and transmission error of the turn there, and lack the lines that this parting makes"
+            "and transmission error of the turn there, and lack the lines that this parting and the swing of its "
+            "flanks make"
         )
         yield warning("lost contact", message, **gears, angles_rad=[dict(point.turned_by) for point in parted])
     if len(parted) == len(points):

@@ -44,11 +44,6 @@ def turn_waves(system: CoupledSystem) -> dict[float, ComplexArray]:
     return {shift: np.exp(-1j * shift * times) / times.size for shift in shifts}
 
 
-def compressions_over_turn(system: CoupledSystem, motions: FloatArray) -> FloatArray:
-    """Compression of each contact at rest, at each of `CoupledSystem.turn_times` [m], shape (t, c)."""
-    return np.array([q @ at.contact_directions for q, at in zip(motions, system.over_turn, strict=True)])
-
-
 LawsOverTurn = Mapping[int, Sequence[tuple[ToothContact, float]]]
 """Law of teeth alike and force [N] at each angle of a turn, by the number of the contact."""
 
@@ -76,7 +71,7 @@ def swinging_laws(
     found = dict[int, list[tuple[ToothContact, float]]]()
     for number, forces in forces_over_turn(system, rest).items() if swinging else ():
         faces = laws[number].faces
-        if number in swinging and faces is not None:
+        if number in swinging and faces is not None and np.all(forces > 0.0):
             gaps = [replace(faces, gap=faces.gap + change, changes=np.zeros((1, 1))) for change in faces.changes]
             found[number] = [
                 (replace(laws[number].teeth_alike, faces=gap), force)
@@ -90,16 +85,16 @@ def forces_over_turn(
 ) -> dict[int, FloatArray]:
     """Force of each contact at rest, at each of `CoupledSystem.turn_times` [N], shape (t,), by the slope of its curve.
 
-    Left out are contacts without a mean force, and those whose flanks part at an angle. ``rest`` is as of
+    It is 0 at angles where the flanks are parted. Left out are contacts without a mean force. ``rest`` is as of
     `swinging_laws`.
     """
     means, motions = equilibrium_over_turn(system) if rest is None else rest
-    forces = {
-        number: mean.force + mean.secant * (moved - moved.mean())
-        for number, (mean, moved) in enumerate(zip(means, compressions_over_turn(system, motions).T, strict=True))
-        if mean is not None
+    moved = np.array([q @ at.contact_directions for q, at in zip(motions, system.over_turn, strict=True)])
+    return {
+        number: np.maximum(mean.force + mean.secant * (moved[:, number] - contact.clearance - mean.deflection), 0.0)
+        for number, (contact, mean) in enumerate(zip(system.contacts, means, strict=True))
+        if mean is not None and mean.force > 0.0
     }
-    return {number: force for number, force in forces.items() if np.all(force > 0.0)}
 
 
 def swinging_errors(

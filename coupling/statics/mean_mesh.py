@@ -4,7 +4,8 @@ Over a mesh period the number of loaded teeth changes, while the mean force of a
 contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the
 period, and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the
 torques alone give F; where meshes share a torque, their stiffness and deviations divide it. On carriers that turn the
-sharing changes over a turn, by weight, other meshes and a housing that is not alike all round: F is the mean over it.
+sharing changes over a turn, by weight, other meshes and a housing that is not alike all round: F is the mean over it,
+with none at the angles where the contact is parted.
 
 Linear analyses take the tooth contacts as mesh stiffness and damping about the mean load, or at an instant
 (`ContactState`).
@@ -101,7 +102,8 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
     tangents about their mean loads. The motion is zero where the load cannot balance.
 
     Where directions turn, the machine rests at several angles of its carriers, with all that stands still, such as
-    weight, in its place. A contact has its tangent under its mean force over the turn at each of them.
+    weight, in its place. A contact has its tangent under its mean force over the turn at each of them, and no force at
+    those where it would pull.
     """
     without_force: list[MeanMesh | None] = [None] * len(system.contacts)
     driving = [number for number, contact in enumerate(system.contacts) if contact.loaded]
@@ -119,11 +121,12 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
     stiffness = np.array([law.unloaded_mean_mesh_stiffness for law in laws])
     offset = clearance.copy()
     before = np.full(len(driving), np.nan)
-    loaded = np.ones(len(driving), dtype=bool)
+    loaded = np.ones((len(stands), len(driving)), dtype=bool)
     meshes: list[MeanMesh | None] = [None] * len(driving)
     for _ in range(_ITERATIONS):
-        matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.mT
-        pressed = load + directions @ (stiffness * loaded * offset)
+        closed = directions * loaded[:, None, :]
+        matrix = stiffness_held + (closed * stiffness) @ directions.mT
+        pressed = load + closed @ (stiffness * offset)
         if not np.all(loaded):
             loose = [_loose_motions(one, stiffest) for one in matrix]
             if any(drives(force, free) for force, free in zip(pressed, loose, strict=True)):
@@ -132,16 +135,17 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
             matrix += stiffest * np.array([free @ free.T for free in loose])
         q = np.linalg.solve(matrix, pressed[..., None])[..., 0]
         compression = np.einsum("tnc,tn->tc", directions, q)
-        force = stiffness * (compression.mean(axis=0) - offset)
-        rounding = _FORCE_ROUNDING * stiffness * np.einsum("tnc,tn->tc", np.abs(directions), np.abs(q)).mean(axis=0)
-        converged = np.abs(force - before) <= _CONVERGED_FORCE_CHANGE * np.abs(force * loaded).max() + rounding
-        parted = force < -rounding
-        if np.all(converged | parted) and np.array_equal(parted, ~loaded):
+        pull = stiffness * (compression - offset)
+        rounding = _FORCE_ROUNDING * stiffness * np.einsum("tnc,tn->tc", np.abs(directions), np.abs(q))
+        parted = pull < -rounding
+        force, rounding = np.where(parted, 0.0, pull).mean(axis=0), rounding.mean(axis=0)
+        converged = np.abs(force - before) <= _CONVERGED_FORCE_CHANGE * np.abs(force).max() + rounding
+        if np.all(converged) and np.array_equal(parted, ~loaded):
             break
         before, loaded = force, ~parted
         for number, law in enumerate(laws):
             if force[number] <= rounding[number]:
-                meshes[number] = _PARTED_MESH if parted[number] else None
+                meshes[number] = _PARTED_MESH if parted[:, number].all() else None
                 continue
             try:
                 mean = mean_mesh(law, float(force[number]))

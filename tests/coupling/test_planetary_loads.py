@@ -13,6 +13,7 @@ from gearwhine.coupling.load_analysis.load_warnings import load_warnings
 from gearwhine.coupling.load_analysis.planetary_load import over_carrier_turn, planetary_load
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad, solve_load
 from gearwhine.coupling.machine.loads import ShaftForce
+from gearwhine.coupling.statics.flank_swing import forces_over_turn
 from gearwhine.coupling.statics.mean_mesh import mean_contact, mean_meshes
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.output.sections import Table
@@ -295,6 +296,11 @@ def test_means_and_ranges_over_a_turn_are_shown_of_forces_and_shares() -> None:
     assert forces[0]["max"] == pytest.approx(expected[:, 0].max(), rel=2e-3)
     shares = expected / expected.sum(axis=1)[:, None]
     (stage,) = document["planetary_over_turn"]
+    # Linear analyses rest at the same forces: 565 N instead of 642 on the first planet, if parted flanks would pull.
+    system = solved.machine.assembled.system
+    assert [mean.force for mean in mean_meshes(system) if mean][:3] == pytest.approx(expected.mean(axis=0), rel=1e-4)
+    at_rest = np.transpose([force for _, force in sorted(forces_over_turn(system).items())][:3])
+    np.testing.assert_allclose(at_rest, expected, atol=1e-3 * expected.max())
     assert [share["mean"] for share in stage["load_shares"]] == pytest.approx(shares.mean(axis=0), abs=2e-3)
     assert stage["mesh_load_factor"]["max"] == pytest.approx(3.0 * shares.max(), abs=6e-3)
     (section,) = sections(document)

@@ -28,7 +28,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.carriers.turning_response import Order, TurningResponse, plus
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh, coupled
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
-from gearwhine.coupling.statics.flank_swing import compressions_over_turn, turn_waves
+from gearwhine.coupling.statics.flank_swing import forces_over_turn, turn_waves
 from gearwhine.coupling.statics.mean_mesh import MeanMesh
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -86,7 +86,7 @@ def swings_at_rest(
     """Swing of the compression of each loaded contact under the constant load, two-sided by turns of the carriers [m].
 
     At rest a contact yields along its mean curve, by the harmonic mean of its stiffness. That is the answer of the mean
-    stiffness and of its variation together, of which u° is the former.
+    stiffness and of its variation together, of which u° = F/k is the former. Flanks that are parted are not compressed.
 
     Parameters
     ----------
@@ -95,17 +95,14 @@ def swings_at_rest(
         See `gearwhine.coupling.statics.mean_mesh.equilibrium_over_turn`.
     model : TurningResponse
     """
-    compressions = compressions_over_turn(system, motions)
-    waves = by_order(turn_waves(system), model)
-    return {
-        number: {
-            order: complex(wave @ compressions[:, number]) * (mean.secant / mean.stiffness)
-            for order, wave in waves.items()
-            if order != model.still
+    waves, found = by_order(turn_waves(system), model), dict[int, dict[Order, complex]]()
+    for number, force in forces_over_turn(system, (means, motions)).items():
+        mean = means[number]
+        assert mean is not None
+        found[number] = {
+            order: complex(wave @ force) / mean.stiffness for order, wave in waves.items() if order != model.still
         }
-        for number, mean in enumerate(means)
-        if mean is not None and mean.stiffness > 0.0
-    }
+    return found
 
 
 def turning_stiffness_forces(
