@@ -20,7 +20,7 @@ from gearwhine.case.detection import MOST_GEARBOXES, Detection
 from gearwhine.case.errors import UNSAID, key_of, look_up
 from gearwhine.case.load import findings_of
 from gearwhine.case.model import lacking
-from gearwhine.case.overrides import matching_places, parse_key_path
+from gearwhine.case.overrides import ListPlace, matching_places, parse_key_path
 from gearwhine.case.variation import Variation
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.condition_record import LEAST_TURNS
@@ -471,7 +471,8 @@ def _gear(names: Sequence[str], driver: str, settings: Detection) -> str:
     """Return the gear by whose shaft signals are averaged, by default the faulty one, else the first driver."""
     steps = parse_key_path(settings.fault) or ()
     of_fault = steps[1] if len(steps) > 1 and steps[0] == "gear" else ""
-    if of_fault.isdecimal() and of_fault not in names and int(of_fault) < len(names):
+    by_number = isinstance(of_fault, ListPlace) or of_fault not in names
+    if of_fault.isdecimal() and by_number and int(of_fault) < len(names):
         of_fault = names[int(of_fault)]
     return _gear_of(names, of_fault if of_fault in names else driver, settings)
 
@@ -509,7 +510,7 @@ def _slips(document: Mapping[str, Any]) -> tuple[tuple[str, int], ...]:
     for place in matching_places(document, ("bearing", "*", "slip")):
         slip = CageSlip.model_validate(look_up(document, place))
         if slip.scatter > 0.0:
-            found.append((".".join(map(str, (*place, "seed"))), slip.seed))
+            found.append((key_of((*place, "seed")), slip.seed))
     return tuple(found)
 
 
@@ -529,7 +530,7 @@ def _healthy_change(documents: Sequence[Mapping[str, Any]], settings: Detection)
     if not _is_in(documents, (*steps[: place + 1], *listed), steps):
         raise CaseError([Problem("detection.fault", settings.fault, f"the key of a fault that the case has; {_KEYS}")])
     end = place + 2 if inside and inside[0].isdecimal() else place + 1
-    return ".".join(f'"{step}"' if "." in step else step for step in steps[:end]) + "="
+    return key_of(tuple(int(step) if isinstance(step, ListPlace) else step for step in steps[:end])) + "="
 
 
 def _is_in(documents: Sequence[Mapping[str, Any]], *paths: Sequence[str]) -> bool:

@@ -262,7 +262,8 @@ def plan_variation(case: Case, source: CaseSource) -> tuple[tuple[Input, ...], W
     tied = np.zeros(len(inputs), dtype=bool)
     with refusal:
         matrix = correlation_matrix(inputs, variation)
-        tied |= False if matrix is None else (matrix != np.eye(len(inputs))).any(axis=0)
+        if matrix is not None:
+            tied = (matrix != np.eye(len(inputs))).any(axis=0)
     refusal.add(*_value_problems(source.without("variation"), inputs, tied.tolist()))
     with refusal:
         wanted = wanted_of(case, variation)

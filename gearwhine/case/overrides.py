@@ -18,6 +18,12 @@ from gearwhine.numerics.names import did_you_mean
 _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
 
 
+class ListPlace(str):
+    """Step of a key path in brackets, ``[1]``: the number of a list's entry, whatever entries are called."""
+
+    __slots__ = ()
+
+
 @lru_cache(maxsize=1024)
 def parse_key_path(text: str) -> tuple[str, ...] | None:
     """Split a key path such as ``rotor.input.segments[1].length``; names with dots stand in quotes.
@@ -25,14 +31,19 @@ def parse_key_path(text: str) -> tuple[str, ...] | None:
     Returns
     -------
     tuple of str, or None
-        The steps; list places stay text. None where the text is no key path.
+        The steps; places in brackets are text, too, a `ListPlace`. None where the text is no key path.
     """
     steps, place = [], 0
     while place < len(text):
         match = _STEP.match(text, place)
         if match is None or (place == 0 and text[0] in ".["):
             return None
-        steps.append(next(group for group in match.groups() if group is not None))
+        place_in_brackets, *names = match.groups()
+        steps.append(
+            next(name for name in names if name is not None)
+            if place_in_brackets is None
+            else ListPlace(place_in_brackets)
+        )
         place = match.end()
     return tuple(steps) or None
 
@@ -47,8 +58,8 @@ def _name_of(entry: object) -> str | None:
 
 
 def place_in_list(entries: list[Any], step: str) -> int | None:
-    """Find a list's entry by its own name or by its number."""
-    for index, entry in enumerate(entries):
+    """Find a list's entry by its own name or by its number; in brackets by its number alone."""
+    for index, entry in enumerate([] if isinstance(step, ListPlace) else entries):
         if _name_of(entry) == step:
             return index
     return int(step) if step.isdecimal() and len(step) < 10 and int(step) < len(entries) else None
@@ -149,7 +160,9 @@ def _expanded(document: Any, steps: tuple[str, ...], resolved: Any, value: Any) 
         after = len(steps) - steps[::-1].index("*")
         entries = [place for place in matching_places(document, steps[:after]) if isinstance(place[-1], int)]
         places = [(*place, *steps[after:]) for place in entries if steps[after:]]
-    paths = list(dict.fromkeys(tuple(str(step) for step in place) for place in places))
+    paths = list(
+        dict.fromkeys(tuple(step if isinstance(step, str) else ListPlace(step) for step in place) for place in places)
+    )
     if not paths:
         raise _LeadsNowhereError((), ".".join(steps), "a path with * that some entries of the case have")
     return paths

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearwhine.case.errors import key_of
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import RPM, Part, Quantity, Rows, document_of, in_file
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, table_of
@@ -212,7 +213,7 @@ def runout_twice_warnings(inputs: Sequence["Input"], gears: Sequence["Gear"] = (
     for gear in gears:
         for key in ("pitch", "spacing", "runout", "eccentricity"):
             if getattr(gear.errors, key):
-                written[f"gear.{gear.name}.errors.{key}"] = "written"
+                written[key_of(("gear", gear.name, "errors", key))] = "written"
     told = written | dict.fromkeys(varied, "varied")
     for table in sorted({key.rpartition(".")[0] for key in varied if ".errors." in key}):
         pitches, offsets = (

@@ -316,7 +316,7 @@ class ToothContact:
         by_gear = self.teeth_of(driver=True), self.teeth_of(driven=True)
         whole = self.hunting_numbers <= max(_MOST_HUNTING, *(law.hunting_numbers for law in by_gear))
         tilts = []
-        # Solved alike, not smoothed as in `body_tilt`: steps of slices and spur teeth cancel where pairs are alike.
+        # At the same phases and unsmoothed, unlike `body_tilt`: the difference vanishes where pairs are alike.
         alike = self.teeth_alike._tilt_at(np.arange(_TOOTH_TILT_PARTS) / _TOOTH_TILT_PARTS)
         for law in (self,) if whole else by_gear:
             phases = np.arange(law.hunting_numbers * _TOOTH_TILT_PARTS) / _TOOTH_TILT_PARTS

@@ -23,7 +23,7 @@ from gearwhine.case.gears import Gear, GearPair
 from gearwhine.case.housing import Housing, Material, Seat
 from gearwhine.case.measured import Measured
 from gearwhine.case.model import Case
-from gearwhine.case.overrides import parse_key_path
+from gearwhine.case.overrides import ListPlace, parse_key_path
 from gearwhine.case.rotors import Rotor
 from gearwhine.case.units import to_rpm
 
@@ -90,7 +90,7 @@ def _within(location: Location, steps: tuple[str, ...], document: object) -> boo
     for step, wanted in zip(location, steps, strict=False):
         here = look_up(here, (step,))
         name = look_up(here, ("name",)) if isinstance(step, int) else step
-        if wanted not in ("*", str(step), name):
+        if wanted not in ("*", str(step), str(step) if isinstance(wanted, ListPlace) else name):
             return False
     return len(steps) <= len(location)
 

@@ -7,11 +7,26 @@ from pathlib import Path
 import pytest
 
 from gearwhine.case import Case, CaseError, dump_case, load_case, swept_keys
+from gearwhine.case.load import bundled_case
 from gearwhine.sweep import sweep_points
 
 
 def changed(*overrides: str) -> Case:
     return load_case("small-gearbox", overrides).case
+
+
+@pytest.mark.parametrize(
+    ("key", "thinned"),
+    [("gear.1", "1"), ("gear.0", "0"), ("gear[1]", "0"), ("gear[0]", "1"), ("gear.*", "10"), ('gear."1"', "1")],
+)
+def test_a_number_is_a_name_first_and_in_brackets_a_place(key: str, thinned: str, tmp_path: Path) -> None:
+    """The first gear is called 1, the second 0; whoever names them by counting from 1 has the same trap."""
+    bundled = bundled_case("spur-pair")
+    assert bundled is not None
+    path = tmp_path / "pair.toml"
+    path.write_text(bundled.read_text().replace('"pinion"', '"1"').replace('"wheel"', '"0"'))
+    gears = load_case(path, [f"{key}.tooth_thinning=15 um"]).case.gear
+    assert "".join(gear.name for gear in gears if gear.tooth_thinning == 15e-6) == thinned
 
 
 def test_values_are_toml_or_bare_words_and_quantities() -> None:

@@ -52,6 +52,20 @@ def test_a_star_stands_for_every_entry_that_takes_the_key(tmp_path: Path) -> Non
         assert one.unit == "um"
 
 
+def test_gears_that_are_named_by_numbers_are_varied_each_by_its_name(tmp_path: Path) -> None:
+    bundled = bundled_case("spur-pair")
+    assert bundled is not None
+    text = bundled.read_text().replace('"pinion"', '"1"').replace('"wheel"', '"2"')
+    path = tmp_path / "pair.toml"
+    law = '{ uniform = ["10 um", "20 um"], independent = true }'
+    path.write_text(f'{text}\n[variation.vary]\n"gear.*.tooth_thinning" = {law}\n')
+    loaded = load_case(path)
+    assert loaded.case.variation is not None
+    for one, thinned in zip(varied_inputs(loaded.source, loaded.case.variation), "12", strict=True):
+        gears = loaded.source.changed_case(list(one.overrides(0.5))).gear
+        assert [gear.name for gear in gears if gear.tooth_thinning > 0.0] == [thinned]
+
+
 def test_a_star_leaves_out_entries_that_do_not_take_the_key(tmp_path: Path) -> None:
     """Two of the four bearings have a matrix, which has no xx."""
     (one,) = _inputs(tmp_path, 'vary = { "bearing.*.stiffness.xx" = { uniform = ["1e8 N/m", "2e8 N/m"] } }')
