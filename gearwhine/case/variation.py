@@ -211,11 +211,10 @@ def built_distribution(varied: Varied) -> tuple[Distribution, str] | None:
     try:
         return kinds[varied.kind](*numbers[:count], *numbers[count:]), unit
     except DistributionError as error:
-        words = []
-        for one in error.findings:
-            name = _NAMED.get(one.attribute, one.attribute)
-            words.append(f"{one.expected} {unit}".strip() + f" as {name}, got {one.value:g} {unit}".rstrip())
-        raise ValueError("; ".join(words)) from None
+        words = [
+            f"{one.expected} as {_NAMED.get(one.attribute, one.attribute)}, got {one.value:g}" for one in error.findings
+        ]
+        raise ValueError("; ".join(words) + (f", all in {unit}" if unit else "")) from None
 
 
 def in_one_unit(amounts: tuple[float | str, ...]) -> tuple[list[float], str]:

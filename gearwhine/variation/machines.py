@@ -9,6 +9,7 @@ import uuid
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property, partial
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -102,6 +103,9 @@ def made(make: Maker, values: Mapping[str, float]) -> Made:
         raise CouplingError(str(error)) from error
     if not isinstance(found, Machine | Mapping):
         raise CouplingError(f"{make!r} returned {found!r:.60}; expected a gearwhine.Machine, or numbers by name")
+    for name, value in found.items() if isinstance(found, Mapping) else ():
+        if not isinstance(value, Real):
+            raise CouplingError(f"{make!r} returned {value!r:.60} as {name!r}; expected a number")
     return found
 
 

@@ -296,7 +296,7 @@ def _line(number: int, point: FloatArray, outcome: Outcome) -> dict[str, Any]:
     begin: dict[str, Any] = {"number": number, "point": point.tolist()}
     if isinstance(outcome, Failure):
         return begin | {"failure": outcome.message, "traceback": outcome.traceback}
-    numbers = {name: value if np.isfinite(value) else None for name, value in outcome.numbers.items()}
+    numbers = {name: None if np.isnan(value) else value for name, value in outcome.numbers.items()}
     curves = {name: curve.tolist() for name, curve in outcome.curves.items()}
     return begin | {"numbers": numbers} | ({"curves": curves} if curves else {})
 
