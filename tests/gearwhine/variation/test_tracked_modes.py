@@ -48,10 +48,9 @@ def test_frequencies_keep_their_modes_where_these_cross() -> None:
 
 
 def test_modes_of_one_frequency_are_found_together_and_others_by_their_shapes_alone() -> None:
-    basis = np.eye(5)
-    turned = np.array([[0.6, 0.8], [-0.8, 0.6]])
-    nominal = ObservedModes(np.array([10.0, 10.0, 12.0, 14.0]), basis[:4].astype(complex))
-    pair = np.vstack([turned @ basis[:2], basis[2]])
-    other = ObservedModes(np.array([12.9, 13.0, 13.0]), pair[[2, 0, 1]] * np.exp(0.3j))
-    # The pair, turned by 53 degrees, has moved above the third mode; the fourth is not there.
-    assert nominal.found_in(other) == pytest.approx([13.0, 13.0, 12.9, np.nan], nan_ok=True)
+    basis = np.eye(6)
+    turned = np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0
+    nominal = ObservedModes(np.array([10.0, 10.0, 10.0, 12.0, 14.0]), basis[:5].astype(complex))
+    other = ObservedModes(np.array([12.9, 13.0, 13.0, 13.0]), np.vstack([basis[3], turned @ basis[:3]]) * np.exp(0.3j))
+    # Three of one frequency, of which none is like another by half, have moved above the fourth; the fifth is missing.
+    assert nominal.found_in(other) == pytest.approx([13.0, 13.0, 13.0, 12.9, np.nan], nan_ok=True)
