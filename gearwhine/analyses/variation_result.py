@@ -337,8 +337,8 @@ def vary(
     samples : int
         Number of machines; with ``indices`` times the number of values and two more.
     analyses : sequence of str, optional
-        What is found of each: "gears", "load", "rotors", "mass", "lines", "sound", "motion". By default gears, load and
-        lines, as far as the machine has them.
+        What is found of each: "gears", "load", "rotors", "mass", "modes", "lines", "sound", "motion". By default
+        gears, load and lines, as far as the machine has them.
     quantities : sequence of str
         Names of the quantities that are found, ``*`` for any part of a name; by default all of the analyses.
     speeds : sequence of float

@@ -177,6 +177,7 @@ def varied_document(varied: "VariedResult") -> dict[str, Any]:
 
 def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
     yield from failed_warnings(varied, len(varied.outcomes), "failed samples", "gearboxes")
+    yield from _lacking_warnings(varied)
     widths = {
         one.name: float(np.ptp(one.indices.total_interval, axis=1).max())
         for one in varied.headlines
@@ -199,6 +200,19 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
                 f"{100.0 * part:.0f} % of the gearboxes: beyond that end the level may be higher; take a wider range"
             )
             yield warning("loudest speed", message, share=part)
+
+
+def _lacking_warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
+    """Warn of quantities that some gearboxes do not have, such as the frequency of a mode that is not found again."""
+    solved = len(varied.outcomes) - len(varied.failures)
+    for one in varied.quantities:
+        lacking = solved - int(np.sum(~np.isnan(varied.all_values(one.name))))
+        if lacking:
+            what = f"{part_of(one.name)}, {shown_quantity(one.name)[0].partition(' [')[0]}"
+            why = ": the mode is not found again there" if ".natural_frequency_" in one.name else ""
+            limited = "; these count as beyond its limit" if one.limit is not None else ""
+            message = f"{lacking} of {solved} gearboxes have no {what}{why}{limited}"
+            yield warning("missing values", message, quantity=one.name, gearboxes=lacking)
 
 
 def runout_twice_warnings(inputs: Sequence["Input"], gears: Sequence["Gear"] = ()) -> Iterator[ResultWarning]:
