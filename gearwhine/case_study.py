@@ -284,8 +284,10 @@ class CaseStudy(Study):
             plan_detection(self._source)
         if self.case.optimisation is not None:
             from gearwhine.analyses.optimisation_result import plan_optimisation
+            from gearwhine.optimisation.design import alone_warnings
 
-            plan_optimisation(self._source, self.case.optimisation)
+            designed, *_ = plan_optimisation(self._source, self.case.optimisation)
+            warnings += alone_warnings(self._source.without("variation", "optimisation"), designed)
         checked = check_case(self.case, self.progress, self._source.imported)
         checked.warnings.extend(warnings)
         return Result("check", self.case, checked, document_of(CHECK, checked))

@@ -446,13 +446,13 @@ class Study(StudiedMachine, HousingAnalyses):
         from gearwhine.coupling.description.changed import changed
         from gearwhine.variation.machines import made
 
-        _require_arguments("vary", samples=(samples, AT_LEAST_ONE), seed=(seed, NOT_NEGATIVE))
+        drawn = Drawn(samples, seed, indices, widen)
         inputs, make = inputs_of_laws("vary", laws), partial(changed, self.machine)
         made(make, {one.name: one.value(0.5) for one in inputs})
         origin = replace(self.origin, housing=self.solved_housing())
         with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
             return vary_machine(
-                make, self.machine, inputs, Drawn(samples, seed, indices, widen), self.settings, place,
+                make, self.machine, inputs, drawn, self.settings, place,
                 origin=origin, analyses=analyses, quantities=quantities, limits=limits,
             )  # fmt: skip
 
@@ -561,12 +561,11 @@ class Study(StudiedMachine, HousingAnalyses):
         from gearwhine.coupling.description.changed import changed, number_at
         from gearwhine.variation.machines import made
 
-        _require_arguments("optimise", evaluations=(evaluations, AT_LEAST_ONE), seed=(seed, NOT_NEGATIVE))
+        search = SearchSettings(method, evaluations, seed)
         inputs, make = designed_inputs(laws, levels), partial(changed, self.machine)
         first = {path: number_at(self.machine, path) for path in laws}
         made(make, first | ({} if scatter is None else scatter.medians))
         with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
-            search = SearchSettings(method, evaluations, seed)
             return optimise_machine(
                 make, self.machine, inputs, first, aims, search, self.settings, place,
                 origin=replace(self.origin, housing=self.solved_housing()),

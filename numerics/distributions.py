@@ -65,8 +65,8 @@ class Normal:
         if not self.low < self.high:
             yield Finding(part, "high", float(self.high), f"a number above the low end {self.low:g}")
         elif self.deviation > 0.0 and self._inside < _LEAST_INSIDE:
-            expected = f"a range about the mean: {self.low:g} to {self.high:g} lies beyond the distribution"
-            yield Finding(part, "low", float(self.low), expected)
+            end = "low" if self.low > self.mean else "high"
+            yield Finding(part, end, float(getattr(self, end)), f"a number near the mean {self.mean:g}, or beyond it")
 
     @property
     def _ends(self) -> tuple[float, float]:

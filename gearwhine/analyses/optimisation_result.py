@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, get_args
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import (
     in_solved_housing,
-    is_count,
     limits_of,
     name_problems,
     sampled_points,
@@ -35,12 +34,14 @@ from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.failures import explain
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
+from gearwhine.numerics.findings import Choice, Number, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.optimisation.design import (
     AS_WRITTEN,
     DesignInput,
     ProposedCase,
+    alone_warnings,
     design_inputs,
     require_scatter,
     space_of,
@@ -116,6 +117,8 @@ def solve_optimisation(
     plain = source.without("variation", "optimisation")
     good = {} if case.variation is None else case.variation.limit
     variation = None if optimisation.robust is None else case.variation
+    for one in alone_warnings(plain, inputs):
+        folder.progress(f"{one['message']}\n")
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
     aimed = _Aimed(optimisation.aim, optimisation.limit, optimisation.robust, good)
@@ -259,10 +262,11 @@ def optimise_machine(
 ) -> Result[Optimised]:
     """Find the best of the machines that a function makes, beside one with its values; see :func:`optimise`."""
     begin = time.perf_counter()
-    search_settings.require_count()
     good = {} if scatter is None else limits_of("optimise, scatter", scatter.good)
     robust = None if scatter is None else scatter.robust
     aimed = _Aimed(_senses(aims), limits_of("optimise", limits), robust, good)
+    if not aimed.aims:
+        raise CaseError([NO_AIM])
     if analyses is None:
         named = map(analysis_of, _quantities_named(aimed.aims, aimed.limits, good))
         analyses = tuple(dict.fromkeys(filter(None, named)))
@@ -376,10 +380,14 @@ class SearchSettings:
     evaluations: int
     seed: int
 
-    def require_count(self) -> None:
-        """Refuse a number of designs that is none."""
-        if not is_count(self.evaluations):
-            raise CouplingError(f"optimise: {self.evaluations!r} evaluations; expected a whole number of 1 or more")
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be, and a method that there is not."""
+        rules: dict[str, Rule] = {
+            "method": Choice(get_args(Method)),
+            "evaluations": Number(at_least=1, whole=True),
+            "seed": Number(at_least=0, whole=True),
+        }
+        refuse(attribute_findings(("optimise", ""), self, **rules), CouplingError)
 
     def require_library(self, aims: Mapping[str, Aim]) -> None:
         """Refuse a search for a Pareto front where its library is not installed."""

@@ -154,6 +154,10 @@ def _motion(motion: "Motion | Failure") -> dict[str, Any]:
 
 def _warnings(optimised: "Optimised") -> Iterator[ResultWarning]:
     yield from failed_warnings(optimised, len(optimised.designs), "failed designs", "designs")
+    without = [one for one in optimised.designs if not np.all(np.isfinite([*one.aims, *one.excesses]))]
+    if count := len(without) - len(optimised.failures):
+        message = f"{count} of {len(optimised.designs)} designs have no finite value of an aim or a limited quantity"
+        yield warning("designs without value", f"{message}, and count as failed")
     if optimised.best is not None and not optimised.front:
         missed = "; ".join(_missed(limit, value)["text"] for limit, value in optimised.missed)
         yield warning("missed limits", f"no design meets all limits; the nearest one misses {missed}")

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+import gearwhine as gw
 from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.description.planetary import PlanetarySet
 from gearwhine.coupling.linear.complex_modes import coupled_modes
@@ -19,6 +20,7 @@ from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.output.sections import Table
 from gearwhine.results.operating_point import load_document, sections
 from gearwhine.rotors import ShaftMaterial
+from gearwhine.rotors.rolling_bearings.life import equivalent_load
 from tests.machines.plane_planetary_set import (
     BEARING_STIFFNESS,
     MESH_STIFFNESS,
@@ -330,3 +332,21 @@ def test_mean_forces_of_a_motion_past_a_force_are_those_of_linear_analyses() -> 
     assert [force.mean() for force in drive] == pytest.approx(means, rel=2e-3)
     start = [pair.force for pair in machine.operating_point().pairs]
     assert [force[0] for force in drive] == pytest.approx(start, rel=0.01)
+
+
+@pytest.mark.slow
+def test_a_bearing_lives_by_its_loads_over_a_turn_of_the_carrier() -> None:
+    """Powers of the equivalent loads at five angles of the carrier, where the load analysis has seven."""
+    machine = gw.load("planetary-helical").machine
+    turned = [machine.turned(2.0 * np.pi * part / 5, "carrier").operating_point() for part in range(5)]
+    for bearing in solve_load(machine).bearings:
+        if bearing.rated is None:
+            continue
+        power = 3.0 if bearing.load.name in ("carrier-back", "output-front") else 10.0 / 3.0  # balls and rollers
+        states = [one.rolling for point in turned for one in point.bearings if one.name == bearing.load.name]
+        loads = [equivalent_load(state) for state in states if state is not None]
+        revolutions = 1e6 / np.mean([(load / bearing.rated.rating) ** power for load in loads if load])
+        assert bearing.rated.speed
+        assert bearing.rated.life == pytest.approx(
+            2.0 * np.pi * revolutions / abs(bearing.rated.speed) / 3600.0, rel=1e-3
+        )

@@ -51,6 +51,25 @@ def test_a_bearing_of_the_catalogue_lives_by_the_catalogue_s_rating() -> None:
     assert life.rating_from == "case"
 
 
+@pytest.mark.parametrize(
+    ("row", "power"),
+    [(BallRow(**BALLS), 3.0), (RollerRow(14, 11e-3, 11e-3, 65e-3), 10.0 / 3.0)],
+    ids=["balls", "rollers"],
+)
+def test_parts_of_a_life_add_up(row: BallRow | RollerRow, power: float) -> None:
+    """Half the time under twice the load uses 2^p times the life there; half the time without load uses none."""
+    light, heavy, idle = (under(row, load) for load in (2000.0, 4000.0, 0.0))
+    whole = BearingLife(light, 100.0)
+    both = BearingLife(light, 100.0, (light, heavy))
+    assert whole.life is not None
+    assert both.life == pytest.approx(whole.life * 2.0 / (1.0 + 2.0**power))
+    assert both.equivalent_load == pytest.approx(2000.0 * (0.5 * (1.0 + 2.0**power)) ** (1.0 / power))
+    resting = BearingLife(light, 100.0, (light, idle))
+    assert resting.life == pytest.approx(2.0 * whole.life)
+    assert resting.reference_life == pytest.approx(2.0 * whole.reference_life)
+    assert BearingLife(idle, 100.0, (idle, idle)).life == math.inf
+
+
 def test_rollers_have_the_exponent_ten_thirds() -> None:
     state = under(RollerRow(14, 11e-3, 11e-3, 65e-3), 5000.0)
     assert rated_revolutions(state, 50000.0) == pytest.approx(1e6 * 10.0 ** (10.0 / 3.0))

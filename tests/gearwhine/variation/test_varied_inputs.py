@@ -9,6 +9,7 @@ import pytest
 from scipy import stats
 
 import gearwhine as gw
+from gearwhine.analyses import optimisation_result, variation_result
 from gearwhine.analyses.variation_result import name_problems, parts_of, wanted_of
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
@@ -187,6 +188,8 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
             "each key once",
         ),
         ('vary = { "a b[" = { uniform = [1, 2] } }', "a key path"),
+        ('vary = { "title" = { values = ["a", "b"] } }', "a key that a gearbox follows from"),
+        ('vary = { "gear.pinion.bore" = { values = [0.03, 0.04], weights = [1] } }', "weights: expected one weight"),
         ('samples = 0\nvary = { "gear.pinion.bore" = { uniform = [0.03, 0.04] } }', "a whole number from 1"),
         ("limit = { x = { } }", "'at_most', 'at_least' or both"),
         ("limit = { x = { at_least = 2, at_most = 1 } }", "of at least 2"),
@@ -206,14 +209,18 @@ def test_what_cannot_be_varied_is_refused_by_name(tmp_path: Path, text: str, sai
 @pytest.mark.parametrize(
     ("content", "said"),
     [
+        ("", "a name in the first line of measured.csv, and two values or more below"),
         ("bore\n40\n", "two values"),
+        ("40\n41\n42\n", "names of the columns in the first line of measured.csv, which has 40"),
+        ("bore\n\n40\nnan\n", "a finite number in line 4 of measured.csv, column 'bore'"),
+        ("bore\n40\n\xff\n", "a table of text in UTF-8; measured.csv is none"),
         ("bore [blorp]\n40\n41\n", "a known unit"),
         ("bore\n40\nwide\n", "line 3"),
         ("a,b\n1,2\n3,4\n", "one of the 2 columns"),
     ],
 )
 def test_tables_that_hold_no_distribution_are_refused(tmp_path: Path, content: str, said: str) -> None:
-    (tmp_path / "measured.csv").write_text(content)
+    (tmp_path / "measured.csv").write_text(content, encoding="latin-1")
     with pytest.raises(CaseError, match=said):
         _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv" } }')
 
@@ -233,6 +240,8 @@ def test_names_of_quantities_are_refused_before_the_housing_is_solved(
         "gear_pair.*.contact_pressure_mpa": "did you mean 'contact_pressure_pa'?",
         "machine.mas_kg": "'mass_kg'",
         "boring.x": "a quantity of this case",
+        "planetary.set.mesh_load_factor": "a planetary in the case, which has none",
+        "quantile 2 of sensor.top.level_db": "'quantile 0.95 of', and the name of a quantity",
     }
     right = ["sensor.top.level_db", "quantile 0.95 of sensor.top.level_db", "sensor.*.level_db", "bearing.*.force_n"]
     case = load_case("small-gearbox").case
@@ -244,8 +253,8 @@ def test_names_of_quantities_are_refused_before_the_housing_is_solved(
     (left_out,) = name_problems(case, few, ("variation", "limit"), ["bearing.input-back.force_n"])
     assert "among the quantities" in left_out.expected
 
-    for module in ("variation_result", "optimisation_result"):
-        monkeypatch.setattr(f"gearwhine.analyses.{module}.in_solved_housing", lambda *_: pytest.fail("solved"))
+    for module in (variation_result, optimisation_result):
+        monkeypatch.setattr(module, "in_solved_housing", lambda *_: pytest.fail("solved"))
     varied = {"operation.torque": {"uniform": ["40 N*m", "60 N*m"]}}
     designed = {"operation.torque": {"range": ["40 N*m", "60 N*m"]}}
     limits = {"sensor.tpo.level_db": {"at_most": 150}}
