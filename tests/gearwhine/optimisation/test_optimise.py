@@ -284,7 +284,7 @@ def test_failed_designs_are_passed_over_and_named(tmp_path: Path) -> None:
     sizes = [pair["transmission_error_m"]["peak_to_peak"] for pair in single]
     assert found.document["aims"][0]["designs"][0] == pytest.approx(min(sizes), rel=1e-9)
     assert found.dataset["aim_value"].values[:3, 0] == pytest.approx(sizes, rel=1e-9)
-    change = f"{1e6 * sizes[0]:.5g} → {1e6 * min(sizes):.5g}"
+    change = f"→ {1e6 * min(sizes):.5g}"
     assert any(change in str(one) and "µm" in str(one) for one in sections(found.document)[0].content)
 
 
