@@ -30,11 +30,8 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
 
 def cells(html: str) -> list[list[str]]:
-    return [
-        re.findall(r"<td[^>]*>(.*?)</td>", row)
-        for row in re.findall(r"<tr>(.*?)</tr>", html, re.DOTALL)
-        if "<td" in row
-    ]
+    rows = re.findall(r"<tr>(.*?)</tr>", html, re.DOTALL)
+    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows if "<td" in row]
 
 
 def test_a_machine_is_shown_by_its_shafts_and_pairs(shown: dict[str, Any]) -> None:

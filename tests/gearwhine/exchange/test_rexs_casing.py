@@ -132,9 +132,8 @@ def test_what_has_no_use_is_left_out(where: str) -> None:
     assert {one["seat"] for one in made.document["bearing"]} == {"ground"}
     (note,) = (one for one in made.notes if "assembly_group" in one.about)
     assert note.kind == "left out"
-    reason = (
-        "no reduction point refers to a bearing" if where == "another shaft" else "no reduced stiffness of the casing"
-    )
+    unused = "no reduction point refers to a bearing"
+    reason = unused if where == "another shaft" else "no reduced stiffness of the casing against the ground"
     assert note.text.startswith(reason)
 
 
