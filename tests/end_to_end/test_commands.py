@@ -101,15 +101,6 @@ def test_compare(gearwhine) -> None:
     assert document["pairing"] == "dominance"
 
 
-def test_examples_copy(gearwhine, tmp_path: Path) -> None:
-    names = {example["name"] for example in gearwhine("examples", "--json").document["examples"]}
-    assert {"nasa-gear-noise-rig", "small-gearbox", "steel-box", "friswell-rotor", "gear-62-62", "spur-pair"} <= names
-    assert gearwhine("examples", "copy", "spur-pair").code == 0
-    assert gearwhine("check", "spur-pair.toml").code == 0
-    assert gearwhine("examples", "copy", "spur-pair").code == 2  # it would overwrite
-    assert [path.name for path in tmp_path.iterdir()] == ["spur-pair.toml"]
-
-
 def test_check_sums_up_in_a_dozen_lines_and_shows_all_when_asked(gearwhine) -> None:
     brief = gearwhine("check", "nasa-gear-noise-rig", "-q").out.splitlines()
     assert len(brief) <= 16

@@ -22,6 +22,7 @@ from gearwhine.coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
+from gearwhine.figures.machine.operating_point import draw_over_torque
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.machine.transient import draw_sensor_spectra
 from gearwhine.figures.style import BLUE, GREY
@@ -243,6 +244,42 @@ def test_the_quietest_torque_and_the_one_of_operation_are_marked() -> None:
     assert any("quietest of these torques: 40 N·m with 1.000 µm" in text.get_text() for text in figure.texts)
     # Halfway between 40 and 60 N·m.
     assert "1.500 µm" in [text.get_text() for text in lower.texts]
+
+
+def test_each_pair_s_curve_over_torque_stands_in_the_panel_of_its_quantity() -> None:
+    """Two pairs that carry and an idle one, at three torques of a brake; every value is of its own."""
+    torques = (-30.0, -60.0, -90.0)
+
+    def pair(name: str, size: float, torque: float, force: float = 100.0) -> Any:
+        gears = SimpleNamespace(driver=SimpleNamespace(name=name), driven=SimpleNamespace(name=f"{name} wheel"))
+        errors = 1e-6 * size * torque * np.array([0.0, 0.25, 1.0])
+        given = {"mean_stiffness": 2e6 * size * torque, "k_h_beta": 3.0 * size * torque}
+        given |= {"transmission_error": errors, "misalignment": 4e-6 * size * torque}
+        return SimpleNamespace(pair=gears, force=force, **given)
+
+    def pairs(torque: float) -> Any:
+        given = pair("first", 1.0, torque), pair("idle", 10.0, torque, 0.0), pair("second", 7.0, torque)
+        return SimpleNamespace(pairs=given)
+
+    over_torque = {torque: pairs(torque) for torque in torques}
+    solved: Any = SimpleNamespace(
+        over_torque=over_torque, point=over_torque[-60.0], machine=SimpleNamespace(torque=-60.0)
+    )
+    figure = draw_over_torque("r", solved)
+    panels = {axes.get_ylabel(): axes for axes in figure.axes}
+    sizes = {"TE p-p [µm]": -1.0, "stiffness [N/µm]": 2.0, "K_Hβ": 3.0, "misalignment [µrad]": 4.0}
+    assert panels.keys() == sizes.keys()
+    for label, axes in panels.items():
+        first, second, operation, *_ = axes.get_lines()
+        for curve, name, size in ((first, "first → first wheel", 1.0), (second, "second → second wheel", 7.0)):
+            assert str(curve.get_label()).replace("\N{NO-BREAK SPACE}", " ") == name
+            assert curve.get_xdata() == pytest.approx(torques)
+            assert curve.get_ydata() == pytest.approx([sizes[label] * size * torque for torque in torques])
+        assert first.get_color() != second.get_color()
+        assert list(operation.get_xdata()) == [-60.0, -60.0]
+        assert axes.get_xlim() == (-90.0, 0.0)
+    assert [axes.get_xlabel() for axes in figure.axes if axes.get_xlabel()] == ["torque of the first driver [N·m]"]
+    assert len(figure.legends[0].get_texts()) == 2
 
 
 def test_bars_with_and_without_load_have_the_curves_colours() -> None:
