@@ -411,6 +411,7 @@ class Study(StudiedMachine, HousingAnalyses):
         analyses: Sequence[str] | None = None,
         quantities: Sequence[str] = (),
         limits: "Mapping[str, tuple[float | None, float | None]] | None" = None,
+        correlations: "Mapping[tuple[str, str], float] | None" = None,
         indices: bool = False,
         widen: float | None = None,
         seed: Annotated[int, NOT_NEGATIVE] = 1,
@@ -430,7 +431,7 @@ class Study(StudiedMachine, HousingAnalyses):
             Distributions of :mod:`gearwhine.numerics.distributions` in SI, by paths as of :meth:`changed`.
         samples : int
             Number of machines.
-        analyses, quantities, limits, indices, widen, seed, folder, workers, scheduler, fresh
+        analyses, quantities, limits, correlations, indices, widen, seed, folder, workers, scheduler, fresh
             As of :func:`gearwhine.vary`. Processes are started where they are worth it, as many as cores.
 
         Raises
@@ -442,11 +443,17 @@ class Study(StudiedMachine, HousingAnalyses):
         gearwhine.failures.WorkersError
             Where the processes do not start.
         """
-        from gearwhine.analyses.variation_result import Drawn, inputs_of_laws, study_folder, vary_machine
+        from gearwhine.analyses.variation_result import (
+            Drawn,
+            correlation_of_laws,
+            inputs_of_laws,
+            study_folder,
+            vary_machine,
+        )
         from gearwhine.coupling.description.changed import changed
         from gearwhine.variation.machines import made
 
-        drawn = Drawn(samples, seed, indices, widen)
+        drawn = Drawn(samples, seed, indices, widen, correlation_of_laws(laws, correlations))
         inputs, make = inputs_of_laws("vary", laws), partial(changed, self.machine)
         made(make, {one.name: one.value(0.5) for one in inputs})
         origin = replace(self.origin, housing=self.solved_housing())

@@ -27,7 +27,7 @@ from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.distributions import Discrete, Distribution, correlated
+from gearwhine.numerics.distributions import Discrete, Distribution, correlated, correlation_findings
 from gearwhine.numerics.findings import Number, Rule, attribute_findings, refuse
 from gearwhine.numerics.names import one_of
 from gearwhine.numerics.progress import Progress, silent
@@ -314,6 +314,7 @@ def vary(
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
     limits: Mapping[str, tuple[float | None, float | None]] | None = None,
+    correlations: Mapping[tuple[str, str], float] | None = None,
     acoustics: Acoustics | None = None,
     indices: bool = False,
     widen: float | None = None,
@@ -348,6 +349,8 @@ def vary(
     limits : mapping of str to tuple, optional
         Least and largest value of good machines by quantity, None where there is none:
         ``{"bearing.left.life_h": (5000.0, None)}``.
+    correlations : mapping of (str, str) to float, optional
+        Correlations of the normal scores of two values each, by their names; none by default.
     acoustics : Acoustics, optional
         Settings of "sound", by default boundary elements in free air; each housing is solved once.
     indices : bool
@@ -390,12 +393,13 @@ def vary(
     >>> [one.name for one in varied.solved.quantities][:1]
     ['rotor.shaft.critical_speed_1_rpm']
     """
+    drawn = Drawn(samples, seed, indices, widen, correlation_of_laws(laws, correlations))
     inputs = inputs_of_laws("vary", laws)
     machine = made(make, {one.name: one.value(0.5) for one in inputs})
     settings = Settings(title, transient=plan, speeds=speeds, acoustics=acoustics)
     with study_folder(progress, folder, workers, scheduler, fresh=fresh) as place:
         return vary_machine(
-            make, machine, inputs, Drawn(samples, seed, indices, widen), settings, place,
+            make, machine, inputs, drawn, settings, place,
             analyses=analyses, quantities=quantities, limits=limits,
         )  # fmt: skip
 
@@ -438,6 +442,27 @@ def inputs_of_laws(command: str, laws: Mapping[str, Distribution]) -> tuple[Inpu
         if not hasattr(law, "quantile"):
             raise CouplingError(f"{command}: {name!r} is {law!r}; expected a distribution, such as Normal(1.0, 0.1)")
     return tuple(Input(name, law, "", (), ((name, 1.0),)) for name, law in laws.items())
+
+
+def correlation_of_laws(names: Iterable[str], pairs: Mapping[tuple[str, str], float] | None) -> FloatArray | None:
+    """Return the correlation of the normal scores of values by name, shape (d, d); None where they are independent.
+
+    Raises
+    ------
+    CouplingError
+        Where a pair is none of two names, or the coefficients cannot be together.
+    """
+    if not pairs:
+        return None
+    places = {name: place for place, name in enumerate(names)}
+    matrix = np.eye(len(places))
+    for pair, coefficient in pairs.items():
+        if len(set(pair)) != 2 or not set(pair) <= set(places):
+            raise CouplingError(f"vary: a correlation of {pair!r}; expected two of {', '.join(places)}")
+        first, second = (places[name] for name in pair)
+        matrix[first, second] = matrix[second, first] = coefficient
+    refuse(correlation_findings(matrix), CouplingError)
+    return matrix
 
 
 def wanted_of_machine(

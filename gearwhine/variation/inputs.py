@@ -459,7 +459,7 @@ def correlation_matrix(inputs: Sequence[Input], variation: Variation) -> FloatAr
     Raises
     ------
     CaseError
-        Where a key has several values of its own, or the coefficients cannot be together.
+        Where a key is not varied or has several values, or the coefficients cannot be together.
     """
     if not variation.correlation:
         return None
@@ -468,8 +468,9 @@ def correlation_matrix(inputs: Sequence[Input], variation: Variation) -> FloatAr
     refusal, names, matrix = Refusal(), [one.name for one in inputs], np.eye(len(inputs))
     for number, pair in enumerate(variation.correlation):
         for place, key in enumerate(pair.keys):
-            if variation.vary[key].independent:
-                expected = "a key with one value; this one has an independent value for each entry"
+            if key not in names and (key not in variation.vary or variation.vary[key].independent):
+                expected = "a key of [variation.vary] with one value, or an entry of an independent one"
+                expected += did_you_mean(key, names)
                 refusal.add(Problem(f"variation.correlation[{number}].keys[{place}]", key, expected))
         if all(key in names for key in pair.keys):  # others are refused themselves
             first, second = (names.index(key) for key in pair.keys)

@@ -15,7 +15,7 @@ from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
 from gearwhine.case.variation import Variation, Varied
 from gearwhine.results.check import summary
-from gearwhine.variation.inputs import Input, varied_inputs
+from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
 from gearwhine.variation.named_quantities import analysis_of, possible_quantities
 from gearwhine.variation.quantities import Wanted
 from gearwhine.variation.samples import VariedCase
@@ -31,7 +31,9 @@ def _inputs(tmp_path: Path, text: str, case: str = "helical-pair", changes: Sequ
     study = gw.load(path, list(changes))
     variation = study.case.variation
     assert variation is not None
-    return varied_inputs(study._source, variation)
+    inputs = varied_inputs(study._source, variation)
+    correlation_matrix(inputs, variation)
+    return inputs
 
 
 def test_tied_keys_have_one_value_times_their_factor(tmp_path: Path) -> None:
@@ -117,6 +119,22 @@ def test_fits_of_one_size_may_be_one_value(tmp_path: Path) -> None:
     assert len(one.keys) == 2
 
 
+def test_entries_of_an_independent_key_are_correlated_by_their_names(tmp_path: Path) -> None:
+    keys = [f"gear.{name}.{HELIX}" for name in ("pinion", "wheel")]
+    varied = {f"gear.*.{HELIX}": Varied.model_validate({"class": 5, "independent": True})}
+    pair = {"keys": keys, "coefficient": 0.5}
+    variation = Variation.model_validate({"vary": varied, "correlation": [pair]})
+    inputs = varied_inputs(load_case("helical-pair").source, variation)
+    matrix = correlation_matrix(inputs, variation)
+    assert matrix is not None
+    assert matrix.tolist() == [[1.0, 0.5], [0.5, 1.0]]
+    of_all = Variation.model_validate({"vary": varied, "correlation": [{**pair, "keys": [f"gear.*.{HELIX}", keys[0]]}]})
+    with pytest.raises(
+        CaseError, match=r"correlation\[0\].keys\[0\]: expected a key .* with one value, or an entry of"
+    ):
+        correlation_matrix(inputs, of_all)
+
+
 def test_a_fit_lies_about_the_length_of_the_case(tmp_path: Path) -> None:
     """40 mm H7 is 0 to 25 µm; six standard deviations fill it."""
     (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { fit = "H7" } }')
@@ -195,7 +213,7 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
         ("limit = { x = { at_least = 2, at_most = 1 } }", "of at least 2"),
         (
             'correlation = [{ keys = ["gear.pinion.bore", "gear.wheel.bore"], coefficient = 0.5 }]',
-            "as it stands there",
+            "a key of [variation.vary] with one value, or an entry of an independent one",
         ),
     ],
 )

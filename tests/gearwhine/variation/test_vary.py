@@ -366,6 +366,13 @@ def test_quantities_of_your_own_scatter_by_their_closed_form_and_infinite_ones_s
         assert (area.mean, area.deviation) == pytest.approx((3.0, 2.0 / math.sqrt(12.0)), rel=0.01)
         assert found.document["yield"]["share"] == 0.5
     assert found.document["resumed"] == 64
+    ranges = {name: Normal(1.0, size) for name, size in (("a", 0.1), ("b", 0.2))}
+    pair = {("b", "a"): -0.5}
+    (total,) = gw.vary(lambda v: {"sum_m": v["a"] + v["b"]}, ranges, 512, correlations=pair).solved.quantities
+    assert total.deviation == pytest.approx(math.sqrt(0.1**2 + 0.2**2 - 2.0 * 0.5 * 0.1 * 0.2), rel=0.02)
+    for pair, said in (({("a", "c"): 0.5}, r"\('a', 'c'\); expected two of a, b"), ({("a", "b"): 1.5}, "from -1 to 1")):
+        with pytest.raises(gw.CouplingError, match=said):
+            gw.vary(lambda v: {"sum_m": v["a"] + v["b"]}, ranges, 4, correlations=pair)
     with pytest.raises(gw.CouplingError, match="returned 'wide' as 'width_m'; expected a number"):
         gw.vary(lambda _: {"width_m": "wide"}, {"width": Uniform(1.0, 2.0)}, 4)
 
