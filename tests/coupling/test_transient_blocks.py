@@ -1,19 +1,21 @@
 """The march in blocks: they add up to the whole, and it goes on from any checkpoint to the same bits."""
 
 import io
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from gearwhine.coupling import CoupledSystem, CouplingError, SpeedProfile, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.errors import TransientError
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.machine.components import Component
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.time.integration import Checkpoint
-from gearwhine.coupling.time.transient import integrate_blocks, integration_key, transient_figures
+from gearwhine.coupling.time.transient import ENERGY_BOUND, integrate_blocks, integration_key, transient_figures
 
 BLOCK = 64
 RECORD = ("times", "displacement", "velocity", "acceleration", "compression", "force")
@@ -119,3 +121,13 @@ def test_a_key_stands_for_the_very_march() -> None:
 def test_a_block_holds_something() -> None:
     with pytest.raises(CouplingError, match="blocks of 0 samples"):
         next(integrate_blocks(SYSTEM, SETTINGS, ROWS, samples_per_block=0))
+
+
+def test_a_motion_that_misses_more_of_its_energy_than_the_bound_is_refused() -> None:
+    """Of the greatest of the work, of what is lost and of the swing of the stored energy."""
+    after = list(integrate_blocks(SYSTEM, SETTINGS, ROWS))[-1].after
+    scale = max(np.abs(after.totals).max(), after.highest - after.lowest)
+    for part, refused in ((0.5, False), (1.5, True)):
+        missing = replace(after, energy=after.energy + part * ENERGY_BOUND * scale)
+        with pytest.raises(TransientError, match=r"do not balance: 1\.5 % is missing") if refused else nullcontext():
+            transient_figures(SETTINGS, missing)
