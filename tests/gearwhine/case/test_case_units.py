@@ -8,8 +8,10 @@ import time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
+from gearwhine.case.fields import Quantity
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
 
 DEFINED = [
@@ -168,3 +170,23 @@ def test_customary_units_are_used_where_nothing_is_lost() -> None:
     assert format_quantity(parse_quantity("5500 rpm", units.SPEED), units.SPEED) == "5500 rpm"
     assert format_quantity(parse_quantity("24 deg", units.ANGLE), units.ANGLE) == "24 deg"
     assert format_quantity(0.00635, units.LENGTH) == "0.00635 m"
+
+
+@pytest.mark.parametrize(
+    "dimension", [one for one in vars(units).values() if isinstance(one, Dimension)], ids=lambda one: one.name
+)
+def test_a_quantity_ends_at_its_bounds_of_either_sign(dimension: Dimension) -> None:
+    def takes(number: float, **bounds: float) -> bool:
+        try:
+            return Quantity(dimension, **bounds).validate(number) == number
+        except PydanticCustomError:
+            return False
+
+    for sign in (1.0, -1.0):
+        assert takes(sign * dimension.largest)
+        assert not takes(1.001 * sign * dimension.largest)
+    assert takes(dimension.smallest, above=0.0)
+    assert not takes(0.999 * dimension.smallest, above=0.0)
+    assert takes(-dimension.smallest)
+    assert [takes(number, at_least=-0.5, below=0.25) for number in (-0.51, -0.5, 0.24, 0.25)] == [0, 1, 1, 0]
+    assert [takes(number, above=-0.5, at_most=0.25) for number in (-0.5, -0.49, 0.25, 0.26)] == [0, 1, 1, 0]
