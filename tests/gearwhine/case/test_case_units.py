@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import time
+from importlib import import_module
+from pkgutil import iter_modules
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
+from gearwhine import case
 from gearwhine.case import units
 from gearwhine.case.fields import Quantity
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
@@ -190,3 +193,39 @@ def test_a_quantity_ends_at_its_bounds_of_either_sign(dimension: Dimension) -> N
     assert takes(-dimension.smallest)
     assert [takes(number, at_least=-0.5, below=0.25) for number in (-0.51, -0.5, 0.24, 0.25)] == [0, 1, 1, 0]
     assert [takes(number, above=-0.5, at_most=0.25) for number in (-0.5, -0.49, 0.25, 0.26)] == [0, 1, 1, 0]
+
+
+NEVER_NEGATIVE = (
+    "Mass",
+    "Inertia",
+    "Imbalance",
+    "Torque",
+    "TiltStiffness",
+    "TiltDamping",
+    "FrictionCoefficient",
+    "Time",
+)
+ABOVE_ZERO = ("Density", "ElasticModulus", "SpeedOfSound", "TorsionalStiffness", "Module", "ToothHeight", "Order")
+
+
+def test_quantities_keep_the_signs_that_their_names_have() -> None:
+    """What is named positive is above zero; what is named from zero, or is a sum of squares, takes zero."""
+    modules = [import_module(f"gearwhine.case.{one.name}") for one in iter_modules(case.__path__)]
+    found = {
+        name: bound
+        for module in modules
+        for name, alias in vars(module).items()
+        for bound in getattr(alias, "__metadata__", ())
+        if isinstance(bound, Quantity)
+    }
+    assert len(found) > 40
+    for name, bound in found.items():
+        positive = name.startswith("Positive") or name in ABOVE_ZERO
+        for number in (0.0, -bound.dimension.smallest) if positive else ():
+            with pytest.raises(PydanticCustomError):
+                bound.validate(number)
+        if name.endswith("FromZero") or name in NEVER_NEGATIVE:
+            assert bound.validate(0.0) == 0.0
+            with pytest.raises(PydanticCustomError):
+                bound.validate(-bound.dimension.smallest)
+    assert {*NEVER_NEGATIVE, *ABOVE_ZERO} < found.keys()
