@@ -27,6 +27,7 @@ from gearwhine.rotors.rolling_bearings.life import (
     reference_revolutions,
 )
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
+from gearwhine.rotors.rolling_bearings.ratings import contact_ratings
 
 BALLS = {"count": 9, "ball_diameter": 12.7e-3, "pitch_diameter": 60e-3}
 
@@ -135,6 +136,11 @@ def test_two_rows_are_rated_as_one_of_2_to_the_0_7() -> None:
         assert x_two / x == pytest.approx(2.0**0.7, rel=0.02)
         for one, two in zip(y_all, y_two_all, strict=True):
             assert two / one == pytest.approx(2.0**0.7, rel=0.02)
+    # Contacts are rated alike whether their row stands alone or beside another; rows of rollers count to the 7/9.
+    for row, power in ((BallRow(9, 8e-3, 40e-3), 0.7), (RollerRow(12, 8e-3, 8e-3, 40e-3), 7.0 / 9.0)):
+        assert dynamic_rating(row, 2) == pytest.approx(2.0**power * dynamic_rating(row), rel=1e-12)
+        both = contact_ratings(row, 2.0**power * 1e4, 2)
+        assert both == pytest.approx(contact_ratings(row, 1e4), rel=1e-12)
 
 
 def test_tapered_rollers_have_the_factors_of_their_angle() -> None:
