@@ -56,6 +56,7 @@ from gearwhine.optimisation.proposed_machine import ProposedMachine
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Moving, Verification, checked_speeds, motion_of
+from gearwhine.output.quantity import RPM
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.settings import Settings
 from gearwhine.solutions import Failure, StudyProgress
@@ -582,7 +583,7 @@ def _verified(proposed: _Proposed, optimised: Optimised, speed: float, scatter: 
     if not proposals:
         return optimised
     loudest = [
-        value / (30.0 / np.pi)
+        value / RPM
         for design in (optimised.start, *proposals)
         for name, (value, _) in design.sides.items()
         if name.endswith("loudest_speed_rpm")

@@ -7,7 +7,7 @@ import numpy as np
 
 from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.quantity import document_of, in_file, unit_of
+from gearwhine.output.quantity import RPM, document_of, in_file, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
 from gearwhine.results.many_solutions import failed_sentences, failed_solutions, failed_warnings, finite, numbered
 from gearwhine.variation.named_quantities import part_of, shown_quantity, statistic_of
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from gearwhine.solutions import Failure
 
 _MOST_FRONT = 12  # rows of the front on the page
-_RPM = 30.0 / np.pi
 _ENDED = {
     "budget": "all evaluations are spent",
     "converged": "the search has converged",
@@ -129,7 +128,7 @@ def _missed(limit: "LimitEnd", value: float) -> dict[str, Any]:
 
 def _verification(checked: "Verification") -> dict[str, Any]:
     return {
-        "speeds_rpm": [_RPM * abs(speed) for speed in checked.speeds],
+        "speeds_rpm": [RPM * abs(speed) for speed in checked.speeds],
         "start": _motion(checked.start),
         "designs": [_motion(one) for one in checked.designs],
         "contradicted": checked.contradicted,
@@ -147,7 +146,7 @@ def _motion(motion: "Motion | Failure") -> dict[str, Any]:
         "peak_force_ratio": {name: finite(value) for name, value in motion.peak_force_ratio.items()},
         "contact_loss": dict(motion.contact_loss),
         "highest_level_db": {sensor: level for sensor, (level, _) in motion.highest.items()},
-        "loudest_speed_rpm": {sensor: _RPM * speed for sensor, (_, speed) in motion.highest.items()},
+        "loudest_speed_rpm": {sensor: RPM * speed for sensor, (_, speed) in motion.highest.items()},
         "range_speeds": len(motion.speeds),
     }
 
