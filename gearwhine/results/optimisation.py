@@ -30,6 +30,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
     """Return an optimisation as the command's JSON."""
     chosen = [(number, label, optimised.designs[number]) for number, label in optimised.chosen.items()]
     at_bounds = optimised.at_bounds
+    files = {number: {"case": file} for file, number in reversed(optimised.cases.items())}
     document: dict[str, Any] = {
         "method": optimised.method,
         "designs": len(optimised.designs),
@@ -37,7 +38,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
         "gearboxes_about_each": optimised.gearboxes,
         "ended": optimised.ended,
         "resumed": optimised.resumed,
-        "chosen": [{"number": number + 1, "design": label} for number, label, _ in chosen],
+        "chosen": [{"number": number + 1, "design": label} | files.get(number, {}) for number, label, _ in chosen],
         "keys": [
             {
                 "key": one.name,
@@ -88,6 +89,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
                 ],
                 "aims": optimised.designs[number].aims.tolist(),
             }
+            | files.get(number, {})
             for number in (optimised.front if optimised.goals.count > 1 else [])
         ],
     } | document_of((failed_solutions(first=1),), optimised)
@@ -244,9 +246,19 @@ def report(document: Document) -> Section:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    yield from summary(document)
+    yield from _front(document)
+    yield from _checked(document)
+    yield from _sentences(document)
+
+
+def summary(document: Document) -> Iterator[str | Table]:
+    """Yield the proposed designs beside the start: keys, aims and limits."""
     labels = [one["design"] for one in document["chosen"]]
     with_numbers = [f"{one['design']}: design {one['number']}" for one in document["chosen"]]
     yield from _answer(document)
+    columns = (Column("proposed", "design"), Column("design", "number", "d"), Column("case", "case", file="case"))
+    yield from table_of(columns, [one for one in document["chosen"] if "case" in one], "Cases to open")
     keys = [row for key in document["keys"] for row in (key, *({**one, "with": key["key"]} for one in key["with"]))]
     yield from table_of(
         (
@@ -282,9 +294,6 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(
         (*named, Column("limit", _limit), *shown, Column("margin", _margin)), document["limits"], "Limits"
     )
-    yield from _front(document)
-    yield from _checked(document)
-    yield from _sentences(document)
 
 
 def _answer(document: Document) -> Iterator[str]:
@@ -342,7 +351,7 @@ def _front(document: Document) -> Iterator[Table]:
     def aim(place: int) -> Callable[[Document], str]:
         return lambda row: format(shown_quantity(aims[place]["name"])[1] * row["aims"][place], ".5g")
 
-    columns = [Column("design", "number", "d")]
+    columns = [Column("design", "number", "d", file="case")]
     for place, one in enumerate(aims):
         columns.append(Column(f"{_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
     columns += [Column(one["key"], lambda row, place=place: row["keys"][place]) for place, one in enumerate(keys)]  # type: ignore[misc]
