@@ -51,11 +51,12 @@ from gearwhine.optimisation.design import (
 )
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
 from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, statistic_problems
-from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
+from gearwhine.optimisation.optimised import Design, Optimised, design_of
 from gearwhine.optimisation.proposed_machine import ProposedMachine
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Moving, Verification, checked_speeds, motion_of
+from gearwhine.output.quantity import RPM
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.settings import Settings
 from gearwhine.solutions import Failure, StudyProgress
@@ -132,13 +133,13 @@ def solve_optimisation(
 
     def design_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
         """Write the best design and those of the front as cases."""
-        for stem, number in _written_designs(optimised).items():
+        for file, number in optimised.cases.items():
             made = proposed.case(_as_designed(optimised.designs[number], len(scatter[0])))
             title = f"{origin.title}: design {number + 1}".strip(": ")
             # With its scatter and its aims, so that it can be varied, and searched from.
             kept = {"title": title, "variation": case.variation, "optimisation": case.optimisation}
             text = dump_case(made.model_copy(update=kept))
-            (place / f"{stem}.toml").write_text(text, encoding="utf-8")
+            (place / file).write_text(text, encoding="utf-8")
         return {}
 
     return _result(origin, optimised, begin, design_cases, proposed.start_warnings)
@@ -582,7 +583,7 @@ def _verified(proposed: _Proposed, optimised: Optimised, speed: float, scatter: 
     if not proposals:
         return optimised
     loudest = [
-        value / (30.0 / np.pi)
+        value / RPM
         for design in (optimised.start, *proposals)
         for name, (value, _) in design.sides.items()
         if name.endswith("loudest_speed_rpm")
@@ -630,19 +631,6 @@ def _motion_or_failure(solved: Callable[[], Motion]) -> Motion | Failure:
         if message is None:
             raise
         return Failure(message)
-
-
-def _written_designs(optimised: Optimised) -> dict[str, int]:
-    """Return the designs that are written as cases, by the name of the file."""
-    if not optimised.chosen:
-        return {}
-    best = next(iter(optimised.chosen))
-    stem = "best" if optimised.front else "nearest"
-    if optimised.goals.count == 1:
-        return {stem: best}
-    places = np.unique(np.linspace(0, len(optimised.front) - 1, min(len(optimised.front), MOST_SHOWN)).astype(int))
-    front = {f"front-{rank}": optimised.front[place] for rank, place in enumerate(places.tolist(), start=1)}
-    return {stem: best} | (front if optimised.front else {})
 
 
 def _result(

@@ -67,7 +67,7 @@ class VariedMachine:
         """Find the quantities of a sample; of None those of the start."""
         found = self.made(point)
         if not isinstance(found, Machine):
-            return Evaluation({name: float(value) for name, value in found.items()})
+            return Evaluation({name: float(value) for name, value in found.items() if self.wanted.has(name)})
         modes = None if point is None else lambda: self.nominal_modes
         return evaluate(found, self.wanted, self.radiations.of(found) if self.wanted.has_sound else None, modes)
 

@@ -27,13 +27,13 @@ from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.output.quantity import RPM
 from gearwhine.rotors.analyses.critical_speeds import critical_speeds
 from gearwhine.variation.named_quantities import CRITICAL_SPEEDS, HARMONICS, TRACKED_MODES
 
 if TYPE_CHECKING:  # with kernels of its own
     from gearwhine.coupling.sweep.line_sound import RadiatedPower
 
-_RPM = 30.0 / np.pi
 _SILENCE = 1e-12  # acceleration that stands for none [m/s²]
 _NO_SOUND = -100.0  # sound power level that stands for none [dB]
 
@@ -291,7 +291,7 @@ def _of_rotors(gearbox: _Gearbox) -> Named:
     for name, (bearings, _) in bearings_on_rigid_seats(machine).items():
         found = critical_speeds(machine.rotor(name), bearings, count=2 * CRITICAL_SPEEDS).forward
         for number, speed in enumerate(found[:CRITICAL_SPEEDS], start=1):
-            yield f"rotor.{name}.critical_speed_{number}_rpm", _RPM * float(speed)
+            yield f"rotor.{name}.critical_speed_{number}_rpm", RPM * float(speed)
 
 
 def _of_mass(gearbox: _Gearbox) -> Named:
@@ -332,7 +332,7 @@ def _highest(gearbox: _Gearbox, name: str, name_of_speed: str, levels: FloatArra
     place = int(np.argmax(levels))
     yield name, float(levels[place])
     if len(levels) > 1:
-        yield name_of_speed, _RPM * abs(float(gearbox.speeds[place]))
+        yield name_of_speed, RPM * abs(float(gearbox.speeds[place]))
     yield name, levels
 
 
