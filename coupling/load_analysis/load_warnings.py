@@ -220,8 +220,8 @@ def _face_warnings(number: int, points: Sequence[OperatingPoint]) -> Iterator[Re
             if len(parted) == len(points)
             else f"{label}: the load holds the flanks apart with {_angles(parted, carriers)}, "
             "and the pairs that share the torque carry its part; linear analyses have the mean stiffness of the turn "
-            "at all angles, and their lines may be as far off as the highest of them is high; motion has the parting, but "
-            "not the swing of these flanks"
+            "at all angles, and their lines may be as far off as the highest of them is high; motion has the parting, "
+            "but not the swing of these flanks"
         )
         yield warning("lost contact", message, **gears, angles_rad=[dict(point.turned_by) for point in parted])
     if len(parted) == len(points):

@@ -307,13 +307,10 @@ def solve_load(
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         points[part * machine.torque] = loaded.operating_point()
     preloads = _preloads(machine, progress)
+    by_bearing = zip(*(one.bearings for one in point.over_turn or (point,)), strict=True)
     bearings = tuple(
-        LoadedBearing(
-            bearing,
-            None if bearing.rolling is None else BearingLife(bearing.rolling, machine.bearing_speed(bearing.mounted)),
-            preloads.get(bearing.name),
-        )
-        for bearing in point.bearings
+        LoadedBearing(bearing, _life(machine, loads), preloads.get(bearing.name))
+        for bearing, loads in zip(point.bearings, by_bearing, strict=True)
     )
     pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine.gear_pairs, point, aligned_by_default)))
     if len(point.over_turn) > 1:
@@ -343,6 +340,12 @@ def solve_load(
         planetary_over_turn=sharing,
         carrier_turns=turns,
     )
+
+
+def _life(machine: Machine, loads: Sequence[BearingLoad]) -> BearingLife | None:
+    """Rated life of a bearing under its loads at the angles of a turn; None of other than rolling bearings."""
+    states = tuple(load.rolling for load in loads if load.rolling is not None)
+    return BearingLife(states[0], machine.bearing_speed(loads[0].mounted), states) if states else None
 
 
 def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:

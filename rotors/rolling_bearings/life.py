@@ -137,8 +137,12 @@ def rated_revolutions(state: RollingState, dynamic: float) -> float | None:
     load = equivalent_load(state)
     if load is None:
         return None
-    exponent = 10.0 / 3.0 if isinstance(state.bearing.rows[0], LineContactRow) else 3.0
-    return float("inf") if load == 0.0 else _MILLION * float((dynamic / load) ** exponent)
+    return float("inf") if load == 0.0 else _MILLION * float((dynamic / load) ** life_exponent(state))
+
+
+def life_exponent(state: RollingState) -> float:
+    """Exponent p of a bearing's basic rating life: 3 for balls, 10/3 for rollers."""
+    return 10.0 / 3.0 if isinstance(state.bearing.rows[0], LineContactRow) else 3.0
 
 
 def reference_revolutions(state: RollingState, dynamic: float | None = None) -> float:

@@ -1,11 +1,22 @@
-"""Rated lives of rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281, by the maker's rating or the geometry's."""
+"""Rated lives of rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281, by the maker's rating or the geometry's.
+
+Loads P_k that follow each other for as many revolutions each, as those of a planet over a turn of its carrier, wear a
+bearing by Miner's rule: 1/L = Σ 1/L_k / n, for which ISO 281 has the equivalent load P = (Σ P_k^p / n)^{1/p}.
+"""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from gearwhine.rotors.rolling_bearings.equilibrium import RollingState
-from gearwhine.rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+from gearwhine.rotors.rolling_bearings.life import (
+    equivalent_load,
+    life_exponent,
+    rated_revolutions,
+    reference_revolutions,
+)
 from gearwhine.rotors.rolling_bearings.ratings import dynamic_rating
 
 _HOUR = 3600.0
@@ -20,10 +31,13 @@ class BearingLife:
     state : RollingState
     speed : float or None
         Speed of its shaft in operation [rad/s]; None or 0 where it has no life in hours.
+    over_turn : tuple of RollingState
+        States that follow each other for as many revolutions each; none where the load stays that of ``state``.
     """
 
     state: RollingState
     speed: float | None
+    over_turn: tuple[RollingState, ...] = ()
 
     @property
     def rating(self) -> float:
@@ -41,7 +55,10 @@ class BearingLife:
     @property
     def equivalent_load(self) -> float | None:
         """Equivalent dynamic load P by ISO 281 [N]; None where it is not defined."""
-        return equivalent_load(self.state)
+        loads = [equivalent_load(state) for state in self.over_turn or (self.state,)]
+        defined = np.array([load for load in loads if load is not None])
+        power = life_exponent(self.state)
+        return None if defined.size < len(loads) else float(np.mean(defined**power) ** (1.0 / power))
 
     @property
     def life(self) -> float | None:
@@ -56,5 +73,8 @@ class BearingLife:
     def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:
         if not self.speed:
             return None
-        revolutions = life(self.state, self.rating)
-        return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
+        lives = [life(state, self.rating) for state in self.over_turn or (self.state,)]
+        wear = [1.0 / revolutions for revolutions in lives if revolutions is not None]
+        if len(wear) < len(lives):
+            return None
+        return math.inf if not any(wear) else 2.0 * math.pi / (float(np.mean(wear)) * abs(self.speed) * _HOUR)

@@ -51,6 +51,22 @@ def test_a_bearing_of_the_catalogue_lives_by_the_catalogue_s_rating() -> None:
     assert life.rating_from == "case"
 
 
+def test_loads_over_a_turn_wear_a_bearing_in_turn() -> None:
+    """3 kN and 6 kN by turns: 10⁶ (C/P)^p revolutions with P^p = (3^p + 6^p)/2 (kN); none of a load without factors."""
+    for row, power in ((BallRow(**BALLS), 3.0), (RollerRow(14, 11e-3, 11e-3, 65e-3), 10.0 / 3.0)):
+        states = tuple(under(row, load) for load in (3000.0, 6000.0))
+        life, alone = BearingLife(states[0], 1.0, states), [BearingLife(state, 1.0) for state in states]
+        mean = (0.5 * (3000.0**power + 6000.0**power)) ** (1.0 / power)
+        assert life.equivalent_load == pytest.approx(mean)
+        assert life.life == pytest.approx(1e6 * (life.rating / mean) ** power * 2.0 * math.pi / 3600.0)
+        wear = [1.0 / one.reference_life for one in alone if one.reference_life]
+        assert life.reference_life == pytest.approx(2.0 / sum(wear))
+    assert BearingLife(under(BallRow(**BALLS), 0.0), 1.0).life == math.inf
+    beyond = under(BallRow(**BALLS), 1000.0, 30000.0)
+    unlisted = BearingLife(beyond, 1.0, (under(BallRow(**BALLS), 1000.0), beyond))
+    assert unlisted.equivalent_load is unlisted.life is None
+
+
 def test_rollers_have_the_exponent_ten_thirds() -> None:
     state = under(RollerRow(14, 11e-3, 11e-3, 65e-3), 5000.0)
     assert rated_revolutions(state, 50000.0) == pytest.approx(1e6 * 10.0 ** (10.0 / 3.0))
