@@ -52,23 +52,20 @@ def test_a_bearing_of_the_catalogue_lives_by_the_catalogue_s_rating() -> None:
     assert life.rating_from == "case"
 
 
-@pytest.mark.parametrize(
-    ("row", "power"),
-    [(BallRow(**BALLS), 3.0), (RollerRow(14, 11e-3, 11e-3, 65e-3), 10.0 / 3.0)],
-    ids=["balls", "rollers"],
-)
-def test_parts_of_a_life_add_up(row: BallRow | RollerRow, power: float) -> None:
-    """Half the time under twice the load uses 2^p times the life there; half the time without load uses none."""
-    light, heavy, idle = (under(row, load) for load in (2000.0, 4000.0, 0.0))
-    whole = BearingLife(light, 100.0)
-    both = BearingLife(light, 100.0, (light, heavy))
-    assert whole.life is not None
-    assert both.life == pytest.approx(whole.life * 2.0 / (1.0 + 2.0**power))
-    assert both.equivalent_load == pytest.approx(2000.0 * (0.5 * (1.0 + 2.0**power)) ** (1.0 / power))
-    resting = BearingLife(light, 100.0, (light, idle))
-    assert resting.life == pytest.approx(2.0 * whole.life)
-    assert resting.reference_life == pytest.approx(2.0 * whole.reference_life)
-    assert BearingLife(idle, 100.0, (idle, idle)).life == math.inf
+def test_loads_over_a_turn_wear_a_bearing_in_turn() -> None:
+    """3 kN and 6 kN by turns: 10⁶ (C/P)^p revolutions with P^p = (3^p + 6^p)/2 (kN); none of a load without factors."""
+    for row, power in ((BallRow(**BALLS), 3.0), (RollerRow(14, 11e-3, 11e-3, 65e-3), 10.0 / 3.0)):
+        states = tuple(under(row, load) for load in (3000.0, 6000.0))
+        life, alone = BearingLife(states[0], 1.0, states), [BearingLife(state, 1.0) for state in states]
+        mean = (0.5 * (3000.0**power + 6000.0**power)) ** (1.0 / power)
+        assert life.equivalent_load == pytest.approx(mean)
+        assert life.life == pytest.approx(1e6 * (life.rating / mean) ** power * 2.0 * math.pi / 3600.0)
+        wear = [1.0 / one.reference_life for one in alone if one.reference_life]
+        assert life.reference_life == pytest.approx(2.0 / sum(wear))
+    assert BearingLife(under(BallRow(**BALLS), 0.0), 1.0).life == math.inf
+    beyond = under(BallRow(**BALLS), 1000.0, 30000.0)
+    unlisted = BearingLife(beyond, 1.0, (under(BallRow(**BALLS), 1000.0), beyond))
+    assert unlisted.equivalent_load is unlisted.life is None
 
 
 def test_rollers_have_the_exponent_ten_thirds() -> None:
