@@ -42,7 +42,7 @@ def test_a_round_trip_loses_nothing_but_digits(tmp_path: Path, points: Any, comp
         )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1, 2])
 def test_responses_keep_every_digit(tmp_path: Path, seed: int) -> None:
     path, given = tmp_path / "survey.uff", survey(seed=seed).responses
     write_universal(path, SurveyData(given.geometry, None, given))
