@@ -364,14 +364,14 @@ class CaseStudy(Study):
         return compare_result(housing, compared, self.origin)
 
     def survey(
-        self, sensors: Annotated[int, AT_LEAST_ONE], modes: Annotated[int | None, AT_LEAST_ONE] = None
+        self, sensors: Annotated[int | None, AT_LEAST_ONE] = None, modes: Annotated[int | None, AT_LEAST_ONE] = None
     ) -> "Result[PlannedSurvey]":
         """Plan a modal survey: sensor and hammer positions, as files.
 
         Parameters
         ----------
-        sensors : int
-            Number of sensors, each normal to the surface.
+        sensors : int, optional
+            Number of sensors, each normal to the surface (default: three for two modes).
         modes : int, optional
             Number of lowest modes to survey (default: all known).
 

@@ -140,7 +140,8 @@ def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:
     """Return a hint on keys in place of an unknown one."""
     if any(key in table.later for table in tables):
         return "no such key yet: it comes in a later version"
-    keys = sorted({info.alias or name for table in tables for name, info in table.model_fields.items()})
+    fields = {name: info for table in tables for name, info in table.model_fields.items() if name not in KEY_OF_FORM}
+    keys = sorted({info.alias or name for name, info in fields.items()})
     if key in keys:  # of another of the forms that this table may have
         return "no such key beside those here: it belongs to another form of this table"
     if (elsewhere := _FIELD_WORDS.get(key)) is not None and elsewhere.split(".")[0] in keys:
