@@ -108,6 +108,10 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
             if line.get_linestyle() == "--" and len(np.asarray(line.get_xdata())) == 2
         }
         assert {round(n * 1150.0, 3) for n in (1, 2)} <= marked
+        (triangles,) = (line for line in axes.get_lines() if line.get_marker() == "^")
+        modes = drawn.solved.machine.housing.frequencies_hz  # type: ignore[union-attr]
+        assert np.asarray(triangles.get_xdata()) == pytest.approx(modes[modes <= drawn.solved.trusted_limit])
+        assert 0 < triangles.get_xdata().size  # type: ignore[union-attr]
         # A dot stands on each leading line, whose frequency has a name above.
         (dots,) = (line for line in axes.get_lines() if line.get_marker() == "o")
         told = drawn.signature.lines[name][: len(dots.get_xydata())]
