@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import pytest
@@ -15,14 +15,17 @@ from matplotlib.figure import Figure
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.analyses.signature import SolvedSignature, solve_signature
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.gears.loaded.transmission_error import along_one_pair
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.periodic.superposition import ExcitationGroup
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
 from gearwhine.figures.machine.operating_point import draw_over_torque
+from gearwhine.figures.machine.steady_state import _motion_sheet
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.machine.transient import draw_sensor_spectra
 from gearwhine.figures.style import BLUE, GREY
@@ -108,6 +111,10 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
             if line.get_linestyle() == "--" and len(np.asarray(line.get_xdata())) == 2
         }
         assert {round(n * 1150.0, 3) for n in (1, 2)} <= marked
+        (triangles,) = (line for line in axes.get_lines() if line.get_marker() == "^")
+        modes = drawn.solved.machine.housing.frequencies_hz  # type: ignore[union-attr]
+        assert np.asarray(triangles.get_xdata()) == pytest.approx(modes[modes <= drawn.solved.trusted_limit])
+        assert modes[0] < drawn.solved.trusted_limit
         # A dot stands on each leading line, whose frequency has a name above.
         (dots,) = (line for line in axes.get_lines() if line.get_marker() == "o")
         told = drawn.signature.lines[name][: len(dots.get_xydata())]
@@ -326,3 +333,48 @@ def test_the_driver_slides_backwards_where_it_begins() -> None:
         roll = np.degrees(pair.geometry.driver_roll_angle(mesh.positions[number, row]))
         nearest = values[np.abs(rolls - roll) < 1e-9]
         assert np.nanmin(np.abs(nearest - 1e-6 * pressure[number, row])) < 1e-6
+
+
+def test_the_force_of_superposed_motions_is_drawn_as_their_sum_pair_by_pair() -> None:
+    """F = mean + a cos(2π 100 t) + b cos(2π 30 t + 1) of each pair; motions of 1/100 and 1/30 s both have the mean."""
+    parts = {"first": (500.0, 40.0, 9.0), "second": (800.0, 70.0, 20.0)}  # mean, a, b
+
+    def steady(name: str, hertz: float, phase: float, number: int) -> Any:
+        times = np.arange(512) / 512 / hertz
+        force = {
+            pair: given[0] + given[number] * np.cos(2.0 * np.pi * hertz * times + phase)
+            for pair, given in parts.items()
+        }
+        response: Any = SimpleNamespace(period=1.0 / hertz, stable=True)
+        histories: Any = SimpleNamespace(times=times, mesh_force=force)
+        return SteadyMotion(1.0, response, histories, 1e4, excitation=name, group=ExcitationGroup(weight=1))
+
+    contacts = [SimpleNamespace(name=name, mesh_frequency=rate) for name, rate in (("first", 100.0), ("second", -30.0))]
+    machine: Any = SimpleNamespace(
+        system=SimpleNamespace(contacts=contacts),
+        loaded_contacts=(0, 1),
+        meshes=contacts,
+        speed=100.0,
+        input_torque=45.0,
+    )
+    motions = (steady("mesh first", 100.0, 0.0, 1), steady("mesh second", 30.0, 1.0, 2))
+    figure = _motion_sheet("m", SolvedSteady(machine, motions, superposed=cast(Any, object())))
+    shown = panels(figure)
+    assert [axes.get_title(loc="left").partition(":")[0] for axes in shown] == [
+        "first",
+        "its lines",
+        "second",
+        "its lines",
+    ]
+    for (mean, fast, slow), rate, left, right in zip(
+        parts.values(), (100.0, 30.0), shown[::2], shown[1::2], strict=True
+    ):
+        (curve,) = left.get_lines()
+        times, force = 1e-3 * np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
+        assert times[-1] * rate == pytest.approx(round(times[-1] * rate))  # whole mesh periods
+        expected = mean + fast * np.cos(2.0 * np.pi * 100.0 * times) + slow * np.cos(2.0 * np.pi * 30.0 * times + 1.0)
+        np.testing.assert_allclose(force, expected, atol=1e-3 * fast)
+        tops = [float(np.nanmax(np.asarray(line.get_ydata(), dtype=float))) for line in right.get_lines()]
+        assert sorted(tops)[-2:] == pytest.approx([slow, fast], rel=1e-6)
+    names = [text.get_text().replace("\N{NO-BREAK SPACE}", " ") for text in figure.legends[0].get_texts()]
+    assert names == ["mesh first", "mesh second"]
