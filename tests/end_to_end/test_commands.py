@@ -102,7 +102,9 @@ def test_compare(gearwhine) -> None:
 
 
 def test_examples_copy(gearwhine, tmp_path: Path) -> None:
-    names = {example["name"] for example in gearwhine("examples", "--json").document["examples"]}
+    document = gearwhine("examples", "--json").document
+    assert document["warnings"] == []
+    names = {example["name"] for example in document["examples"]}
     assert {"nasa-gear-noise-rig", "small-gearbox", "steel-box", "friswell-rotor", "gear-62-62", "spur-pair"} <= names
     assert gearwhine("examples", "copy", "spur-pair").code == 0
     assert gearwhine("check", "spur-pair.toml").code == 0
