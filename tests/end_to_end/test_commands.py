@@ -82,9 +82,7 @@ def test_modes(gearwhine, answer, tmp_path: Path) -> None:
     assert certificate["complete"] is True
     assert certificate["expected"] == certificate["found"] == len(document["modes"])
     assert certificate["max_residual"] < 1e-8
-    assert {"number", "frequency_hz", "damping_ratio", "strength"} <= set(document["modes"][0])
     assert document["mesh"]["dofs"] == 3 * document["mesh"]["nodes"]
-    assert {"mesh", "assembly", "factorisation", "eigensolver", "total"} <= set(document["seconds"])
     assert {path.name for path in (tmp_path / "out").glob("[!.]*")} == set(document["files"])
     again = answer("modes", "steel-box", "--json", "-q", *COARSE).document
     assert without_seconds({"modes": again["modes"]}) == without_seconds({"modes": document["modes"]})
