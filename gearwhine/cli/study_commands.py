@@ -164,8 +164,17 @@ def _perform(entry: Command, case: str, common: Common, given: dict[str, Any]) -
 
     composed_by = entry.longer[1] if shows_more else composer_of(entry)
     show = shown_by(composer(composed_by) if composed_by else lambda document: (), timed=entry.timed)
-    files = (f"mesh.{given['suffix']}", "mesh.h5") if "suffix" in given else ()
+    files = _mesh_files(entry, given)
     _require_whole(on_case(case, common, work, show, entry.name, writes=files, always_writes=entry.always_writes))
+
+
+def _mesh_files(entry: Command, given: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of the files of a mesh in the format that is given, else in the method's own."""
+    options = inspect.signature(method_of(entry)).parameters
+    if "suffix" not in options:
+        return ()
+    suffix = given.get("suffix", options["suffix"].default)
+    return (f"mesh.{suffix}", "mesh.h5") if suffix == "xdmf" else (f"mesh.{suffix}",)
 
 
 def _require_whole(document: Mapping[str, Any]) -> None:

@@ -75,6 +75,11 @@ def test_the_mesh_that_the_case_names_is_not_replaced(gearwhine: Any, tmp_path: 
     assert (tmp_path / "mesh.inp").read_bytes() == before
     assert gearwhine("mesh", "own.toml", "-q", "-o", ".", "--format", "vtu").code == 0  # another file
     assert gearwhine("mesh", "own.toml", "-q", "-o", ".", "--format", "vtu").code == 0  # which is ours now
+    (tmp_path / "mesh.msh").write_text("the user's own", encoding="utf-8")
+    outcome = gearwhine("mesh", "own.toml", "-o", ".")  # the format that it has by default
+    assert outcome.code == 2
+    assert "mesh.msh: a file that no run of gearwhine made" in outcome.err
+    assert "writing results" not in outcome.err
 
 
 @pytest.mark.parametrize("name", ["results.nc", "case.toml", "rotor-rotor-modes.png", "modes.nc"])
