@@ -562,6 +562,7 @@ def test_a_carrier_is_one_body_of_its_plates_shaft_and_pins(planetary: Case) -> 
     assert disc.mass == pytest.approx(mass, rel=1e-9)
     assert disc.polar_inertia == pytest.approx(mass * (0.054**2 + 0.025**2 / 8.0), rel=1e-9)  # type: ignore[union-attr]
     assert disc.at == pytest.approx(0.030)
+    assert any("the 3 pins of its planets are a disc on it" in text for text in notes(planetary_stage(), "changed"))
 
 
 def test_a_carrier_may_be_a_shaft_alone() -> None:

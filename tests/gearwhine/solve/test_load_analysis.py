@@ -4,6 +4,7 @@ import io
 import json
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,12 @@ import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.case import CaseError
 from gearwhine.cli import run_command
-from gearwhine.coupling.load_analysis.load_warnings import load_warnings
+from gearwhine.coupling.load_analysis.load_warnings import _bearing_warnings, load_warnings
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.output.terminal import show_section
 from gearwhine.results import chapters_of
 from gearwhine.results.operating_point import sections
+from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, spherical_groove
 from gearwhine.rotors.rolling_bearings.rows import STEEL
 
 WIDEST = 100  # columns of the terminal
@@ -363,6 +365,21 @@ def test_doubtful_points_are_warned_of(helical: Result[SolvedLoad]) -> None:
     assert "4.3 GPa, beyond the 4.2 GPa" in found["static rating"]["message"]
     assert "10.7' out of line; deep groove ball bearings usually take 10'" in found["bearing tilt"]["message"]
     assert found["free motion"]["motion"] == "the tilt about x of shaft 'input'"
+
+
+@pytest.mark.parametrize(
+    ("row", "gigapascals"),
+    [
+        (BallRow(9, 8e-3, 40e-3), 4.2),
+        (BallRow(14, 8e-3, 45e-3, 0.2, outer_groove=spherical_groove(8e-3, 45e-3, 0.2)), 4.6),
+        (RollerRow(12, 8e-3, 8e-3, 40e-3), 4.0),
+    ],
+)
+def test_elements_are_pressed_to_the_static_rating_of_their_kind(row: BallRow | RollerRow, gigapascals: float) -> None:
+    """ISO 76: 4200 MPa of balls, 4600 MPa of self-aligning ones, 4000 MPa of rollers."""
+    state = SimpleNamespace(bearing=SimpleNamespace(rows=[row]), peak_pressure=1.001e9 * gigapascals)
+    bearing: Any = SimpleNamespace(load=SimpleNamespace(name="b", rolling=state))
+    assert f"beyond the {gigapascals:g} GPa" in next(_bearing_warnings(bearing))["message"]
 
 
 def test_uneven_faces_are_warned_of() -> None:
