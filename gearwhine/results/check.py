@@ -13,7 +13,7 @@ from gearwhine.exchange.rexs.notes import Note, in_words
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
-from gearwhine.results.gears import GEOMETRY, backlash_words
+from gearwhine.results.gears import BACKLASH, GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
 from gearwhine.results.motion import damping_lines, gear_body_lines
@@ -214,14 +214,7 @@ PAIR = (
     Quantity("total_contact_ratio", "geometry.total_contact_ratio"),
     Quantity("centre_distance_m", lambda pair: abs(pair.geometry.working_centre_distance)),
     Quantity("working_pressure_angle_deg", "geometry.working_pressure_angle"),
-    Quantity(
-        "backlash_m",
-        lambda pair: {
-            "circumferential": pair.geometry.circumferential_backlash,
-            "normal": pair.geometry.normal_backlash,
-            "along_line_of_action": pair.geometry.backlash,
-        },
-    ),
+    Part("backlash_m", lambda pair: pair, BACKLASH),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
     Quantity("mean_force_n"),
     Quantity("mean_force_from", "force_origin"),
@@ -822,7 +815,7 @@ def _pair_lines(pair: Document, on_bearings: bool) -> list[str]:
         f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
         f"{pair['working_pressure_angle_deg']:.4g}°",
     ]
-    # By centre distance and thickness, where there is any that could be measured.
+    # Where there is any that could be measured.
     if abs(pair["backlash_m"]["circumferential"]) >= 1e-9:
         lines.append(f"backlash {backlash_words(pair['backlash_m'])}")
     lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]

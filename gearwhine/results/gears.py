@@ -277,11 +277,9 @@ PRESSURE = (
 
 
 BACKLASH = (
-    Quantity("along_line_of_action", "solved.backlash"),
-    Quantity(
-        "circumferential", lambda pair: pair.solved.backlash / math.cos(pair.solved.geometry.working_pressure_angle)
-    ),
-    Quantity("normal", lambda pair: pair.solved.backlash * math.cos(pair.solved.geometry.driver.base_helix_angle)),
+    Quantity("along_line_of_action", "backlash"),
+    Quantity("circumferential", lambda pair: pair.backlash / math.cos(pair.geometry.working_pressure_angle)),
+    Quantity("normal", lambda pair: pair.backlash * math.cos(pair.geometry.driver.base_helix_angle)),
 )
 """Acting backlash (ISO 21771): gap of the back flanks along their line of action in the transverse plane; j_wt on
 the working pitch circles; j_bn, the shortest distance of the flanks."""
@@ -328,7 +326,7 @@ RELIEF = (
 """The relief that suits the torque, beside that of the case and none at all."""
 
 
-def _where(present: Any, pair: "PairAnalysis") -> "PairAnalysis | None":
+def _where(present: Any, pair: Any) -> Any:
     return None if present is None else pair
 
 
@@ -349,7 +347,7 @@ PAIR = (
     Quantity("total_contact_ratio", "solved.geometry.total_contact_ratio"),
     Quantity("centre_distance_m", lambda pair: abs(pair.solved.geometry.working_centre_distance)),
     Quantity("working_pressure_angle_rad", "solved.geometry.working_pressure_angle"),
-    Part("backlash_m", lambda pair: _where(pair.solved.backlash, pair), BACKLASH),
+    Part("backlash_m", lambda pair: _where(pair.solved.backlash, pair.solved), BACKLASH),
     Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
     Quantity("torque_n_m", "solved.torque"),
     Quantity(

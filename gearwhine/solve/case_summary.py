@@ -67,6 +67,8 @@ class CheckedPair:
         Torque on the driver [N m]; None without an operation.
     force_origin : str
         See :attr:`gearwhine.coupling.description.gear_train.GearTrain.force_origins`.
+    given_backlash : float or None
+        Backlash that acts in place of that of centre distance and tooth thickness [m]; None where none is given.
     """
 
     stiffness_model: str
@@ -75,6 +77,12 @@ class CheckedPair:
     mesh_frequency: float | None
     torque: float | None
     force_origin: str
+    given_backlash: float | None
+
+    @property
+    def backlash(self) -> float:
+        """Gap of the back flanks along their line of action [m]: the one that is given, else that of the geometry."""
+        return self.geometry.backlash if self.given_backlash is None else self.given_backlash
 
     @property
     def mean_force(self) -> float | None:
@@ -177,6 +185,7 @@ def check_machine(machine: Machine, settings: Settings) -> CheckedMachine:
         machine.mesh_frequencies,
         machine.pair_torques,
         machine.train.force_origins,
+        (pair.backlash for pair in machine.gear_pairs),
         strict=True,
     )
     rotors = tuple(CheckedRotor(machine.rotor(shaft.name), machine.speeds[shaft.name]) for shaft in machine.shafts)
@@ -290,6 +299,7 @@ def checked_pairs(parts: Parts) -> Iterator[CheckedPair]:
         unknown if parts.operation is None else parts.mesh_frequencies,
         unknown if parts.operation is None else parts.pair_torques,
         parts.train.force_origins,
+        (pair.backlash for pair in parts.gear_pair),
         strict=True,
     )
     for built, row in zip(parts.gear_pairs, rows, strict=True):

@@ -185,6 +185,11 @@ def test_backlash_has_its_three_sizes_under_their_names(helix: float) -> None:
     assert any(text.startswith(f"Backlash {sizes}") for text in section.sentences)
     lines = [line for part in check.sections(check_document(case)) for line in part.sentences]
     assert any(f"backlash {sizes}" in line for line in lines)
+    case = case_of(thin, thin, backlash="0.3 mm")
+    (checked,) = check_document(case)["gear_pairs"]
+    (analysed,) = gears_document(analyse_pairs(case, solve_gears(case.parts)))["pairs"]
+    assert checked["backlash_m"]["along_line_of_action"] == 3e-4
+    assert checked["backlash_m"] == pytest.approx(analysed["backlash_m"], rel=1e-12)
     bare = case_of(TOOTH, TOOTH)
     assert gears_document(analyse_pairs(bare, solve_gears(bare.parts)))["pairs"][0]["backlash_m"] is None
 
