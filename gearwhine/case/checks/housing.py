@@ -187,7 +187,7 @@ def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
             yield Finding(location, one_of(f"a surface of the box{feet}", name, surfaces))
     for index, region in draft.raw_entries("housing", "region"):
         name, volumes = region.get("volume"), ("housing",) if box.cover is None else ("body", "cover")
-        if isinstance(name, str) and name not in volumes:
+        if isinstance(name, str) and name not in volumes and "box" not in region:
             yield Finding(("housing", "region", index, "volume"), one_of("a volume of the box", name, volumes))
 
 
