@@ -80,6 +80,7 @@ def on_case(
         Whether it writes without ``--output``, too.
     """
     from gearwhine.case import load_case
+    from gearwhine.numerics.findings import RefusedPartError
     from gearwhine.output.quantity import add_warnings
     from gearwhine.output.terminal import say_warning
     from gearwhine.progress import shown
@@ -93,7 +94,12 @@ def on_case(
     for warning in loaded.warnings:
         say_warning(warning)
     with shown(quiet=common.quiet) as progress:
-        document = work(loaded, progress)
+        try:
+            document = work(loaded, progress)
+        except RefusedPartError as error:
+            # Parts that do not fit each other, such as bearings that let the thrust of gears through, know no file.
+            error.args = (f"{loaded.source.name}: {error}",)
+            raise
     add_warnings(document)
     for warning in document["warnings"]:
         if warning["message"] not in loaded.warnings:
