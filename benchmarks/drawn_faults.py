@@ -1,7 +1,8 @@
-"""Draws faults over all statements of the product, and tells which of them the fast tests let through: drawn_faults.py
+"""Draws faults over all statements of the product, and tells which of them the tests let through: drawn_faults.py
 
 A list of faults from one's own memory holds what one has tested. Here a seed draws them: a sign, a factor, an index, a
-name, a unit, a term, a comparison, two arguments. The tests of a fault are those that run its line, the quickest first.
+name, a unit, a term, a comparison, two arguments. The tests of a fault are the fast ones that run its line, the
+quickest first; of a statement that none runs, slow ones, too: those that import its file or are listed for it.
 Verdicts are kept in ``build/drawn-faults``, so that a run goes on where it was. A fault that changes no result stands
 with the reason in ``tests/faults/equivalent.toml``. None is drawn in a kernel's source: all kernels would be compiled::
 
@@ -26,7 +27,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from faults import LISTS, ROOT, Fault, caught, copy_tree, environment
+from faults import LISTS, ROOT, Fault, caught, copy_tree, environment, read_faults
 from traced_lines import ROOMS
 
 BUILD = ROOT / "build" / "drawn-faults"
@@ -45,7 +46,8 @@ _UNSEEN = {
     "tests/gearwhine/results/test_names_of_results.py": ("gearwhine/results/",),
     "tests/test_written_slips.py": tuple(f"{room}/" for room in ROOMS),
 }
-_LIMIT = 300  # s of processor time of one run: a fault that never ends is caught, however loaded the machine
+# Processor time of one run [s]: a fault that never ends is caught, however loaded the machine.
+_LIMIT, _LIMIT_OF_SLOW = 300, 1800
 
 _KEY = re.compile(r"[a-z][a-z0-9_]+")
 _COUNT = re.compile(r"([ijkmn]|\w*(number|index|row|column|place|rank)) ?\W?.*")  # what a sequence is indexed by
@@ -328,17 +330,45 @@ def kept(keys: list[str]) -> list[DrawnFault]:
 
 
 def tests_of(fault: DrawnFault, lines: dict[str, dict[str, list[int]]], seconds: dict[str, float]) -> list[str]:
-    """Test files that run the line of a fault, else its statement, else the file: the quickest of each first."""
+    """Test files that run the line of a fault, else its statement, else the file.
+
+    Of each, those that import the file come first, then the quickest.
+    """
+    imported = imports_of(fault.file)
+
+    def rank(test: str) -> tuple[bool, float]:
+        return imported.search((ROOT / test).read_text(encoding="utf-8")) is None, seconds[test]
+
     ordered = dict[str, None]()
     for first, last in (*fault.spans, (0, 10**9)):
         touching = [test for test, files in lines.items() if any(first <= n <= last for n in files.get(fault.file, ()))]
-        ordered |= dict.fromkeys(sorted(touching, key=seconds.__getitem__))
+        ordered |= dict.fromkeys(sorted((test for test in touching if (ROOT / test).exists()), key=rank))
     chosen, total = list[str](), 0.0
     for test in ordered:
         total += seconds.get(test, 0.0)
         if not chosen or (total <= _SECONDS_OF_TESTS and len(chosen) < _FILES_OF_TESTS):
             chosen.append(test)
     return list(dict.fromkeys([*chosen, *(test for test, places in _UNSEEN.items() if fault.file.startswith(places))]))
+
+
+def slow_tests_of(fault: DrawnFault, lines: dict[str, dict[str, list[int]]]) -> list[str]:
+    """Files whose slow tests may run a statement that no fast test runs; none of another statement."""
+    spans = [*fault.spans[:2], *(span for span in fault.spans[2:] if span[0] == span[1])]
+    run = {n for files in lines.values() for n in files.get(fault.file, ())}
+    if any(first <= n <= last for first, last in spans for n in run):
+        return []
+    listed, tests = read_faults()
+    of_lists = {name for area in {one.area for one in listed if one.file == fault.file} for name in tests[area]}
+    imports, files = imports_of(fault.file), sorted((ROOT / "tests").rglob("test_*.py"))
+    texts = {str(path.relative_to(ROOT)): path.read_text(encoding="utf-8") for path in files}
+    slow = {name: text for name, text in texts.items() if "mark.slow" in text}
+    return sorted((name for name in slow if name in of_lists or imports.search(slow[name])), key=of_lists.__contains__)
+
+
+def imports_of(file: str) -> re.Pattern[str]:
+    """Pattern of a line that imports from a file of the product."""
+    module = file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    return re.compile(rf"^ *from (gearwhine\.)?{re.escape(module)} import", re.MULTILINE)
 
 
 def refused_by_types(fault: DrawnFault) -> bool:
@@ -406,6 +436,8 @@ def main() -> None:
             verdict = "SURVIVED untested"
         elif not verdict or given.survivors:
             found, text = caught(TREE, fault, [tests], "-m", "not slow", limit=_LIMIT)
+            if not found and (slow := slow_tests_of(fault, lines)):
+                found, text = caught(TREE, fault, [slow], "-m", "slow", limit=_LIMIT_OF_SLOW)
             by = re.search(r"^(?:FAILED|ERROR) (\S+)", text, re.MULTILINE)
             verdict = f"caught by {by[1] if by else text[-60:].strip()}" if found else "SURVIVED"
             if given.types and not found and refused_by_types(fault):

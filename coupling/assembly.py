@@ -76,6 +76,7 @@ from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from gearwhine.coupling.statics.flank_swing import (
     swinging_errors,
+    swinging_friction,
     swinging_laws,
     swinging_shuttling,
     turn_waves,
@@ -632,7 +633,7 @@ class MeanFaces:
     shuttling : dict of int to list of HarmonicLoad
         Moments of load shuttling on the loaded flanks, whose amplitudes are those at any speed.
     errors : dict of int to list of HarmonicLoad
-        Loads by the transmission error of flanks that swing, at sidebands of mesh harmonics.
+        Loads by the transmission error and friction of flanks that swing, at sidebands of mesh harmonics.
     are_kept : bool
         Whether they stay under another mean load and stiffness of the same flanks.
     """
@@ -687,7 +688,7 @@ def _with_faces(
     mean = known if known is not None and known.hold_in(system) else None
     if mean is None:
         states = _face_states(system, coordinates, flanks, turning)
-        moving = turning(_on_faces(system, states, slope_is_found=True))
+        moving = turning(with_balanced_friction(_on_faces(system, states, slope_is_found=True)))
         laws, waves = swinging_laws(moving), turn_waves(moving)
         shuttling, errors = dict[int, list[HarmonicLoad]](), dict[int, list[HarmonicLoad]]()
         for number, (face, _, under, _) in states.items():
@@ -699,7 +700,8 @@ def _with_faces(
                     else face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
                 )
                 if number in laws:
-                    errors[number] = swinging_errors(moving.contacts[number], under, laws[number], waves)
+                    swings, own = moving.contacts[number], laws[number]
+                    errors[number] = swinging_errors(swings, under, own, waves) + swinging_friction(swings, own, waves)
         mean = MeanFaces(system, states, shuttling, errors)
     if not mean.states:
         return system, mean

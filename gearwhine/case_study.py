@@ -284,8 +284,10 @@ class CaseStudy(Study):
             plan_detection(self._source)
         if self.case.optimisation is not None:
             from gearwhine.analyses.optimisation_result import plan_optimisation
+            from gearwhine.optimisation.design import alone_warnings
 
-            plan_optimisation(self._source, self.case.optimisation)
+            designed, *_ = plan_optimisation(self._source, self.case.optimisation)
+            warnings += alone_warnings(self._source.without("variation", "optimisation"), designed)
         checked = check_case(self.case, self.progress, self._source.imported)
         checked.warnings.extend(warnings)
         return Result("check", self.case, checked, document_of(CHECK, checked))
@@ -362,14 +364,14 @@ class CaseStudy(Study):
         return compare_result(housing, compared, self.origin)
 
     def survey(
-        self, sensors: Annotated[int, AT_LEAST_ONE], modes: Annotated[int | None, AT_LEAST_ONE] = None
+        self, sensors: Annotated[int | None, AT_LEAST_ONE] = None, modes: Annotated[int | None, AT_LEAST_ONE] = None
     ) -> "Result[PlannedSurvey]":
         """Plan a modal survey: sensor and hammer positions, as files.
 
         Parameters
         ----------
-        sensors : int
-            Number of sensors, each normal to the surface.
+        sensors : int, optional
+            Number of sensors, each normal to the surface (default: three for two modes).
         modes : int, optional
             Number of lowest modes to survey (default: all known).
 

@@ -62,13 +62,13 @@ class HousingAnalyses:
         housing = self.required_housing("compare")
         return compare_result(housing, compare_test(housing, test, self.progress), self.origin)
 
-    def survey(self, sensors: int, modes: int | None = None) -> "Result[PlannedSurvey]":
+    def survey(self, sensors: int | None = None, modes: int | None = None) -> "Result[PlannedSurvey]":
         """Plan a modal survey: sensor and hammer positions.
 
         Parameters
         ----------
-        sensors : int
-            Number of sensors, each normal to the surface.
+        sensors : int, optional
+            Number of sensors, each normal to the surface; by default three for two modes.
         modes : int, optional
             Number of lowest modes to survey; by default all known.
 
@@ -81,7 +81,7 @@ class HousingAnalyses:
         from gearwhine.housing.modal_test import plan_modal_survey
 
         housing = self.required_housing("survey")
-        self.progress(f"choosing {sensors} sensors")
+        self.progress("choosing sensors")
         return survey_result(housing, plan_modal_survey(housing, sensors, modes), self.origin)
 
     def render(

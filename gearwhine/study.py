@@ -411,6 +411,7 @@ class Study(StudiedMachine, HousingAnalyses):
         analyses: Sequence[str] | None = None,
         quantities: Sequence[str] = (),
         limits: "Mapping[str, tuple[float | None, float | None]] | None" = None,
+        correlations: "Mapping[tuple[str, str], float] | None" = None,
         indices: bool = False,
         widen: float | None = None,
         seed: Annotated[int, NOT_NEGATIVE] = 1,
@@ -430,7 +431,7 @@ class Study(StudiedMachine, HousingAnalyses):
             Distributions of :mod:`gearwhine.numerics.distributions` in SI, by paths as of :meth:`changed`.
         samples : int
             Number of machines.
-        analyses, quantities, limits, indices, widen, seed, folder, workers, scheduler, fresh
+        analyses, quantities, limits, correlations, indices, widen, seed, folder, workers, scheduler, fresh
             As of :func:`gearwhine.vary`. Processes are started where they are worth it, as many as cores.
 
         Raises
@@ -442,17 +443,23 @@ class Study(StudiedMachine, HousingAnalyses):
         gearwhine.failures.WorkersError
             Where the processes do not start.
         """
-        from gearwhine.analyses.variation_result import Drawn, inputs_of_laws, study_folder, vary_machine
+        from gearwhine.analyses.variation_result import (
+            Drawn,
+            correlation_of_laws,
+            inputs_of_laws,
+            study_folder,
+            vary_machine,
+        )
         from gearwhine.coupling.description.changed import changed
         from gearwhine.variation.machines import made
 
-        _require_arguments("vary", samples=(samples, AT_LEAST_ONE), seed=(seed, NOT_NEGATIVE))
+        drawn = Drawn(samples, seed, indices, widen, correlation_of_laws(laws, correlations))
         inputs, make = inputs_of_laws("vary", laws), partial(changed, self.machine)
         made(make, {one.name: one.value(0.5) for one in inputs})
         origin = replace(self.origin, housing=self.solved_housing())
         with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
             return vary_machine(
-                make, self.machine, inputs, Drawn(samples, seed, indices, widen), self.settings, place,
+                make, self.machine, inputs, drawn, self.settings, place,
                 origin=origin, analyses=analyses, quantities=quantities, limits=limits,
             )  # fmt: skip
 
@@ -561,12 +568,11 @@ class Study(StudiedMachine, HousingAnalyses):
         from gearwhine.coupling.description.changed import changed, number_at
         from gearwhine.variation.machines import made
 
-        _require_arguments("optimise", evaluations=(evaluations, AT_LEAST_ONE), seed=(seed, NOT_NEGATIVE))
+        search = SearchSettings(method, evaluations, seed)
         inputs, make = designed_inputs(laws, levels), partial(changed, self.machine)
         first = {path: number_at(self.machine, path) for path in laws}
         made(make, first | ({} if scatter is None else scatter.medians))
         with study_folder(self.progress, folder, workers, scheduler, fresh=fresh) as place:
-            search = SearchSettings(method, evaluations, seed)
             return optimise_machine(
                 make, self.machine, inputs, first, aims, search, self.settings, place,
                 origin=replace(self.origin, housing=self.solved_housing()),

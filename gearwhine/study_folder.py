@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Required, TypedDict
 
-from gearwhine.numerics.findings import Number
+from gearwhine.numerics.findings import Number, RefusedPartError, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
+
+_WORKERS = Number(at_least=1, whole=True, optional=True)
 
 
 class FolderOptions(TypedDict, total=False):
@@ -25,7 +27,7 @@ class FolderOptions(TypedDict, total=False):
     """
 
     folder: Required[str | os.PathLike[str]]
-    workers: Annotated[int | None, Number(at_least=1, whole=True)]
+    workers: Annotated[int | None, _WORKERS]
     scheduler: str | None
     fresh: bool
 
@@ -52,3 +54,7 @@ class StudyFolder:
     scheduler: str | None = None
     fresh: bool = False
     progress: Progress = silent
+
+    def __post_init__(self) -> None:
+        """Refuse a number of processes that is none."""
+        refuse(attribute_findings(("study folder", ""), self, workers=_WORKERS), RefusedPartError)

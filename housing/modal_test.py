@@ -4,6 +4,7 @@ Measured modes are aligned, mapped to the model's degrees of freedom, and paired
 compared with the model's at the same points by FRAC. A planned survey has sensors and a hammer position.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
@@ -419,13 +420,14 @@ class PlannedSurvey:
     frequencies_hz: npt.NDArray[np.float64]
 
 
-def plan_modal_survey(housing: HousingModes, sensors: int, modes: int | None = None) -> PlannedSurvey:
+def plan_modal_survey(housing: HousingModes, sensors: int | None = None, modes: int | None = None) -> PlannedSurvey:
     """Plan a survey of the lowest modes that bend the housing.
 
     Parameters
     ----------
     housing : HousingModes
-    sensors : int
+    sensors : int, optional
+        Three for two modes where not given, since as many as modes leave nothing to check their shapes by.
     modes : int, optional
         Number of modes; all that are known where not given. Rigid motions of a free housing are left out.
 
@@ -435,6 +437,7 @@ def plan_modal_survey(housing: HousingModes, sensors: int, modes: int | None = N
         Where the sensors cannot separate the modes.
     """
     elastic = np.flatnonzero(housing.modes.frequencies > 0.0)[:modes]
+    sensors = math.ceil(1.5 * elastic.size) if sensors is None else sensors
     seats = [block for seat in housing.housing.seats for block in housing.mesh.surface(seat.name)]
     supports = [fixture for fixture in housing.housing.fixtures if isinstance(fixture, Support)]
     supported = [block for support in supports for block in support.facets(housing.mesh)]

@@ -61,12 +61,16 @@ class Normal:
 
     def _findings(self) -> Iterator[Finding]:
         part = ("normal", "")
-        yield from attribute_findings(part, self, mean=Number(), deviation=Number(above=0.0))
+        rules = {name: Number() for name in ("low", "high") if getattr(self, name) not in (-math.inf, math.inf)}
+        wrong = list(attribute_findings(part, self, mean=Number(), deviation=Number(above=0.0), **rules))
+        yield from wrong
+        if wrong:
+            return
         if not self.low < self.high:
             yield Finding(part, "high", float(self.high), f"a number above the low end {self.low:g}")
-        elif self.deviation > 0.0 and self._inside < _LEAST_INSIDE:
-            expected = f"a range about the mean: {self.low:g} to {self.high:g} lies beyond the distribution"
-            yield Finding(part, "low", float(self.low), expected)
+        elif self._inside < _LEAST_INSIDE:
+            end = "low" if self.low > self.mean else "high"
+            yield Finding(part, end, float(getattr(self, end)), f"a number near the mean {self.mean:g}, or beyond it")
 
     @property
     def _ends(self) -> tuple[float, float]:

@@ -317,7 +317,7 @@ class TorqueSupport:
             "at": Number(at_least=0.0, unit="m"),
             "stiffness": Number(above=0.0, optional=True, unit="N m/rad"),
             "seat": Text(optional=True),
-            "damping_time": Number(at_least=0.0, unit="s"),
+            "damping_time": Number(at_least=0.0, at_most=1e-2, unit="s"),
         }
         part = ("torque support", str(self.shaft))
         findings = [*attribute_findings(part, self, **rules), *kind_findings(part, self, bolts=SupportBolt)]

@@ -35,6 +35,9 @@ _STEEPEST_TAPER = 35.0
 """Contact angle of tapered rollers from which it is doubted [°]."""
 _LARGEST_OFFSET = 5e-4
 """Axial offset at assembly from which it is doubted [m]."""
+_LARGEST_CLEARANCE = 0.01
+"""Diametral clearance or interference over the pitch diameter from which it is doubted; group 5 of ISO 5753-1 has less
+in every size."""
 _UNKNOWN_BEARING_WIDTH = 0.9e-4
 """Width of a bearing of unknown size, and height of its ring [m]: half of it is within the slack, so that a bearing at
 the end of a face touches it."""
@@ -322,7 +325,7 @@ def _ring_fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]
 
 
 def _rolling_findings(part: Part, rolling: RollingBearing) -> Iterator[Finding]:
-    """Yield a rating, a contact angle and an offset at assembly that rolling bearings hardly have."""
+    """Yield a rating, a contact angle, an offset at assembly and a clearance that rolling bearings hardly have."""
     geometry, given = dynamic_rating(rolling.rows[0], len(rolling.rows)), rolling.catalogue_rating
     if given is not None and not 1.0 / _RATINGS_APART < given / geometry < _RATINGS_APART:
         expected = (
@@ -342,6 +345,14 @@ def _rolling_findings(part: Part, rolling: RollingBearing) -> Iterator[Finding]:
         offset = abs(getattr(row, "axial_offset", 0.0))
         if offset > _LARGEST_OFFSET:
             expected = f"an axial offset of some µm, by which bearings are preloaded; it is {in_mm(offset)}"
+            yield Finding(part, "rolling", None, expected, "warning")
+            return
+        most = _LARGEST_CLEARANCE * row.pitch_diameter
+        if abs(row.clearance) > most:
+            expected = (
+                f"a clearance or an interference in operation of at most {in_mm(most)}, a hundredth of the pitch "
+                f"diameter; it is {in_mm(row.clearance)}"
+            )
             yield Finding(part, "rolling", None, expected, "warning")
             return
 

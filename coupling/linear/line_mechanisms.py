@@ -42,7 +42,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 )
 from gearwhine.coupling.linear.carriers.turning_response import Excitation, Order, TurningResponse
 from gearwhine.coupling.linear.carriers.turning_stiffness import TurningStiffnessForce
-from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, at_time_zero, sum_by_order
+from gearwhine.coupling.linear.mesh_harmonics import Force, MeshHarmonicModel, sum_by_order
 from gearwhine.coupling.linear.parametric_stiffness import VaryingMesh
 from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForce
 from gearwhine.coupling.machine.connectors import ContactConnector
@@ -295,7 +295,8 @@ class LineMechanisms:
                     yield at, "pitch_errors", force
         for harmonic in self.machine.system.harmonic_loads:
             at = abs(harmonic.frequency)
-            if at > 0.0 and abs(at - frequency) <= reach:
+            # The friction of contacts is whole already.
+            if at > 0.0 and abs(at - frequency) <= reach and harmonic.mechanism != "friction":
                 # F = Re(a e^{iwt}) of a negative w is Re(conj(a) e^{i|w|t}).
                 amplitude = harmonic.amplitude if harmonic.frequency > 0.0 else harmonic.amplitude.conj()
                 yield at, harmonic.mechanism, Force(amplitude[:, None], np.ones(1, dtype=np.complex128))
@@ -313,7 +314,7 @@ class LineMechanisms:
             for swung in self.model.error_forces((number, order)) if swings else ():
                 if not any(swung.order):  # sidebands are among the loads of the system
                     yield order * rate, "transmission_error", swung
-            error = at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
+            error = contact.at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), order)
             if not swings and abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
                 yield order * rate, "transmission_error", Force.along(contact, stiffness * error[0])
             for rubbed in self.model.friction_forces((number, order)):
@@ -338,7 +339,7 @@ class LineMechanisms:
             return
         largest, differences = self._differences[number]
         orders = cycles / periods
-        errors = at_time_zero(differences.amplitudes(cycles.astype(np.int64)), contact, orders)
+        errors = contact.at_time_zero(differences.amplitudes(cycles.astype(np.int64)), orders)
         rounding = _TRANSMISSION_ERROR_ROUNDING * largest
         least = max(rounding, _FAINT_HARMONIC * np.abs(errors).max())
         for at, error in zip(orders.tolist(), errors.tolist(), strict=True):

@@ -64,7 +64,6 @@ from gearwhine.coupling.linear.mesh_harmonics import (
     HARMONICS,
     MeshHarmonicModel,
     Response,
-    alike_teeth,
     friction_force,
     mesh_under,
     sum_of,
@@ -74,6 +73,7 @@ from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForc
 from gearwhine.coupling.machine.components import seat_in_section
 from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
 from gearwhine.coupling.machine.mesh_face import MeshFace
+from gearwhine.coupling.machine.tooth_friction import alike_teeth
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint
 from gearwhine.coupling.statics.sensitivity import deflection_slope, rigid_slope, section_slope
 from gearwhine.numerics.arrays import ComplexArray, FloatArray

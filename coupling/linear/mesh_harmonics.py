@@ -49,6 +49,7 @@ from gearwhine.coupling.linear.unequal_teeth import DampedMachine, StiffnessForc
 from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
+from gearwhine.coupling.machine.tooth_friction import alike_teeth
 from gearwhine.coupling.statics.flank_swing import (
     LawsOverTurn,
     forces_over_turn,
@@ -72,8 +73,6 @@ HARMONICS = 12
 _POINTS = 200  # number of phases of a mesh period, as in the mean mesh
 _SAME_FREQUENCY_DIFFERENCE = 1e-9  # relative difference below which frequencies are equal
 _FAINT_SIDEBAND = 1e-4  # part of the largest motion by its meshes one by one below which a sideband is left out
-
-_BESIDE_STEP = 1e-9  # distance of a phase from a step [mesh periods]
 
 
 @dataclass(frozen=True, eq=False)
@@ -517,7 +516,7 @@ class MeshHarmonicModel:
         count : int
         """
         phasors = transmission_error_phasors(mesh, count, hunting_period)
-        return at_time_zero(phasors, self.machine.system.contacts[number], np.arange(1, count + 1))
+        return self.machine.system.contacts[number].at_time_zero(phasors, np.arange(1, count + 1))
 
     def shuttling_loads(self, number: int, face: MeshFace, force: float) -> dict[int, ComplexArray]:
         """Moments of load shuttling by harmonic, of the flanks of a face under a force [N], shape (n,) each."""
@@ -610,13 +609,9 @@ class MeshHarmonicModel:
             contact = contacts[number]
             if number not in self.loaded or contact.sliding is None or not np.all(forces > 0.0):
                 continue
-            if number not in self._laws_over_turn:
-                found[number] = [alike_teeth(contact, force) for force in forces.tolist()]
-                continue
-            sliding, friction, found[number] = contact.sliding, contact.sliding.friction, []
-            for law, force in self._laws_over_turn[number]:
-                on_gap = replace(contact, contact=law, sliding=replace(sliding, friction=friction.under(law)))
-                found[number].append(alike_teeth(on_gap, force))
+            laws = self._laws_over_turn.get(number)
+            gaps = [contact] * len(forces) if laws is None else [contact.with_law(law) for law, _ in laws]
+            found[number] = [alike_teeth(gap, force) for gap, force in zip(gaps, forces.tolist(), strict=True)]
         return found
 
     @cached_property
@@ -752,43 +747,11 @@ def sum_by_order(loads: Iterable[Mapping[Order, ComplexArray]]) -> dict[Order, C
     return total
 
 
-def at_time_zero(
-    phasors: ComplexArray, contact: ContactConnector, order: float | IntArray | FloatArray
-) -> ComplexArray:
-    """Return phasors by the mesh phase as those at t = 0, by e^{iωt} with ω > 0."""
-    if contact.mesh_frequency < 0.0:
-        phasors = phasors.conj()
-    return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * order * contact.phase))
-
-
-def alike_teeth(contact: ContactConnector, force: float) -> tuple[LoadedMesh, FloatArray | None]:
-    """Mesh of a contact under a force [N] over a period with all teeth alike, and its friction force by the phase.
-
-    The friction is μ F (A, B) [N], shape (n, 2), see
-    `gearwhine.coupling.machine.tooth_friction.friction_of`; None without friction.
-    """
-    law = contact.contact.teeth_alike
-    phases = mesh_period_phases(law, _POINTS)
-    if contact.sliding is None:
-        return loaded_transmission_error(law, force, phases), None
-    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
-
-    sliding = contact.sliding.friction
-    steps = np.array(sliding.event_phases)
-    phases = np.unique(np.concatenate([phases, (steps - _BESIDE_STEP) % 1.0, (steps + _BESIDE_STEP) % 1.0]))
-    mesh = loaded_transmission_error(law, force, phases)
-    arguments, by_slices = replace(contact, contact=law).friction_law
-    compression = np.ascontiguousarray(mesh.transmission_error)
-    shares = friction_history(mesh.phases, compression, arguments, by_slices, sliding.pitch_point, sliding.path_end)
-    sense = np.sign(contact.sliding.nominal[1])
-    return mesh, np.asarray(sense * sliding.coefficient * force * shares)
-
-
 def friction_force(
     contact: ContactConnector, mesh: LoadedMesh, friction: FloatArray | None, harmonic: int
 ) -> Force | None:
     """Friction of a contact's teeth at a mesh harmonic, its mesh and friction those of `alike_teeth`; None without."""
     if friction is None or contact.sliding is None:
         return None
-    shares = at_time_zero(polygon_phasors(mesh.phases, friction, [harmonic]), contact, harmonic)
+    shares = contact.at_time_zero(polygon_phasors(mesh.phases, friction, [harmonic]), harmonic)
     return Force(contact.sliding.directions, -shares[:, 0], contact.sliding.turning)

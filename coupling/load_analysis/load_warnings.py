@@ -219,9 +219,9 @@ def _face_warnings(number: int, points: Sequence[OperatingPoint]) -> Iterator[Re
             "linear analyses have no stiffness there"
             if len(parted) == len(points)
             else f"{label}: the load holds the flanks apart with {_angles(parted, carriers)}, "
-            "and the pairs that share the torque carry its part; linear analyses and motion have the mean stiffness "
-            "and transmission error of the turn there, and lack the lines that this parting and the swing of its "
-            "flanks make"
+            "and the pairs that share the torque carry its part; linear analyses have the mean stiffness of the turn "
+            "at all angles, and their lines may be as far off as the highest of them is high; motion has the parting, "
+            "but not the swing of these flanks"
         )
         yield warning("lost contact", message, **gears, angles_rad=[dict(point.turned_by) for point in parted])
     if len(parted) == len(points):

@@ -307,13 +307,10 @@ def solve_load(
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         points[part * machine.torque] = loaded.operating_point()
     preloads = _preloads(machine, progress)
+    over_turn = zip(*(one.bearings for one in point.over_turn or (point,)), strict=True)
     bearings = tuple(
-        LoadedBearing(
-            bearing,
-            None if bearing.rolling is None else BearingLife(bearing.rolling, machine.bearing_speed(bearing.mounted)),
-            preloads.get(bearing.name),
-        )
-        for bearing in point.bearings
+        LoadedBearing(bearing, _rated_life(machine, loads), preloads.get(bearing.name))
+        for bearing, loads in zip(point.bearings, over_turn, strict=True)
     )
     pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine.gear_pairs, point, aligned_by_default)))
     if len(point.over_turn) > 1:
@@ -343,6 +340,14 @@ def solve_load(
         planetary_over_turn=sharing,
         carrier_turns=turns,
     )
+
+
+def _rated_life(machine: Machine, over_turn: Sequence[BearingLoad]) -> BearingLife | None:
+    """Return the life of a bearing by its load at each angle of the carriers; None where it does not roll."""
+    states = [load.rolling for load in over_turn if load.rolling is not None]
+    if not states:
+        return None
+    return BearingLife(states[0], machine.bearing_speed(over_turn[0].mounted), tuple(states))
 
 
 def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:

@@ -20,7 +20,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
-from gearwhine.numerics.arrays import FloatArray
+from gearwhine.numerics.arrays import ComplexArray, FloatArray, IntArray
 
 _JUST_AFTER = 1e-9  # mesh periods
 
@@ -266,6 +266,11 @@ class ContactConnector:
         shares = np.zeros(0) if self.sliding is None else self.sliding.friction.shares
         return (shares, True) if shares.size else (self.contact.kernel_arguments[0], False)
 
+    def with_law(self, law: ToothContact) -> "ContactConnector":
+        """Return the contact with another law of its flanks, which their friction follows."""
+        sliding = None if self.sliding is None else replace(self.sliding, friction=self.sliding.friction.under(law))
+        return replace(self, contact=law, sliding=sliding)
+
     def direction_at(self, time: float) -> FloatArray:
         """Compression by each coordinate at a nominal time [s], shape (n,)."""
         return turned(self.direction[:, None], self.turning, time)[:, 0] if self.turning else self.direction
@@ -274,6 +279,12 @@ class ContactConnector:
         """Return the contact whose directions stand as they do at a nominal time [s]."""
         sliding = None if self.sliding is None else standing(self.sliding, time)
         return replace(self, direction=self.direction_at(time), turning=(), sliding=sliding)
+
+    def at_time_zero(self, phasors: ComplexArray, order: float | IntArray | FloatArray) -> ComplexArray:
+        """Return phasors of orders of the mesh by its phase as those at t = 0, by e^{iωt} with ω > 0."""
+        sense = np.sign(self.mesh_frequency)
+        shifted = np.exp(2j * np.pi * sense * order * self.phase)
+        return np.asarray((phasors.conj() if sense < 0.0 else phasors) * shifted)
 
     def runout(self, time: float) -> float:
         """Runout error at a time [m]."""

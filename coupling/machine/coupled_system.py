@@ -79,7 +79,14 @@ class HarmonicLoad:
     amplitude: ComplexArray
     follows: Literal["time", "turning", "unbalance"] = "time"
     mechanism: Literal[
-        "unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "transmission_error", "load"
+        "unbalance",
+        "shaft_bow",
+        "torque_ripple",
+        "base_motion",
+        "load_shuttling",
+        "transmission_error",
+        "friction",
+        "load",
     ] = "load"
     circling: float | None = None
 

@@ -71,7 +71,7 @@ class MountedBearing:
             "seat": Text(optional=True),
             "law": Instance((RollingLaw, GapLaw), "a law of a bearing, or None", optional=True),
             "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),
-            "damping_time": Number(at_least=0.0, unit="s"),
+            "damping_time": Number(at_least=0.0, at_most=1e-2, unit="s"),
         }
         if self.offset is not None:
             rules["offset"] = Numbers(5)

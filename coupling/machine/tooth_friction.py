@@ -20,14 +20,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwhine.coupling.gears import GearPairGeometry
+from gearwhine.coupling.gears import GearPairGeometry, loaded_transmission_error
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, mesh_period_phases
 from gearwhine.coupling.machine.connectors import ContactConnector, Sliding
 from gearwhine.coupling.machine.coordinates import MachineCoordinates
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction
 from gearwhine.coupling.machine.mounted_parts import MountedGear
 from gearwhine.numerics.arrays import FloatArray
+
+_POINTS = 200  # number of phases of a mesh period, as in the mean mesh
+_BESIDE_STEP = 1e-9  # distance of a phase from a step [mesh periods]
 
 
 def sliding_flanks(
@@ -110,6 +114,29 @@ def friction_of(
     # A pair slides one way before the pitch point and the other way behind it, so the sense of rotation cancels here.
     power = np.sign(nominal[1]) * pushed * (shares @ nominal) * speed_ratios
     return np.column_stack([pushed * shares[:, 0], power])
+
+
+def alike_teeth(contact: ContactConnector, force: float) -> tuple[LoadedMesh, FloatArray | None]:
+    """Mesh of a contact under a force [N] over a period with all teeth alike, and its friction force by the phase.
+
+    The friction is μ F (A, B) [N], shape (n, 2), see `friction_of`; None without friction.
+    """
+    law = contact.contact.teeth_alike
+    phases = mesh_period_phases(law, _POINTS)
+    if contact.sliding is None:
+        return loaded_transmission_error(law, force, phases), None
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
+
+    alike = contact if law is contact.contact else contact.with_law(law)
+    assert alike.sliding is not None
+    sliding = alike.sliding.friction
+    steps = np.array(sliding.event_phases)
+    phases = np.unique(np.concatenate([phases, (steps - _BESIDE_STEP) % 1.0, (steps + _BESIDE_STEP) % 1.0]))
+    mesh = loaded_transmission_error(law, force, phases)
+    compression = np.ascontiguousarray(mesh.transmission_error)
+    shares = friction_history(mesh.phases, compression, *alike.friction_law, sliding.pitch_point, sliding.path_end)
+    sense = np.sign(contact.sliding.nominal[1])
+    return mesh, np.asarray(sense * sliding.coefficient * force * shares)
 
 
 def with_balanced_friction(system: CoupledSystem) -> CoupledSystem:

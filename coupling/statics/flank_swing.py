@@ -10,24 +10,30 @@ phase p and in θ,
 
 and so are κ and the moments: a mesh excites sidebands by itself, even where all that stands still is alike all round.
 What flanks yield in the mean at each angle, n = 0, is that of the equilibrium over a turn. e and κ are those under the
-mean force on each gap, as what F(θ) changes in e is by κ; the moments have F(θ). Their linear law of tilting
-has the mean stiffness over the phase; what the change of it with the phase makes of the slope at θ is in e and in the
-moments here. Against a set of rigid bodies with helical or spur faces that is integrated as it stands, lines at mesh
-harmonics and their sidebands are within 5 % where faces carry all over, and within a tenth where the stiffness swings
-by a fifth.
+mean force on each gap, as what F(θ) changes in e is by κ; the moments and the friction have F(θ). The linear law of
+tilting has the mean stiffness over the phase; what the change of it with the phase makes of the slope at θ is in e and
+in the moments here. Against a set of rigid bodies with helical or spur faces that is integrated as it stands, lines at
+mesh harmonics and their sidebands are within 5 % where faces carry all over, and within a tenth where the stiffness
+swings by a fifth.
 """
 
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from gearwhine.coupling.gears import ToothContact, loaded_transmission_error
-from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases, transmission_error_phasors
-from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    mesh_period_phases,
+    polygon_phasors,
+    transmission_error_phasors,
+)
+from gearwhine.coupling.machine.connectors import ContactConnector, TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
 from gearwhine.coupling.machine.mesh_face import MeshFace
+from gearwhine.coupling.machine.tooth_friction import alike_teeth
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, equilibrium_over_turn
 from gearwhine.numerics.arrays import ComplexArray, FloatArray
 
@@ -115,24 +121,68 @@ def swinging_errors(
     laws, waves
         As of `swinging_shuttling`.
     """
-    orders, sense = np.arange(1, _HARMONICS + 1), np.sign(contact.mesh_frequency)
+    orders = np.arange(1, _HARMONICS + 1)
     meshes = [loaded_transmission_error(law, mean.force, mesh_period_phases(law, _POINTS)) for law, _ in laws]
     errors = np.array([transmission_error_phasors(mesh, _HARMONICS, 1) for mesh in meshes])
-    if sense < 0.0:
-        errors = errors.conj()
-    errors = mean.stiffness * errors * np.exp(2j * np.pi * sense * orders * contact.phase)
-    stands = contact.direction - sum((part.cosine[:, 0] for part in contact.turning), np.zeros(contact.direction.size))
-    directions: list[tuple[float, ComplexArray]] = [(0.0, stands.astype(np.complex128))]
-    for part in contact.turning:
-        directions += [
-            (turn * part.rate, np.asarray(0.5 * (part.cosine - 1j * turn * part.sine)[:, 0])) for turn in (1.0, -1.0)
-        ]
-    rates = 2.0 * np.pi * abs(contact.mesh_frequency) * orders
-    return [
-        HarmonicLoad(rate + shift + turning, amplitude * direction, "turning", "transmission_error")
+    by_shift = {
+        shift: mean.stiffness * (wave @ contact.at_time_zero(errors, orders))[None]
         for shift, wave in waves.items()
         if shift != 0.0
-        for rate, amplitude in zip(rates.tolist(), (wave @ errors).tolist(), strict=True)
+    }
+    directions = _by_rate(contact.direction[:, None], contact.turning)
+    return _loads(contact, by_shift, directions, "transmission_error")
+
+
+def swinging_friction(
+    contact: ContactConnector, laws: Sequence[tuple[ToothContact, float]], waves: Mapping[float, ComplexArray]
+) -> list[HarmonicLoad]:
+    """Return the loads by friction on the gaps of a turn beside that on the mean gap, which is in the contact law.
+
+    Both are under the force F(θ). There are none without friction.
+
+    Parameters
+    ----------
+    contact : ContactConnector
+        With the mean law, and the parts of its directions that turn.
+    laws, waves
+        As of `swinging_shuttling`.
+    """
+    if contact.sliding is None:
+        return []
+    orders = np.arange(1, _HARMONICS + 1)
+
+    def phasors(on_gap: ContactConnector, force: float) -> ComplexArray:
+        mesh, friction = alike_teeth(on_gap, force)
+        assert friction is not None
+        return contact.at_time_zero(polygon_phasors(mesh.phases, friction, orders), orders)
+
+    beside = np.array([phasors(contact.with_law(law), force) - phasors(contact, force) for law, force in laws])
+    by_shift = {shift: -np.tensordot(wave, beside, 1) for shift, wave in waves.items()}
+    directions = _by_rate(contact.sliding.directions, contact.sliding.turning)
+    return _loads(contact, by_shift, directions, "friction")
+
+
+def _by_rate(directions: FloatArray, turning: Sequence[TurningPart]) -> list[tuple[float, ComplexArray]]:
+    """Directions (n, d) as sums of such that turn by e^{iwt}, each with its w [rad/s]."""
+    stands = directions - sum((part.cosine for part in turning), np.zeros_like(directions))
+    found: list[tuple[float, ComplexArray]] = [(0.0, stands.astype(np.complex128))]
+    for part in turning:
+        found += [(turn * part.rate, np.asarray(0.5 * (part.cosine - 1j * turn * part.sine))) for turn in (1.0, -1.0)]
+    return found
+
+
+def _loads(
+    contact: ContactConnector,
+    by_shift: Mapping[float, ComplexArray],
+    directions: Sequence[tuple[float, ComplexArray]],
+    mechanism: Literal["transmission_error", "friction"],
+) -> list[HarmonicLoad]:
+    """Make loads along directions (n, d) by amplitudes (d, h) at h mesh harmonics, of each shift by the carriers."""
+    rate = 2.0 * np.pi * abs(contact.mesh_frequency)
+    return [
+        HarmonicLoad(harmonic * rate + shift + turning, direction @ amplitude, "turning", mechanism)
+        for shift, amplitudes in by_shift.items()
+        for harmonic, amplitude in enumerate(amplitudes.T, 1)
         for turning, direction in directions
     ]
 

@@ -27,6 +27,8 @@ _POINTS = 200  # number of phases of a mesh period, in addition to its events
 _CONVERGED_FORCE_CHANGE = 1e-7  # change of the force in a step of the iteration, relative to the largest force
 _FORCE_ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
 _ZERO_STIFFNESS_SHARE = 1e-12  # part of the largest stiffness below which a stiffness is zero
+_PULL = 1e-5  # part of the largest force that flanks may pull and yet be closed: a loose planet may touch without force
+_LOOSE_LOAD = 1e-6  # part of the loads by which unequal planets, or rounding, may push those that are loose
 _ITERATIONS = 30
 
 
@@ -129,7 +131,7 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
         pressed = load + closed @ (stiffness * offset)
         if not np.all(loaded):
             loose = [_loose_motions(one, stiffest) for one in matrix]
-            if any(drives(force, free) for force, free in zip(pressed, loose, strict=True)):
+            if drives(pressed, loose, _LOOSE_LOAD):
                 # The mean load opens flanks, and nothing else holds the train.
                 return without_force, at_rest
             matrix += stiffest * np.array([free @ free.T for free in loose])
@@ -137,7 +139,8 @@ def equilibrium_over_turn(system: CoupledSystem) -> tuple[list[MeanMesh | None],
         compression = np.einsum("tnc,tn->tc", directions, q)
         pull = stiffness * (compression - offset)
         rounding = _FORCE_ROUNDING * stiffness * np.einsum("tnc,tn->tc", np.abs(directions), np.abs(q))
-        parted = pull < -rounding
+        slack = _PULL * loaded * np.abs(pull * loaded).max()
+        parted = pull < -np.maximum(rounding, slack)
         force, rounding = np.where(parted, 0.0, pull).mean(axis=0), rounding.mean(axis=0)
         converged = np.abs(force - before) <= _CONVERGED_FORCE_CHANGE * np.abs(force).max() + rounding
         if np.all(converged) and np.array_equal(parted, ~loaded):

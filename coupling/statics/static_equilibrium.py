@@ -18,7 +18,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector, NonlinearCon
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.numerics.arrays import FloatArray
 
-_LOAD_ROUNDING = 1e-12  # part of the loads that is rounding of the rigid-body motions
+_LOAD_ROUNDING = 1e-10  # part of the loads that is rounding of the rigid-body motions
 _PUSHED = 1e-9  # part of a load below which its share in a rigid-body motion is rounding
 _STEPS = 60
 _HALVINGS = 12  # largest number of halvings of a Newton step that increases the residual
@@ -41,9 +41,10 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     TransientError
         Where teeth or bearings find no equilibrium.
     """
+    balances = load_balances(system)
     system = system.standing(time)
     rigid, stiffest = system.rigid_body_motions
-    if not load_balances(system):
+    if not balances:
         raise CouplingError(
             "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
             "rotation or a housing without supports; check the torques in and out against the gear ratios, and the "
@@ -107,16 +108,22 @@ def tangent_offset(system: CoupledSystem, time: float = 0.0) -> FloatArray:
 
 
 def load_balances(system: CoupledSystem) -> bool:
-    """Whether the constant load does no work in any rigid-body motion, over a turn of directions that turn."""
-    rows = zip(system.over_turn, system.free_over_turn, strict=True)
-    return not any(drives(one.load, free) for one, free in rows)
+    """Whether the constant load does no work in any rigid-body motion, in the mean over a turn of the directions."""
+    return not drives([one.load for one in system.over_turn], system.free_over_turn)
 
 
-def drives(load: FloatArray, motions: FloatArray) -> bool:
-    """Whether a load (n,) does work in one of motions, columns of (n, m)."""
+def drives(loads: Sequence[FloatArray], motions: Sequence[FloatArray], rounding: float = _LOAD_ROUNDING) -> bool:
+    """Whether loads (n,) over a turn do work in the mean in motions, columns of (n, m) at each, above their rounding.
+
+    A force that shifts a carrier gives the centrifugal forces of planets at unequal angles a moment that swings.
+    """
+    work = np.mean([free @ (free.T @ load) for load, free in zip(loads, motions, strict=True)], axis=0)
     # Relative to the load's entries, and beside the rounding of the motions themselves.
-    scale = 1e-6 * np.abs(motions.T) @ np.abs(load) + _LOAD_ROUNDING * np.linalg.norm(load)
-    return bool(np.any(np.abs(motions.T @ load) > scale))
+    size = np.mean(np.abs(loads), axis=0)
+    return any(
+        np.any(np.abs(free.T @ work) > 1e-6 * np.abs(free.T) @ size + rounding * np.linalg.norm(size))
+        for free in motions
+    )
 
 
 def _out_of_balance(

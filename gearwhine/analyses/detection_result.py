@@ -560,7 +560,10 @@ def _require_severities(source: CaseSource, settings: Detection, without: str) -
             changed = source.changed_case([f"{settings.fault}={_text(written)}"])
             _require_sound_teeth(changed.parts.gears.values())
         except CaseError as error:
-            problems += [Problem(key, written, f"a size that the case takes: {one.expected}") for one in error.problems]
+            problems += [
+                Problem(key, written, f"a size that the case takes; {one.key}: expected {one.expected}")
+                for one in error.problems
+            ]
         except GearError as error:
             problems.append(Problem(key, written, f"a size that the model takes: {error}"))
     if problems:

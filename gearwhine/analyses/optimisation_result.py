@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, get_args
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result, no_files
 from gearwhine.analyses.variation_result import (
     in_solved_housing,
-    is_count,
     limits_of,
     name_problems,
     sampled_points,
@@ -35,12 +34,14 @@ from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.failures import explain
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
+from gearwhine.numerics.findings import Choice, Number, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.optimisation.design import (
     AS_WRITTEN,
     DesignInput,
     ProposedCase,
+    alone_warnings,
     design_inputs,
     require_scatter,
     space_of,
@@ -50,11 +51,12 @@ from gearwhine.optimisation.design import (
 )
 from gearwhine.optimisation.evaluations import Evaluations, failure_of
 from gearwhine.optimisation.goals import NO_AIM, YIELD, Goals, goals_of, statistic_problems
-from gearwhine.optimisation.optimised import MOST_SHOWN, Design, Optimised, design_of
+from gearwhine.optimisation.optimised import Design, Optimised, design_of
 from gearwhine.optimisation.proposed_machine import ProposedMachine
 from gearwhine.optimisation.scatter import Scatter
 from gearwhine.optimisation.search import Ended, Trials, require_pareto_library, search, tried_whole
 from gearwhine.optimisation.verification import Motion, Moving, Verification, checked_speeds, motion_of
+from gearwhine.output.quantity import RPM
 from gearwhine.results.optimisation import OPTIMISED, optimised_document
 from gearwhine.settings import Settings
 from gearwhine.solutions import Failure, StudyProgress
@@ -116,6 +118,8 @@ def solve_optimisation(
     plain = source.without("variation", "optimisation")
     good = {} if case.variation is None else case.variation.limit
     variation = None if optimisation.robust is None else case.variation
+    for one in alone_warnings(plain, inputs):
+        folder.progress(f"{one['message']}\n")
     proposed = ProposedCase(plain, inputs, wanted, variation=variation)
     proposed, housing = in_solved_housing(proposed, folder, "optimise")
     aimed = _Aimed(optimisation.aim, optimisation.limit, optimisation.robust, good)
@@ -129,13 +133,13 @@ def solve_optimisation(
 
     def design_cases(place: Path, *, pictures: bool) -> Mapping[str, Any]:
         """Write the best design and those of the front as cases."""
-        for stem, number in _written_designs(optimised).items():
+        for file, number in optimised.cases.items():
             made = proposed.case(_as_designed(optimised.designs[number], len(scatter[0])))
             title = f"{origin.title}: design {number + 1}".strip(": ")
             # With its scatter and its aims, so that it can be varied, and searched from.
             kept = {"title": title, "variation": case.variation, "optimisation": case.optimisation}
             text = dump_case(made.model_copy(update=kept))
-            (place / f"{stem}.toml").write_text(text, encoding="utf-8")
+            (place / file).write_text(text, encoding="utf-8")
         return {}
 
     return _result(origin, optimised, begin, design_cases, proposed.start_warnings)
@@ -259,10 +263,11 @@ def optimise_machine(
 ) -> Result[Optimised]:
     """Find the best of the machines that a function makes, beside one with its values; see :func:`optimise`."""
     begin = time.perf_counter()
-    search_settings.require_count()
     good = {} if scatter is None else limits_of("optimise, scatter", scatter.good)
     robust = None if scatter is None else scatter.robust
     aimed = _Aimed(_senses(aims), limits_of("optimise", limits), robust, good)
+    if not aimed.aims:
+        raise CaseError([NO_AIM])
     if analyses is None:
         named = map(analysis_of, _quantities_named(aimed.aims, aimed.limits, good))
         analyses = tuple(dict.fromkeys(filter(None, named)))
@@ -376,10 +381,14 @@ class SearchSettings:
     evaluations: int
     seed: int
 
-    def require_count(self) -> None:
-        """Refuse a number of designs that is none."""
-        if not is_count(self.evaluations):
-            raise CouplingError(f"optimise: {self.evaluations!r} evaluations; expected a whole number of 1 or more")
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be, and a method that there is not."""
+        rules: dict[str, Rule] = {
+            "method": Choice(get_args(Method)),
+            "evaluations": Number(at_least=1, whole=True),
+            "seed": Number(at_least=0, whole=True),
+        }
+        refuse(attribute_findings(("optimise", ""), self, **rules), CouplingError)
 
     def require_library(self, aims: Mapping[str, Aim]) -> None:
         """Refuse a search for a Pareto front where its library is not installed."""
@@ -574,7 +583,7 @@ def _verified(proposed: _Proposed, optimised: Optimised, speed: float, scatter: 
     if not proposals:
         return optimised
     loudest = [
-        value / (30.0 / np.pi)
+        value / RPM
         for design in (optimised.start, *proposals)
         for name, (value, _) in design.sides.items()
         if name.endswith("loudest_speed_rpm")
@@ -622,19 +631,6 @@ def _motion_or_failure(solved: Callable[[], Motion]) -> Motion | Failure:
         if message is None:
             raise
         return Failure(message)
-
-
-def _written_designs(optimised: Optimised) -> dict[str, int]:
-    """Return the designs that are written as cases, by the name of the file."""
-    if not optimised.chosen:
-        return {}
-    best = next(iter(optimised.chosen))
-    stem = "best" if optimised.front else "nearest"
-    if optimised.goals.count == 1:
-        return {stem: best}
-    places = np.unique(np.linspace(0, len(optimised.front) - 1, min(len(optimised.front), MOST_SHOWN)).astype(int))
-    front = {f"front-{rank}": optimised.front[place] for rank, place in enumerate(places.tolist(), start=1)}
-    return {stem: best} | (front if optimised.front else {})
 
 
 def _result(

@@ -27,7 +27,8 @@ from gearwhine.coupling import CouplingError, Machine
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.numerics.arrays import FloatArray
-from gearwhine.numerics.distributions import Discrete, Distribution, correlated
+from gearwhine.numerics.distributions import Discrete, Distribution, correlated, correlation_findings
+from gearwhine.numerics.findings import Number, Rule, attribute_findings, refuse
 from gearwhine.numerics.names import one_of
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
@@ -42,9 +43,9 @@ from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.radiated_power import Radiations, radiated_power_of
 from gearwhine.study_folder import StudyFolder
-from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, values_at
+from gearwhine.variation.inputs import Input, Pitches, Wider, correlation_matrix, inputs_of, refusals, values_at
 from gearwhine.variation.machines import Made, Maker, VariedMachine, made
-from gearwhine.variation.named_quantities import analysis_of, matches, possible_quantities, statistic_of
+from gearwhine.variation.named_quantities import QUANTITIES, analysis_of, matches, possible_quantities, statistic_of
 from gearwhine.variation.quantities import ANALYSES, Evaluation, Wanted, usual_analyses
 from gearwhine.variation.run import run_samples
 from gearwhine.variation.samples import Varied, VariedCase
@@ -141,6 +142,15 @@ class Drawn:
     indices: bool = False
     widen: float | None = None
     correlation: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be."""
+        rules: dict[str, Rule] = {
+            "samples": Number(at_least=1, whole=True),
+            "seed": Number(at_least=0, whole=True),
+            "widen": Number(above=1.0, at_most=MOST_WIDENED, optional=True),
+        }
+        refuse(attribute_findings(("vary", ""), self, **rules), CouplingError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +267,8 @@ def plan_variation(case: Case, source: CaseSource) -> tuple[tuple[Input, ...], W
     """
     variation, refusal = case.variation or Variation(), Refusal()
     if not variation.vary:
-        raise CaseError([Problem("variation.vary", UNSAID, "a distribution of one key or more")])
+        expected = "a distribution of one key or more"
+        raise CaseError([Problem("variation.vary", UNSAID, expected, source=source.name)])
     inputs = inputs_of(source, variation.vary, ("variation", "vary"), refusal)
     tied = np.zeros(len(inputs), dtype=bool)
     with refusal:
@@ -303,6 +314,7 @@ def vary(
     speeds: Sequence[float] = (),
     plan: TransientPlan | None = None,
     limits: Mapping[str, tuple[float | None, float | None]] | None = None,
+    correlations: Mapping[tuple[str, str], float] | None = None,
     acoustics: Acoustics | None = None,
     indices: bool = False,
     widen: float | None = None,
@@ -319,14 +331,15 @@ def vary(
     Parameters
     ----------
     make : callable
-        Makes a machine of the values by name. What it cannot make raises `ValueError`, and the sample fails by itself.
+        Makes a machine of the values by name, or returns quantities of your own by name, which are taken as they are.
+        What it cannot make raises `ValueError`, and the sample fails by itself.
     laws : mapping of str to Distribution
         Distribution of each value, of :mod:`gearwhine.numerics.distributions`.
     samples : int
         Number of machines; with ``indices`` times the number of values and two more.
     analyses : sequence of str, optional
-        What is found of each: "gears", "load", "rotors", "mass", "lines", "sound", "motion". By default gears, load and
-        lines, as far as the machine has them.
+        What is found of each: "gears", "load", "rotors", "mass", "modes", "lines", "sound", "motion". By default
+        gears, load and lines, as far as the machine has them.
     quantities : sequence of str
         Names of the quantities that are found, ``*`` for any part of a name; by default all of the analyses.
     speeds : sequence of float
@@ -336,6 +349,8 @@ def vary(
     limits : mapping of str to tuple, optional
         Least and largest value of good machines by quantity, None where there is none:
         ``{"bearing.left.life_h": (5000.0, None)}``.
+    correlations : mapping of (str, str) to float, optional
+        Correlations of the normal scores of two values each, by their names; none by default.
     acoustics : Acoustics, optional
         Settings of "sound", by default boundary elements in free air; each housing is solved once.
     indices : bool
@@ -358,7 +373,7 @@ def vary(
     Raises
     ------
     CouplingError
-        Where an analysis is none of these, or nothing is varied.
+        Where an analysis is none of these, nothing is varied, or a number cannot be.
     CaseError
         Where a limit is of a quantity that the machines do not have.
     gearwhine.failures.WorkersError
@@ -378,12 +393,13 @@ def vary(
     >>> [one.name for one in varied.solved.quantities][:1]
     ['rotor.shaft.critical_speed_1_rpm']
     """
+    drawn = Drawn(samples, seed, indices, widen, correlation_of_laws(laws, correlations))
     inputs = inputs_of_laws("vary", laws)
     machine = made(make, {one.name: one.value(0.5) for one in inputs})
     settings = Settings(title, transient=plan, speeds=speeds, acoustics=acoustics)
     with study_folder(progress, folder, workers, scheduler, fresh=fresh) as place:
         return vary_machine(
-            make, machine, inputs, Drawn(samples, seed, indices, widen), settings, place,
+            make, machine, inputs, drawn, settings, place,
             analyses=analyses, quantities=quantities, limits=limits,
         )  # fmt: skip
 
@@ -403,16 +419,13 @@ def vary_machine(
 ) -> Result[VariedResult]:
     """Solve the machines that a function makes of the values of inputs, about a machine; see :func:`vary`."""
     start = time.perf_counter()
-    if not isinstance(machine, Machine):
-        raise CouplingError(f"vary: {make!r} returned numbers; expected a gearwhine.Machine")
-    if not is_count(drawn.samples):
-        raise CouplingError("vary: expected a distribution of one value or more, and one sample or more")
     wanted = wanted_of_machine("vary", machine, settings, analyses, quantities)
     limit = limits_of("vary", limits)
     design = _design(inputs, drawn)
     radiations = Radiations(settings.acoustics, folder.progress)
     varied = VariedMachine(make, inputs, wanted, radiations, machine, design.wider)
-    result = _solved(varied, design, limit, machine.speed, folder)
+    speed = machine.speed if isinstance(machine, Machine) else None
+    result = _solved(varied, design, limit, speed, folder)
     return _result(origin or Origin(settings.title), result, start, warnings=varied.start_warnings)
 
 
@@ -424,11 +437,32 @@ def inputs_of_laws(command: str, laws: Mapping[str, Distribution]) -> tuple[Inpu
     CouplingError
     """
     if not laws:
-        raise CouplingError(f"{command}: expected a distribution of one value or more, and one sample or more")
+        raise CouplingError(f"{command}: expected a distribution of one value or more")
     for name, law in laws.items():
         if not hasattr(law, "quantile"):
             raise CouplingError(f"{command}: {name!r} is {law!r}; expected a distribution, such as Normal(1.0, 0.1)")
     return tuple(Input(name, law, "", (), ((name, 1.0),)) for name, law in laws.items())
+
+
+def correlation_of_laws(names: Iterable[str], pairs: Mapping[tuple[str, str], float] | None) -> FloatArray | None:
+    """Return the correlation of the normal scores of values by name, shape (d, d); None where they are independent.
+
+    Raises
+    ------
+    CouplingError
+        Where a pair is none of two names, or the coefficients cannot be together.
+    """
+    if not pairs:
+        return None
+    places = {name: place for place, name in enumerate(names)}
+    matrix = np.eye(len(places))
+    for pair, coefficient in pairs.items():
+        if len(set(pair)) != 2 or not set(pair) <= set(places):
+            raise CouplingError(f"vary: a correlation of {pair!r}; expected two of {', '.join(places)}")
+        first, second = (places[name] for name in pair)
+        matrix[first, second] = matrix[second, first] = coefficient
+    refuse(correlation_findings(matrix), CouplingError)
+    return matrix
 
 
 def wanted_of_machine(
@@ -445,6 +479,7 @@ def wanted_of_machine(
     CouplingError
         Where there is no such analysis, or the machine lacks what it needs.
     """
+    quantities = (quantities,) if isinstance(quantities, str) else quantities
     asked = _asked((analyses,) if isinstance(analyses, str) else analyses, quantities)
     if asked is None and isinstance(machine, Machine):
         housing = machine.housing_component
@@ -482,8 +517,6 @@ def _wider(inputs: tuple[Input, ...], factor: float | None) -> Wider:
     """Return the inputs with distributions wider by a factor, see :func:`gearwhine.variation.inputs.inputs_at`."""
     if factor is None:
         return ()
-    if not 1.0 < factor <= MOST_WIDENED:
-        raise CaseError([Problem("widen", factor, f"a factor above 1, at most {MOST_WIDENED:g}, such as 1.4")])
     wider = [one.widened(factor) for one in inputs]
     if not any(wider):
         raise CaseError([Problem("widen", factor, "an input with a tolerance; there are only values without one")])
@@ -527,11 +560,6 @@ def _kept_housing(housing: HousingModes, folder: StudyFolder) -> HousingModes:
     return replace(housing, source=folder.path / MODE_CACHE_FILE, source_holds=True)
 
 
-def is_count(value: object) -> bool:
-    """Whether a value is a whole number above 0."""
-    return isinstance(value, int) and value > 0
-
-
 def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | None]] | None) -> dict[str, Limit]:
     """Return limits of quantities that are given by their least and largest values.
 
@@ -539,24 +567,32 @@ def limits_of(command: str, limits: Mapping[str, tuple[float | None, float | Non
     ------
     CouplingError
     """
-    try:
-        return {name: Limit(at_least=least, at_most=most) for name, (least, most) in (limits or {}).items()}
-    except (TypeError, ValueError) as error:
-        expected = "a least and a largest value, or None, each"
-        raise CouplingError(f"{command}: limits of {limits}; expected {expected}") from error
+    found = dict[str, Limit]()
+    for name, ends in (limits or {}).items():
+        try:
+            least, most = ends
+            found[name] = Limit(at_least=least, at_most=most)
+        except (TypeError, ValueError) as error:
+            expected = "a least value and a largest one that is no less, of which one may be None"
+            raise CouplingError(f"{command}: the limit of {name!r} is {ends!r}; expected {expected}") from error
+    return found
 
 
 def wanted_of(case: Case, variation: Variation | Optimisation, command: str = "vary") -> Wanted:
     """Return what is found of each gearbox: as asked for, else what the case allows."""
     analyses: tuple[str, ...]
     names = variation.quantities
+    listens = any(one is not None and one.sensor for one in (case.housing, case.reduced_housing))
     asked = _asked(variation.analyses, names)
     if asked is not None:
         for name in asked:
             require(case, *ANALYSES[name].needs, command=f"{command}, analyses = ['{name}']")
+        if "lines" in asked and not listens:
+            table = "variation" if isinstance(variation, Variation) else "optimisation"
+            expected = "a housing with a sensor beside 'lines', which finds levels at sensors; the case has none"
+            raise CaseError([Problem(f"{table}.analyses", UNSAID, expected)])
         analyses = asked
     else:
-        listens = any(one is not None and one.sensor for one in (case.housing, case.reduced_housing))
         loaded = case.parts.is_loaded
         analyses = usual_analyses(has_pairs=bool(case.gear_pair), is_loaded=loaded, listens=listens)
         if analyses == ("rotors",) and not case.rotor:
@@ -582,10 +618,12 @@ def name_problems(case: Case, wanted: Wanted, table: Location, named: Iterable[s
     """
     names = dict(possible_quantities(parts_of(case)))
     for name in named:
-        _, quantity = statistic_of(name)
+        statistic, quantity = statistic_of(name)
         found = [one for one in names if matches(one, quantity)]
         expected = ""
-        if not found:
+        if not found and not statistic and " of " in name:
+            expected = "'mean of', 'standard deviation of' or 'quantile 0.95 of', and the name of a quantity"
+        elif not found:
             expected = _nearest_quantity(quantity, list(names))
         elif not any(names[one] in wanted.analyses for one in found):
             expected = f"{names[found[0]]!r} among the analyses, which finds it"
@@ -606,6 +644,8 @@ def _nearest_quantity(name: str, names: Sequence[str]) -> str:
     parts = dict.fromkeys(one.rpartition(".")[0].partition(".")[2] for one in names if one.startswith(f"{kind}."))
     if parts:
         return one_of(f"a {kind.replace('_', ' ')} of this case", own, list(parts))
+    if any(one.kind == kind for one in QUANTITIES):
+        return f"a {kind.replace('_', ' ')} in the case, which has none"
     return one_of("a quantity of this case", name, names)
 
 
@@ -643,24 +683,19 @@ def _require_quantities(wanted: Wanted, nominal: Evaluation) -> None:
 def _value_problems(source: CaseSource, inputs: Sequence[Input], tied: Sequence[bool]) -> Iterator[Problem]:
     """Yield problems of keys that do not take their median, an end of their range, or one of their values.
 
-    A value of a list may fail alone, and an input that a correlation ties to others may fit the case with these alone:
-    there only the key itself is checked.
+    A value of a list may fail where others do not, and an input that a correlation ties to others may fit the case with
+    these alone: there only the key itself is checked.
     """
     for one, with_others in zip(inputs, tied, strict=True):
-        for texts in map(list, _tried(one)):
-            try:
-                source.changed_case(texts)
-            except CaseError as error:
-                sources = [f"--set {text}" for text in texts]
-                own = [problem for problem in error.problems if problem.source in sources]
-                told = own or ([] if with_others or isinstance(one.law, Discrete) else error.problems)
-                # A problem of another key does not show the value.
-                value = "" if own else f" = {texts[0].partition('=')[2]}"
-                yield from (
-                    replace(problem, source=f"{source.name}: variation.vary, {one.name}{value}") for problem in told
-                )
-                if told:
-                    break
+        tried = [(texts, *refusals(source, texts)) for texts in map(list, _tried(one))]
+        one_holds = isinstance(one.law, Discrete) and any(not own and not others for _, own, others in tried)
+        for texts, own, others in tried:
+            # A problem of another key does not show the value.
+            value = "" if own else f" = {texts[0].partition('=')[2]}"
+            if told := own or ([] if with_others or one_holds else others):
+                place = f"{source.name}: variation.vary, {one.name}{value}"
+                yield from (replace(problem, source=place) for problem in told)
+                break
 
 
 def _tried(one: Input) -> Iterator[Iterator[str]]:

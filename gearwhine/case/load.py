@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from itertools import dropwhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -129,21 +130,24 @@ _FIELD_WORDS = {
     "helix": "helix_angle",
     "helix_crowning": "errors.helix.crowning",
     "helix_modification": "errors.helix",
+    "lead": "errors.helix.slope",
     "lead_crowning": "errors.helix.crowning",
     "lead_modification": "errors.helix",
     "number_of_teeth": "teeth",
 }
-"""Words of the field for keys of a table, or of one in it."""
+"""Words of the field for keys of a table, or of one in it; in that one the path begins later."""
 
 
 def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:
     """Return a hint on keys in place of an unknown one."""
     if any(key in table.later for table in tables):
         return "no such key yet: it comes in a later version"
-    keys = sorted({info.alias or name for table in tables for name, info in table.model_fields.items()})
+    fields = {name: info for table in tables for name, info in table.model_fields.items() if name not in KEY_OF_FORM}
+    keys = sorted({info.alias or name for name, info in fields.items()})
     if key in keys:  # of another of the forms that this table may have
         return "no such key beside those here: it belongs to another form of this table"
-    if (elsewhere := _FIELD_WORDS.get(key)) is not None and elsewhere.split(".")[0] in keys:
+    path = dropwhile(lambda step: step not in keys, _FIELD_WORDS.get(key, "").split("."))
+    if elsewhere := ".".join(path):
         return f"no such key; did you mean {elsewhere!r}?"
     return "no such key" + (did_you_mean(key, keys) or f" (known here: {', '.join(keys)})")
 

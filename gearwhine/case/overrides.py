@@ -231,7 +231,9 @@ def _set(document: dict[str, Any], steps: tuple[str, ...], value: Any) -> list[L
             if index is None:
                 names = [name for name in map(_name_of, node) if name is not None]
                 alternatives = f" or one of {', '.join(map(repr, names))}" if names else ""
-                expected = f"a place from 0 to {len(node) - 1}{alternatives}{did_you_mean(step, map(str, names))}"
+                places = "0, the only place" if len(node) == 1 else f"a place from 0 to {len(node) - 1}"
+                places = places if node else "an entry first"
+                expected = f"{places}{alternatives}{did_you_mean(step, map(str, names))}"
                 raise _LeadsNowhereError(location, step, expected)
             key: str | int = index
         elif isinstance(node, dict):

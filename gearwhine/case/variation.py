@@ -104,7 +104,7 @@ class Correlation(Table):
     """`[[variation.correlation]]`: correlation of two varied keys."""
 
     keys: tuple[KeyPath, KeyPath]
-    """The two keys, as they stand in `[variation.vary]`."""
+    """The two keys, as they stand in `[variation.vary]`; of an `independent` one a single entry's."""
     coefficient: Annotated[float, Quantity(units.RATIO, at_least=-1.0, at_most=1.0)]
     """Correlation of the normal scores of the two."""
 
@@ -132,7 +132,7 @@ class Limit(Table):
         return low <= value <= high
 
 
-AnalysisName = Literal["gears", "load", "rotors", "mass", "lines", "sound", "motion"]
+AnalysisName = Literal["gears", "load", "rotors", "mass", "modes", "lines", "sound", "motion"]
 
 
 def _each_once(names: tuple[AnalysisName, ...]) -> tuple[AnalysisName, ...]:
@@ -156,9 +156,10 @@ class Variation(Table):
     """Seed of the samples. The same seed gives the same samples, the first ones whatever their number."""
     analyses: Analyses | None = None
     """What is found of each gearbox: "gears" (transmission error, mesh stiffness), "load" (operating point), "rotors"
-    (critical speeds), "mass" (gears, shafts, housing), "lines" (levels at sensors by the linear machine under load),
-    "sound" (sound power of its mesh harmonics, as `[acoustics]` says) and "motion" (levels at sensors by the
-    transient). Default: gears, load and lines, as far as the case has them."""
+    (critical speeds), "mass" (gears, shafts, housing), "modes" (natural frequencies of the machine under load), "lines"
+    (levels at sensors by the linear machine under load), "sound" (sound power of its mesh harmonics, as `[acoustics]`
+    says) and "motion" (levels at sensors by the transient). Default: gears, load and lines, as far as the case has
+    them."""
     quantities: QuantityPatterns = ()
     """Names of the quantities that are found, `*` for any part of a name, such as
     "gear_pair.*.transmission_error_peak_to_peak_m"; what they do not need is not computed. Default: all of the
@@ -178,12 +179,9 @@ class Variation(Table):
         return () if self.speed is None else listed(self.speed)
 
     @model_validator(mode="after")
-    def _correlated_keys_are_varied(self) -> Variation:
+    def _pairs_are_correlated_once(self) -> Variation:
         pairs = set[frozenset[str]]()
         for number, one in enumerate(self.correlation):
-            for place, key in enumerate(one.keys):
-                if key not in self.vary:
-                    raise wrong("a key of [variation.vary], as it stands there", "correlation", number, "keys", place)
             pair = frozenset(one.keys)
             if len(pair) < 2 or pair in pairs:
                 raise wrong("two different keys, and each pair once", "correlation", number, "keys")
@@ -211,11 +209,10 @@ def built_distribution(varied: Varied) -> tuple[Distribution, str] | None:
     try:
         return kinds[varied.kind](*numbers[:count], *numbers[count:]), unit
     except DistributionError as error:
-        words = []
-        for one in error.findings:
-            name = _NAMED.get(one.attribute, one.attribute)
-            words.append(f"{one.expected} {unit}".strip() + f" as {name}, got {one.value:g} {unit}".rstrip())
-        raise ValueError("; ".join(words)) from None
+        words = [
+            f"{one.expected} as {_NAMED.get(one.attribute, one.attribute)}, got {one.value:g}" for one in error.findings
+        ]
+        raise ValueError("; ".join(words) + (f", all in {unit}" if unit else "")) from None
 
 
 def in_one_unit(amounts: tuple[float | str, ...]) -> tuple[list[float], str]:

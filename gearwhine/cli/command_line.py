@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Sequence
 from contextlib import ExitStack
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensError
 
 from gearwhine import __version__
 from gearwhine.cli import folder_commands, import_command
@@ -67,7 +67,8 @@ def _run_command(arguments: list[str]) -> int:
                 stream.reconfigure(errors="replace")
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
+        command = " ".join(("gearwhine", *(error.command_chain or ())))
+        sys.stderr.write(f"gearwhine: {_usage(error)}\nTry '{command} --help'.\n")
         return 2
     except KeyboardInterrupt as stop:
         return _interrupted(stop)
@@ -85,6 +86,18 @@ def _run_command(arguments: list[str]) -> int:
         sys.stderr.write(f"gearwhine: {message}\n")
         return code
     return 0
+
+
+def _usage(error: CycloptsError) -> str:
+    """Say what is wrong with the arguments of a command."""
+    if isinstance(error, UnusedCliTokensError):
+        extra = " ".join(error.unused_tokens or ())
+        return f"{' '.join(error.command_chain or ())}: expected no further argument, got {extra!r}"
+    if isinstance(error, MissingArgumentError) and error.argument is not None and not error.argument.tokens:
+        argument = error.argument
+        name = argument.name if argument.field_info.is_keyword_only else argument.name.removeprefix("--").upper()
+        return f"{' '.join(error.command_chain or ())}: expected {name}: {argument.parameter.help}"
+    return str(error)
 
 
 def _interrupted(error: BaseException) -> int:

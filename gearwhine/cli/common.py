@@ -4,9 +4,10 @@ The options are the case's name, the output folder, JSON, settings, quiet and fr
 """
 
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,7 +15,7 @@ from cyclopts import Parameter, Token
 
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
-    from gearwhine.case import LoadedCase
+    from gearwhine.case import LoadedCase, Problem
     from gearwhine.numerics.progress import Progress
 
 
@@ -79,7 +80,7 @@ def on_case(
     always_writes : bool
         Whether it writes without ``--output``, too.
     """
-    from gearwhine.case import load_case
+    from gearwhine.case import CaseError, load_case
     from gearwhine.numerics.findings import RefusedPartError
     from gearwhine.output.quantity import add_warnings
     from gearwhine.output.terminal import say_warning
@@ -96,6 +97,9 @@ def on_case(
     with shown(quiet=common.quiet) as progress:
         try:
             document = work(loaded, progress)
+        except CaseError as error:
+            error.problems = tuple(_in_file(problem, loaded.source.name) for problem in error.problems)
+            raise
         except RefusedPartError as error:
             # Parts that do not fit each other, such as bearings that let the thrust of gears through, know no file.
             error.args = (f"{loaded.source.name}: {error}",)
@@ -106,6 +110,14 @@ def on_case(
             say_warning(warning["message"])
     hand_over(document, common, show)
     return document
+
+
+def _in_file(problem: "Problem", name: str) -> "Problem":
+    """Return a problem of a key with the file of the case; one of an option as it is."""
+    from gearwhine.case import Case
+
+    of_key = re.split(r"[.[]", problem.key)[0] in Case.model_fields
+    return replace(problem, source=name) if of_key and not problem.source else problem
 
 
 def written(

@@ -33,7 +33,7 @@ def _list_examples() -> dict[str, Any]:
     """Return the names and titles of the bundled cases."""
     from gearwhine.case import bundled_cases
 
-    return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}
+    return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()], "warnings": []}
 
 
 def _example_sections(document: "Document") -> "tuple[Section, ...]":
@@ -61,7 +61,7 @@ def _copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     with staging(folder, listed=False) as place:  # the copies are the user's
         for source in sources:
             (place / source.name).write_bytes(source.read_bytes())
-    return {"folder": str(folder), "files": [source.name for source in sources]}
+    return {"folder": str(folder), "files": [source.name for source in sources], "warnings": []}
 
 
 _Results = Annotated[str, Parameter(help="A results folder; or a case, for its OUT.")]

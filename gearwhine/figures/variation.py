@@ -13,7 +13,6 @@ from gearwhine.figures.style import (
     FOOT,
     GREY,
     INK,
-    LABEL,
     LEFT,
     PALE,
     RED,
@@ -29,6 +28,7 @@ from gearwhine.figures.style import (
 )
 from gearwhine.figures.style import HEAD as STYLE_HEAD
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.variation.inputs import Pitches
 from gearwhine.variation.named_quantities import part_of, shown_quantity, shown_unit
 
 if TYPE_CHECKING:
@@ -48,7 +48,6 @@ _NAMES = 52.0  # width for the names of inputs beside bars [mm]
 _MOST_CURVES = 8
 _NO_LINE = -100.0  # highest level that stands for none [dB]
 _MOST_WIDENED = 20
-_LONG_LABEL = 30  # letters beyond which a label is smaller than a panel's height
 
 
 def draw_variation(title: str, varied: VariedResult) -> Iterator[tuple[str, Figure]]:
@@ -208,10 +207,11 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)
     label, factor = shown_quantity(one.name)
+    words, _, unit_of_label = label.partition(" [")
     beyond = "" if one.limit is None else ", red where it is beyond the limit"
     figure = sheet(
         HEAD + FOOT + rows * _HEIGHT + (rows - 1) * _GAP,
-        f"{part_of(one.name)}: {label.partition(' [')[0]}",
+        f"{part_of(one.name)}: {words}",
         f"{_begins(title, 60)}each dot is a gearbox{beyond}.",
     )
     chosen = np.isfinite(one.values)
@@ -227,14 +227,15 @@ def _scatter(title: str, varied: VariedResult, one: QuantityStatistics) -> Figur
             axes.plot(scale * one.inputs[mask, place], of_quantity, ".", color=colour, ms=2.2, alpha=0.6)
         for end in _limits_near(one, factor * one.values[chosen], factor):
             axes.axhline(end, color=RED, lw=0.8)
-        axes.set_xlabel(f"{cut_within(name, 36)} [{unit}]" if unit else cut_within(name, 44))
+        of_range = ", range" if isinstance(of_input.law, Pitches) else ""
+        axes.set_xlabel(f"{cut_within(name, 36)}{of_range} [{unit}]" if unit else cut_within(name, 44))
         if of_input.words:
             shown = range(len(of_input.words))
             axes.set_xticks(list(shown), [shortened(word, 12) for word in of_input.words])
         else:
             axes.xaxis.set_major_locator(MaxNLocator(5))
         if column == 0:
-            axes.set_ylabel(label, size=TICK if len(label) > _LONG_LABEL else LABEL)
+            axes.set_ylabel(unit_of_label.rstrip("]") or label)  # the title has the rest
     return figure
 
 
@@ -245,7 +246,8 @@ def _heard(levels: FloatArray) -> FloatArray:
 
 def _over_speed(title: str, varied: VariedResult) -> Figure:
     curves = list(varied.nominal.curves)[:_MOST_CURVES]
-    note = f"{_begins(title, 40)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest."
+    red = ", red: limit" if any(name in varied.limits for name in curves) else ""
+    note = f"{_begins(title, 32)}line: without changes, band: 5 to 95 % of the gearboxes, dashed: the highest{red}."
     figure, panels = stacked(len(curves), 34.0, 8.0, "Levels over speed", note, first=HEAD - STYLE_HEAD)
     rpm = np.abs(varied.speeds) * 30.0 / np.pi
     order = np.argsort(rpm)

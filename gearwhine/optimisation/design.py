@@ -16,10 +16,11 @@ from gearwhine.case.variation import Variation, Varied
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.distributions import Discrete, Uniform
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.optimisation.search import Space
 from gearwhine.optimisation.verification import Moving
 from gearwhine.solve.machine import plan_of
-from gearwhine.variation.inputs import Input, Pitches, inputs_of, varied_inputs
+from gearwhine.variation.inputs import Input, Pitches, inputs_of, refusals, varied_inputs
 from gearwhine.variation.samples import VariedCase
 
 AS_WRITTEN = -1.0
@@ -232,20 +233,32 @@ def _scattered(one: Input, coordinate: float, designed: Mapping[str, tuple[float
 
 
 def value_problems(source: CaseSource, inputs: Sequence[DesignInput]) -> Iterator[Problem]:
-    """Yield problems of values that their key does not take; those of parts together are told by their design."""
+    """Yield problems of values that their key does not take; see :func:`alone_warnings` of those of other keys."""
     for one in inputs:
-        ends = ((number + 0.5) / one.count for number in range(min(one.count, _MOST_CHECKED)))
-        for at in ends if one.count else (0.0, 1.0):
-            texts = list(one.overrides(at))
-            try:
-                source.changed_case(texts)
-            except CaseError as error:
-                sources = [f"--set {text}" for text in texts]
-                own = [problem for problem in error.problems if problem.source in sources]
-                name = key_of((*_TABLE, one.name))
-                yield from (replace(problem, source=name) for problem in own)
-                if not one.count:  # the other end of a range has the same
-                    break
+        for texts in _tried(one):
+            own, _ = refusals(source, texts)
+            yield from (replace(problem, source=f"{source.name}: {key_of((*_TABLE, one.name))}") for problem in own)
+            if own and not one.count:  # the other end of a range has the same
+                break
+
+
+def alone_warnings(source: CaseSource, inputs: Sequence[DesignInput]) -> Iterator[ResultWarning]:
+    """Warn of keys of which no value fits the rest of the case: designs fail unless other keys change with them."""
+    for one in inputs:
+        tried = [(texts, refusals(source, texts)[1]) for texts in _tried(one)]
+        if tried and all(others for _, others in tried):
+            texts, others = tried[0]
+            message = (
+                f"{texts[0]} alone makes no gearbox, nor do the other values tried of {one.name}: {others[0]}; designs "
+                "fail where no other key of [optimisation.design], or of 'with', changes as it has to"
+            )
+            yield warning("values alone", message, key=one.name)
+
+
+def _tried(one: DesignInput) -> Iterator[list[str]]:
+    """Yield the changes by values of a key: of a list all, of a range both ends."""
+    places = [(number + 0.5) / one.count for number in range(min(one.count, _MOST_CHECKED))]
+    yield from (list(one.overrides(at)) for at in places or (0.0, 1.0))
 
 
 def require_scatter(inputs: Sequence[DesignInput], source: CaseSource, variation: Variation) -> None:

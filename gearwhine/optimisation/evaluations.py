@@ -5,21 +5,20 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.solutions import Failure
 from gearwhine.study_folder import StudyFolder
 from gearwhine.variation.quantities import Evaluation
-from gearwhine.variation.run import outcomes_as_they_end
-from gearwhine.variation.samples import Outcome, Record, Sampled, solve_samples
-from gearwhine.workers import called, code_digest, default_workers
+from gearwhine.variation.run import sent, solved_by_client
+from gearwhine.variation.samples import Outcome, Record, Sampled
+from gearwhine.workers import called, default_workers
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client
 
 _WORTH_WORKERS = 20.0  # time of all that may come below which workers are not started [s]
 
@@ -105,22 +104,14 @@ class Evaluations:
 
     def _by_workers(self, todo: Sequence[tuple[float, ...]]) -> Iterable[list[tuple[tuple[float, ...], Outcome]]]:
         client = self._connected()
-        code = code_digest()
-        futures: dict[Future[Any], Sequence[int]] = in_thread(
-            lambda: {
-                client.submit(solve_samples, self._everywhere, [(number, np.array(key))], code, key=repr(key)): [number]
-                for number, key in enumerate(todo)
-            }
-        )
-        for solved in each_from_thread(outcomes_as_they_end(client, futures)):
+        for solved in solved_by_client(client, self._everywhere, np.array(todo), [[n] for n in range(len(todo))]):
             yield [(todo[number], outcome) for number, outcome in solved]
 
     def _connected(self) -> Client:
         """Return the client of the workers, which are started at the first call."""
         if self._client is None:
             client = self._stack.enter_context(called(self._folder, self._folder.workers or default_workers()))
-            self._everywhere = in_thread(lambda: client.scatter(self._proposed, broadcast=True, hash=False))
-            self._client = client
+            self._everywhere, self._client = sent(client, self._proposed), client
         return self._client
 
 

@@ -19,6 +19,7 @@ from gearwhine.case.optimisation import Aim, Robust
 from gearwhine.case.variation import Limit
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.names import did_you_mean
+from gearwhine.optimisation.search import FAILED
 from gearwhine.variation.named_quantities import matches, statistic_of
 from gearwhine.variation.statistics import known_limits
 
@@ -80,8 +81,9 @@ class LimitEnd:
         return sides.get(self.name, (math.nan, math.nan))[self.sign > 0.0]
 
     def excess(self, sides: Worse) -> float:
-        """Excess over the limit in its scale, not above zero where it holds."""
-        return self.sign * (self.value(sides) - self.end) / (abs(self.end) or 1.0)
+        """Excess over the limit in its scale, not above zero where it holds; that of an infinite life is finite."""
+        excess = self.sign * (self.value(sides) - self.end) / (abs(self.end) or 1.0)
+        return -FAILED if excess < -FAILED else excess
 
 
 @dataclass(frozen=True)
@@ -201,10 +203,8 @@ def goals_of(
     Raises
     ------
     CaseError
-        Where there is no aim, or one of a quantity that the gearboxes do not have.
+        Where an aim or a limit is of a quantity that the gearboxes do not have.
     """
-    if not aims:
-        raise CaseError([NO_AIM])
     problems = list[Problem]()
 
     def matching(table: str, name: str) -> tuple[str, ...]:

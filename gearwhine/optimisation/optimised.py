@@ -135,6 +135,17 @@ class Optimised:
         return chosen
 
     @property
+    def cases(self) -> dict[str, int]:
+        """Designs that are written as cases, by the name of the file; none of machines of Python."""
+        if not self.chosen or not any(one.tolerance for one in self.inputs):
+            return {}
+        best = {f"{'best' if self.front else 'nearest'}.toml": next(iter(self.chosen))}
+        if self.goals.count == 1 or not self.front:
+            return best
+        places = np.unique(np.linspace(0, len(self.front) - 1, min(len(self.front), MOST_SHOWN)).astype(int))
+        return best | {f"front-{rank}.toml": self.front[place] for rank, place in enumerate(places.tolist(), start=1)}
+
+    @property
     def best(self) -> Design | None:
         """Best design, of several aims the balanced one; the nearest to the limits where none is within them."""
         return self.designs[next(iter(self.chosen))] if self.chosen else None

@@ -32,6 +32,7 @@ from gearwhine.results.motion import (
     path_place,
     shape_column,
 )
+from gearwhine.results.optimisation import summary as summary_of_optimisation
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
 from gearwhine.results.steady_state import change_by_refining
@@ -118,8 +119,10 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
         Sentences on results that do not fit the case any more.
     """
     summaries = [Summary(document) for document in documents]
-    varied = next((one for one in documents if one.get("command") == "vary"), None)
+    studies = {one.get("command"): one for one in documents}
+    varied, optimised = studies.get("vary"), studies.get("optimise")
     sections = (
+        Section("Optimised design in short", () if optimised is None else tuple(summary_of_optimisation(optimised))),
         Section("Varied gearboxes in short", () if varied is None else tuple(summary_of_variation(varied))),
         machine_section(case, documents),
         Section("Are the results sound?", _findings(summaries, stale)),

@@ -998,8 +998,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         caption = f"Gear pairs over a turn of {' and '.join(angles)}: mean and range of {count} angles"
         yield from table_of(_TURN_COLUMNS, document["gear_pairs"], caption)
         yield (
-            "Mesh stiffness and motion take these means, with the curvature of the flank gap. All else here is of the "
-            "first angle, at which the planets stand where the case puts them"
+            "Mesh stiffness and motion take these means, with the curvature of the flank gap. Lives of bearings count "
+            "all angles. All else here is of the first one, at which the planets stand where the case puts them"
         )
     yield from _misalignments(document, with_turn=False)
     yield from _planetary(document)

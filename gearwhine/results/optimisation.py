@@ -7,7 +7,7 @@ import numpy as np
 
 from gearwhine.numerics.distributions import Discrete
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.output.quantity import document_of, in_file, unit_of
+from gearwhine.output.quantity import RPM, document_of, in_file, unit_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, table_of
 from gearwhine.results.many_solutions import failed_sentences, failed_solutions, failed_warnings, finite, numbered
 from gearwhine.variation.named_quantities import part_of, shown_quantity, statistic_of
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from gearwhine.solutions import Failure
 
 _MOST_FRONT = 12  # rows of the front on the page
-_RPM = 30.0 / np.pi
 _ENDED = {
     "budget": "all evaluations are spent",
     "converged": "the search has converged",
@@ -31,6 +30,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
     """Return an optimisation as the command's JSON."""
     chosen = [(number, label, optimised.designs[number]) for number, label in optimised.chosen.items()]
     at_bounds = optimised.at_bounds
+    files = {number: {"case": file} for file, number in reversed(optimised.cases.items())}
     document: dict[str, Any] = {
         "method": optimised.method,
         "designs": len(optimised.designs),
@@ -38,7 +38,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
         "gearboxes_about_each": optimised.gearboxes,
         "ended": optimised.ended,
         "resumed": optimised.resumed,
-        "chosen": [{"number": number + 1, "design": label} for number, label, _ in chosen],
+        "chosen": [{"number": number + 1, "design": label} | files.get(number, {}) for number, label, _ in chosen],
         "keys": [
             {
                 "key": one.name,
@@ -89,6 +89,7 @@ def optimised_document(optimised: "Optimised") -> dict[str, Any]:
                 ],
                 "aims": optimised.designs[number].aims.tolist(),
             }
+            | files.get(number, {})
             for number in (optimised.front if optimised.goals.count > 1 else [])
         ],
     } | document_of((failed_solutions(first=1),), optimised)
@@ -129,7 +130,7 @@ def _missed(limit: "LimitEnd", value: float) -> dict[str, Any]:
 
 def _verification(checked: "Verification") -> dict[str, Any]:
     return {
-        "speeds_rpm": [_RPM * abs(speed) for speed in checked.speeds],
+        "speeds_rpm": [RPM * abs(speed) for speed in checked.speeds],
         "start": _motion(checked.start),
         "designs": [_motion(one) for one in checked.designs],
         "contradicted": checked.contradicted,
@@ -147,13 +148,17 @@ def _motion(motion: "Motion | Failure") -> dict[str, Any]:
         "peak_force_ratio": {name: finite(value) for name, value in motion.peak_force_ratio.items()},
         "contact_loss": dict(motion.contact_loss),
         "highest_level_db": {sensor: level for sensor, (level, _) in motion.highest.items()},
-        "loudest_speed_rpm": {sensor: _RPM * speed for sensor, (_, speed) in motion.highest.items()},
+        "loudest_speed_rpm": {sensor: RPM * speed for sensor, (_, speed) in motion.highest.items()},
         "range_speeds": len(motion.speeds),
     }
 
 
 def _warnings(optimised: "Optimised") -> Iterator[ResultWarning]:
     yield from failed_warnings(optimised, len(optimised.designs), "failed designs", "designs")
+    without = [one for one in optimised.designs if not np.all(np.isfinite([*one.aims, *one.excesses]))]
+    if count := len(without) - len(optimised.failures):
+        message = f"{count} of {len(optimised.designs)} designs have no finite value of an aim or a limited quantity"
+        yield warning("designs without value", f"{message}, and count as failed")
     if optimised.best is not None and not optimised.front:
         missed = "; ".join(_missed(limit, value)["text"] for limit, value in optimised.missed)
         yield warning("missed limits", f"no design meets all limits; the nearest one misses {missed}")
@@ -241,9 +246,19 @@ def report(document: Document) -> Section:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    yield from summary(document)
+    yield from _front(document)
+    yield from _checked(document)
+    yield from _sentences(document)
+
+
+def summary(document: Document) -> Iterator[str | Table]:
+    """Yield the proposed designs beside the start: keys, aims and limits."""
     labels = [one["design"] for one in document["chosen"]]
     with_numbers = [f"{one['design']}: design {one['number']}" for one in document["chosen"]]
     yield from _answer(document)
+    columns = (Column("proposed", "design"), Column("design", "number", "d"), Column("case", "case", file="case"))
+    yield from table_of(columns, [one for one in document["chosen"] if "case" in one], "Cases to open")
     keys = [row for key in document["keys"] for row in (key, *({**one, "with": key["key"]} for one in key["with"]))]
     yield from table_of(
         (
@@ -279,9 +294,6 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(
         (*named, Column("limit", _limit), *shown, Column("margin", _margin)), document["limits"], "Limits"
     )
-    yield from _front(document)
-    yield from _checked(document)
-    yield from _sentences(document)
 
 
 def _answer(document: Document) -> Iterator[str]:
@@ -339,7 +351,7 @@ def _front(document: Document) -> Iterator[Table]:
     def aim(place: int) -> Callable[[Document], str]:
         return lambda row: format(shown_quantity(aims[place]["name"])[1] * row["aims"][place], ".5g")
 
-    columns = [Column("design", "number", "d")]
+    columns = [Column("design", "number", "d", file="case")]
     for place, one in enumerate(aims):
         columns.append(Column(f"{_of(one['name'])}, {shown_quantity(one['name'])[0]}", aim(place)))
     columns += [Column(one["key"], lambda row, place=place: row["keys"][place]) for place, one in enumerate(keys)]  # type: ignore[misc]

@@ -18,8 +18,8 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     Parameters
     ----------
     document : dict
-        Document with ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, or with ``motions`` that have
-        such sensors.
+        Document with ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, with ``motions`` that have
+        such sensors, or with ``mesh_lines``, which have it by sensor.
     error : BasisError or None
         None, where no basis is behind the lines: nothing is added.
     limit_hz : float or None
@@ -27,11 +27,14 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     """
     if error is None:
         return
-    rows = _sensor_lines(document)
-    frequencies = np.unique([line["frequency_hz"] for _, line in rows])
+    rows, harmonics = _sensor_lines(document), document.get("mesh_lines") or ()
+    frequencies = np.unique([line["frequency_hz"] for line in (*(line for _, line in rows), *harmonics)])
     errors = error.at(_TWO_PI * frequencies)
     for name, line in rows:
         line["uncertainty"] = float(errors[name][np.searchsorted(frequencies, line["frequency_hz"])])
+    for line in harmonics:
+        place = np.searchsorted(frequencies, line["frequency_hz"])
+        line["uncertainty"] = {name: float(of_sensor[place]) for name, of_sensor in errors.items()}
     if limit_hz is not None:
         document["basis_error"] = _bands(error, limit_hz)
 

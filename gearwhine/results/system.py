@@ -769,6 +769,11 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from line_content(document)
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
+        if turning and "order_lines" not in document:
+            yield (
+                "Lines of the meshes over speed are left out where carriers turn: `sweep` over the speed has them with "
+                "their sidebands"
+            )
     yield from _over_speed(document)
     yield from kept_sentence(document, SYSTEM_OPTIONS, "modes")
 

@@ -24,6 +24,7 @@ _MOST_INPUTS = 3  # of a quantity in the table of what matters
 _MOST_RANKS, _MOST_RANKED = 3, 4  # worst gearboxes of a quantity, and quantities up to which they are told
 _MANY_AT_END = 0.05  # part of the gearboxes that are the loudest at an end of the speeds above which it is warned of
 _SAMPLES_OF_AN_INPUT = 10  # gearboxes for each input below which they are said to be too few to rank inputs
+_TINY = 1e-6  # probability by chance below which it is not told
 _WIDE_INTERVAL = 0.2  # width of an index' interval above which more samples are advised
 
 
@@ -123,6 +124,7 @@ VARIED = (
             Quantity("unit", "0.unit"),
             Quantity("distribution", lambda row: type(row[0].law).__name__.lower()),
             Quantity("tolerance", "0.tolerance"),
+            Quantity("entries", lambda row: len(row[0].keys)),
             Quantity("mean", lambda row: float(row[1].mean())),
             Quantity("std", lambda row: float(row[1].std())),
         ),
@@ -175,6 +177,7 @@ def varied_document(varied: "VariedResult") -> dict[str, Any]:
 
 def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
     yield from failed_warnings(varied, len(varied.outcomes), "failed samples", "gearboxes")
+    yield from _lacking_warnings(varied)
     widths = {
         one.name: float(np.ptp(one.indices.total_interval, axis=1).max())
         for one in varied.headlines
@@ -197,6 +200,19 @@ def _warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
                 f"{100.0 * part:.0f} % of the gearboxes: beyond that end the level may be higher; take a wider range"
             )
             yield warning("loudest speed", message, share=part)
+
+
+def _lacking_warnings(varied: "VariedResult") -> Iterator[ResultWarning]:
+    """Warn of quantities that some gearboxes do not have, such as the frequency of a mode that is not found again."""
+    solved = len(varied.outcomes) - len(varied.failures)
+    for one in varied.quantities:
+        lacking = solved - int(np.sum(~np.isnan(varied.all_values(one.name))))
+        if lacking:
+            what = f"{part_of(one.name)}, {shown_quantity(one.name)[0].partition(' [')[0]}"
+            why = ": the mode is not found again there" if ".natural_frequency_" in one.name else ""
+            limited = "; these count as beyond its limit" if one.limit is not None else ""
+            message = f"{lacking} of {solved} gearboxes have no {what}{why}{limited}"
+            yield warning("missing values", message, quantity=one.name, gearboxes=lacking)
 
 
 def runout_twice_warnings(inputs: Sequence["Input"], gears: Sequence["Gear"] = ()) -> Iterator[ResultWarning]:
@@ -280,9 +296,15 @@ def _deviation(row: Document) -> str:
     return f"{shown_unit(row['unit'])[1] * row['std']:.3g}" if _is_drawn_number(row) else ""
 
 
+def _alike(row: Document) -> str:
+    """Return that several entries have one value, where they do."""
+    entries = row.get("entries", 1)  # not in results of earlier versions
+    return f"; one value for {entries} entries" if entries > 1 else ""
+
+
 _INPUT_COLUMNS = (
     Column("key", "key"),
-    Column("tolerance", lambda row: row["tolerance"] or row["distribution"]),
+    Column("tolerance", lambda row: (row["tolerance"] or row["distribution"]) + _alike(row)),
     Column("unit", lambda row: shown_unit(row["unit"])[0] if _is_drawn_number(row) else ""),
     Column("mean", _mean),
     Column("std", _deviation),
@@ -328,9 +350,12 @@ def summary(document: Document) -> Iterator[str | Table]:
     """Yield what a quality engineer asks first: the yield, gearboxes beyond each limit, the worst, speeds, inputs."""
     if "yield" in document:
         share = document["yield"]
-        yield f"Yield: {share['good']} of {share['total']} gearboxes are within all limits, {_percents(share)}."
+        of_all = _percents(share).replace("(", "(95 % interval ")
+        yield f"Yield: {share['good']} of {share['total']} gearboxes are within all limits, {of_all}."
     limited = [row for row in _told(document) if "within" in row]
-    yield from table_of(_LIMIT_COLUMNS, limited, "Gearboxes beyond the limits; in brackets: 95 % interval")
+    yield from table_of(
+        _LIMIT_COLUMNS, limited, "Gearboxes beyond the limits; nominal: without changes, in brackets: 95 % interval"
+    )
     yield from _about_nominal(limited, document)
     ranks = _MOST_RANKS if len(document["headlines"]) <= _MOST_RANKED else 1
     files = ", each with a case of its own, worst-….toml" if any("case" in row for row in document["worst"]) else ""
@@ -383,10 +408,11 @@ def report(document: Document) -> Section:
 
 def _content(document: Document) -> Iterator[str | Table]:
     rows = _told(document)
-    yield from table_of(_COLUMNS, rows, "Distributions")
+    yield from table_of(_COLUMNS, rows, "Distributions; nominal: the gearbox without changes")
     leading = [row for row in rows if row["name"] in document["headlines"]]
-    by_range = any(row["key"].endswith(".errors.pitch") for row in document["inputs"])
-    if by_range and not any("sobol_total" in row for row in leading):
+    by_range = [row["key"] for row in document["inputs"] if row["key"].endswith(".errors.pitch")]
+    explaining = {key for row in leading for key in row["explained"]}
+    if set(by_range) - explaining and not any("sobol_total" in row for row in leading):
         yield (
             "Pitch deviations of all teeth are judged by their range alone here, which may explain little of what they "
             "do: --indices counts all of them, and --widen tells what their class costs."
@@ -396,7 +422,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     standing = ""
     if document["representative"] < document["samples"]:
         standing = f", {document['representative']} of which stand for the production in the table of distributions"
-    yield f"{document['samples']} gearboxes{standing}{ending(document)}"
+    yield f"{document['samples']} gearboxes were drawn{standing}{ending(document)}."
 
 
 def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
@@ -404,9 +430,9 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
     shown, unexplained = list[Document](), list[str]()
     by_index = any("sobol_total" in row for row in rows)
     for row in rows:
-        total, ranks = row.get("sobol_total"), row["rank_correlation"]
+        total, ranks, proven = row.get("sobol_total"), row["rank_correlation"], row["leading_ranks"]
         values = {key: value[0] for key, value in total.items()} if total else row["explained"]
-        first = (sorted(values, key=lambda key: -values[key]) or list(row["leading_ranks"]))[:_MOST_INPUTS]
+        first = (sorted(values, key=lambda key: -values[key]) or list(proven))[:_MOST_INPUTS]
         if not first:
             unexplained.append(f"{part_of(row['name'])}, {shown_quantity(row['name'])[0].partition(' [')[0]}")
         for key in first:
@@ -418,7 +444,7 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
                     "value": f"{values[key]:.2f}" if key in values else "",
                     "interval": f"{total[key][1]:.2f} to {total[key][2]:.2f}" if total else "",
                     "alone": f"{row['sobol_first'][key][0]:.2f}" if total else "",
-                    "rank": f"{ranks[key]:+.2f} (p={row['rank_chance'][key]:.0e})" if key in ranks else "",
+                    "rank": _rank(ranks[key], row["rank_chance"][key]) if key in (total or proven) else "",
                 }
             )
     caption = (
@@ -441,6 +467,11 @@ def _what_matters(rows: Sequence[Document]) -> Iterator[str | Table]:
             f"No input alone explains {'; '.join(unexplained)}, and no rank correlation is beyond chance: more "
             "samples, or --indices, may tell."
         )
+
+
+def _rank(correlation: float, chance: float) -> str:
+    """Return a rank correlation with its probability by chance."""
+    return f"{correlation:+.2f} (p {f'= {chance:.0e}' if chance > _TINY else f'< {_TINY:.0e}'})"
 
 
 def _what_wider_ones_cost(document: Document) -> Iterator[str | Table]:

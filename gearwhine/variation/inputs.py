@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -38,6 +39,8 @@ _RAYLEIGH_END = np.sqrt(-2.0 * np.log(0.0027))
 _MICROMETRES, _MILLIMETRES = 1e6, 1e3
 _SEEDS = 2**31
 _LARGEST_TABLE = 20_000_000  # bytes
+_OF_NO_GEARBOX = frozenset({"title", "notes", "provenance", "measured", "variation", "optimisation", "detection"})
+"""Keys of the top level that no gearbox follows from."""
 
 
 @dataclass(frozen=True)
@@ -183,6 +186,17 @@ def inputs_of(
     return tuple(inputs)
 
 
+def refusals(source: CaseSource, texts: Sequence[str]) -> tuple[list[Problem], list[Problem]]:
+    """Return why a case does not take changes: problems of the changed keys, and those that follow at others."""
+    try:
+        source.changed_case(texts)
+    except CaseError as error:
+        changes = [f"--set {text}" for text in texts]
+        of_keys = [problem for problem in error.problems if problem.source in changes]
+        return of_keys, [problem for problem in error.problems if problem not in of_keys]
+    return [], []
+
+
 class _CannotVaryError(Exception):
     def __init__(self, expected: str, *at: str | int, value: object = UNSAID) -> None:
         self.expected, self.at, self.value = expected, at, value
@@ -204,6 +218,8 @@ class _Keys:
         """Yield the inputs of a varied key: one, or one for each entry where these are independent."""
         document = self._document
         places = _places(document, key)
+        if any(place[0] in _OF_NO_GEARBOX for place in places):
+            raise _CannotVaryError("a key that a gearbox follows from")
         there = [place for place in places if look_up(document, place) is not NOTHING]
         if len(places) > 1:
             # Entries without the key have it from now on, where they take it.
@@ -257,7 +273,8 @@ class _Keys:
         except (ValueError, DistributionError, ToleranceZoneError, GearError) as error:
             findings = getattr(error, "findings", ())
             text = "; ".join(finding.expected for finding in findings) or str(error)
-            raise _CannotVaryError(text, varied.kind) from None
+            at = "weights" if any(finding.attribute == "weights" for finding in findings) else varied.kind
+            raise _CannotVaryError(text, at, value=list(varied.weights) if at == "weights" else UNSAID) from None
 
     def _of_class(self, tolerance_class: int, place: Location) -> Distribution | Pitches:
         """Return the distribution of an error of a gear in a tolerance class [µm], of pitches [m]."""
@@ -309,9 +326,15 @@ def _of_file(path: Path, column: str, files: InputFiles) -> tuple[Measured, str]
     """Return the distribution of a column of a table, and its unit."""
     if path.stat().st_size > _LARGEST_TABLE:
         raise ValueError(f"a table of at most {_LARGEST_TABLE // 10**6} MB")
-    rows: list[list[str]] = files.read(path, _rows_of)
-    heads = [head.strip() for head in rows[0]] if rows else []
+    rows: list[tuple[int, list[str]]] = files.read(path, _rows_of)
+    if len(rows) < 3:
+        raise ValueError(f"a name in the first line of {path.name}, and two values or more below")
+    heads = [head.strip() for head in rows[0][1]]
     names = [re.sub(r"\s*\[[^\]]*\]$", "", head) for head in heads]
+    if any(_is_number(head) for head in heads):
+        raise ValueError(f"names of the columns in the first line of {path.name}, which has {', '.join(heads)}")
+    if column and names.count(column) > 1:
+        raise ValueError(f"one column {column!r} in {path.name}, which has {names.count(column)}")
     if column and column not in names:
         raise ValueError(f"a table with the column {column!r}; it has {', '.join(names)}{did_you_mean(column, names)}")
     if not column and len(heads) != 1:
@@ -320,18 +343,28 @@ def _of_file(path: Path, column: str, files: InputFiles) -> tuple[Measured, str]
     unit = (re.search(r"\[([^\]]*)\]$", heads[place]) or ["", ""])[1]
     if unit and split_quantity(f"1 {unit}") is None:
         raise ValueError(f"a known unit in brackets behind {names[place]!r}; {unit!r} is none")
-    numbers = []
-    for number, row in enumerate(rows[1:], start=2):
-        try:
-            numbers.append(float(row[place]))
-        except (ValueError, IndexError):
-            raise ValueError(f"a number in line {number} of {path.name}, column {names[place]!r}") from None
-    return Measured(numbers), unit
+    for line, row in rows[1:]:
+        if len(row) <= place or not _is_number(row[place]):
+            raise ValueError(f"a finite number in line {line} of {path.name}, column {names[place]!r}")
+    return Measured([float(row[place]) for _, row in rows[1:]]), unit
 
 
-def _rows_of(path: Path) -> list[list[str]]:
+def _is_number(cell: str) -> bool:
+    """Whether a cell of a table is a finite number."""
+    try:
+        return math.isfinite(float(cell))
+    except ValueError:
+        return False
+
+
+def _rows_of(path: Path) -> list[tuple[int, list[str]]]:
+    """Return the rows of a table that are not empty, each with the number of its line."""
     with path.open(encoding="utf-8-sig", newline="") as stream:
-        return [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+        table = csv.reader(stream)
+        try:
+            return [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
+        except (UnicodeDecodeError, csv.Error):
+            raise ValueError(f"a table of text in UTF-8; {path.name} is none") from None
 
 
 def _of_fit(written: object, varied: Varied, key: str) -> tuple[Normal, str]:
@@ -426,7 +459,7 @@ def correlation_matrix(inputs: Sequence[Input], variation: Variation) -> FloatAr
     Raises
     ------
     CaseError
-        Where a key has several values of its own, or the coefficients cannot be together.
+        Where a key is not varied or has several values, or the coefficients cannot be together.
     """
     if not variation.correlation:
         return None
@@ -435,8 +468,9 @@ def correlation_matrix(inputs: Sequence[Input], variation: Variation) -> FloatAr
     refusal, names, matrix = Refusal(), [one.name for one in inputs], np.eye(len(inputs))
     for number, pair in enumerate(variation.correlation):
         for place, key in enumerate(pair.keys):
-            if variation.vary[key].independent:
-                expected = "a key with one value; this one has an independent value for each entry"
+            if key not in names and (key not in variation.vary or variation.vary[key].independent):
+                expected = "a key of [variation.vary] with one value, or an entry of an independent one"
+                expected += did_you_mean(key, names)
                 refusal.add(Problem(f"variation.correlation[{number}].keys[{place}]", key, expected))
         if all(key in names for key in pair.keys):  # others are refused themselves
             first, second = (names.index(key) for key in pair.keys)

@@ -9,18 +9,20 @@ import uuid
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property, partial
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
 from gearwhine.coupling import CouplingError, Machine
+from gearwhine.coupling.linear.tracked_modes import ObservedModes
 from gearwhine.coupling.load_analysis.load_warnings import find_load
 from gearwhine.numerics.arrays import FloatArray
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.solutions import solution_key
 from gearwhine.solve.radiated_power import Radiations
 from gearwhine.variation.inputs import Input, Wider, inputs_at
-from gearwhine.variation.quantities import UNDER_LOAD, Evaluation, Wanted, evaluate
+from gearwhine.variation.quantities import UNDER_LOAD, Evaluation, Wanted, evaluate, modes_of
 from gearwhine.variation.samples import Outcome, outcome_of
 
 Made = Machine | Mapping[str, float]
@@ -65,8 +67,16 @@ class VariedMachine:
         """Find the quantities of a sample; of None those of the start."""
         found = self.made(point)
         if not isinstance(found, Machine):
-            return Evaluation({name: float(value) for name, value in found.items()})
-        return evaluate(found, self.wanted, self.radiations.of(found) if self.wanted.has_sound else None)
+            return Evaluation({name: float(value) for name, value in found.items() if self.wanted.has(name)})
+        modes = None if point is None else lambda: self.nominal_modes
+        return evaluate(found, self.wanted, self.radiations.of(found) if self.wanted.has_sound else None, modes)
+
+    @cached_property
+    def nominal_modes(self) -> ObservedModes:
+        """Modes of the start."""
+        if not isinstance(self.start, Machine):
+            raise CouplingError("modes: expected a start that is a machine, as the others")
+        return modes_of(self.start, self.wanted)
 
     def solve(self, point: FloatArray | None) -> Outcome:
         """Find the quantities of a sample; errors are returned as failures, not raised."""
@@ -102,6 +112,9 @@ def made(make: Maker, values: Mapping[str, float]) -> Made:
         raise CouplingError(str(error)) from error
     if not isinstance(found, Machine | Mapping):
         raise CouplingError(f"{make!r} returned {found!r:.60}; expected a gearwhine.Machine, or numbers by name")
+    for name, value in found.items() if isinstance(found, Mapping) else ():
+        if not isinstance(value, Real):
+            raise CouplingError(f"{make!r} returned {value!r:.60} as {name!r}; expected a number")
     return found
 
 

@@ -50,6 +50,8 @@ HARMONICS = 3
 """Number of harmonics of a transmission error."""
 CRITICAL_SPEEDS = 3
 """Number of critical speeds of a shaft."""
+TRACKED_MODES = 12
+"""Number of natural frequencies of a machine."""
 _AT_SENSOR, _OF_SOUND = "dB re 1 µm/s²", "dB re 1 pW"
 
 QUANTITIES = (
@@ -71,6 +73,7 @@ QUANTITIES = (
     NamedQuantity("load", "planetary", "mesh_load_factor", "mesh load factor K_γ"),
     *(NamedQuantity("rotors", "rotor", f"critical_speed_{one}_rpm") for one in range(1, CRITICAL_SPEEDS + 1)),
     *(NamedQuantity("mass", kind, "mass_kg") for kind in ("gear", "rotor", "housing", "machine")),
+    *(NamedQuantity("modes", "machine", f"natural_frequency_{one}_hz") for one in range(1, TRACKED_MODES + 1)),
     NamedQuantity("lines", "sensor", "level_db", "highest level over speed", _AT_SENSOR),
     NamedQuantity("lines", "sensor", "loudest_speed_rpm"),
     NamedQuantity("sound", "housing", "sound_power_db", "highest sound power over speed", _OF_SOUND),

@@ -21,18 +21,19 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh, transmission_error_phasors
 from gearwhine.coupling.linear.lines_over_speed import LinesOverSpeed, housing_rates, lines_over_speed, sensor_rms
+from gearwhine.coupling.linear.tracked_modes import ObservedModes, observed_modes
 from gearwhine.coupling.load_analysis.load_warnings import load_or_reason
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.signals.spectrum import ACCELERATION_REFERENCE
 from gearwhine.numerics.arrays import FloatArray
+from gearwhine.output.quantity import RPM
 from gearwhine.rotors.analyses.critical_speeds import critical_speeds
-from gearwhine.variation.named_quantities import CRITICAL_SPEEDS, HARMONICS
+from gearwhine.variation.named_quantities import CRITICAL_SPEEDS, HARMONICS, TRACKED_MODES
 
 if TYPE_CHECKING:  # with kernels of its own
     from gearwhine.coupling.sweep.line_sound import RadiatedPower
 
-_RPM = 30.0 / np.pi
 _SILENCE = 1e-12  # acceleration that stands for none [m/s²]
 _NO_SOUND = -100.0  # sound power level that stands for none [dB]
 
@@ -95,15 +96,29 @@ Named = Iterator[tuple[str, float | FloatArray | Callable[[], float]]]
 """Quantities by name; a function finds one that takes long."""
 
 
-def evaluate(machine: Machine, wanted: Wanted, radiated: RadiatedPower | None = None) -> Evaluation:
-    """Find the quantities of a gearbox; its sound needs the radiation of its housing.
+def evaluate(
+    machine: Machine,
+    wanted: Wanted,
+    radiated: RadiatedPower | None = None,
+    modes: Callable[[], ObservedModes] | None = None,
+) -> Evaluation:
+    """Find the quantities of a gearbox.
+
+    Parameters
+    ----------
+    machine : Machine
+    wanted : Wanted
+    radiated : RadiatedPower or None
+        Radiation of its housing, which its sound needs.
+    modes : callable or None
+        Gives the modes of the gearbox without changes, by which its own are named; None of that itself.
 
     Raises
     ------
     gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError, ...
         Where a machine with these values cannot be solved.
     """
-    gearbox = _Gearbox(machine, wanted, radiated)
+    gearbox = _Gearbox(machine, wanted, radiated, modes)
     return _evaluation(wanted, {analysis: ANALYSES[analysis].find(gearbox) for analysis in wanted.analyses})
 
 
@@ -135,6 +150,7 @@ class _Gearbox:
     machine: Machine
     wanted: Wanted
     radiated: RadiatedPower | None = None
+    modes: Callable[[], ObservedModes] | None = None
 
     @cached_property
     def load(self) -> SolvedLoad | None:
@@ -148,6 +164,12 @@ class _Gearbox:
     def loaded(self) -> LoadedMachine:
         """Machine about its operating point."""
         return load_machine(self.machine, None if self.load is None else self.load.point)
+
+    @cached_property
+    def observed_modes(self) -> ObservedModes:
+        """Modes about the operating point."""
+        masses = {shaft.name: self.machine.rotor(shaft.name).mass for shaft in self.machine.shafts}
+        return observed_modes(self.loaded.coupled, masses)
 
     @cached_property
     def speeds(self) -> tuple[float, ...]:
@@ -179,7 +201,7 @@ class _Gearbox:
     @cached_property
     def pairs(self) -> Sequence[LoadedGearPair]:
         """Gear pairs under load; of an assembled machine those of it."""
-        if {"lines", "sound", "motion"} & set(self.wanted.analyses):
+        if {"modes", "lines", "sound", "motion"} & set(self.wanted.analyses):
             return self.loaded.pairs
         left_to_load = any(pair.misalignment is None for pair in self.machine.gear_pairs)
         if not left_to_load or self.load is None:
@@ -269,7 +291,7 @@ def _of_rotors(gearbox: _Gearbox) -> Named:
     for name, (bearings, _) in bearings_on_rigid_seats(machine).items():
         found = critical_speeds(machine.rotor(name), bearings, count=2 * CRITICAL_SPEEDS).forward
         for number, speed in enumerate(found[:CRITICAL_SPEEDS], start=1):
-            yield f"rotor.{name}.critical_speed_{number}_rpm", _RPM * float(speed)
+            yield f"rotor.{name}.critical_speed_{number}_rpm", RPM * float(speed)
 
 
 def _of_mass(gearbox: _Gearbox) -> Named:
@@ -286,6 +308,18 @@ def _of_mass(gearbox: _Gearbox) -> Named:
         yield "machine.mass_kg", housing.mass + sum(rotors.values())
 
 
+def modes_of(machine: Machine, wanted: Wanted) -> ObservedModes:
+    """Return the modes of the gearbox without changes, by which those of the others are named."""
+    return _Gearbox(machine, wanted).observed_modes
+
+
+def _of_modes(gearbox: _Gearbox) -> Named:
+    nominal = gearbox.observed_modes if gearbox.modes is None else gearbox.modes()
+    found = nominal.found_in(gearbox.observed_modes)[:TRACKED_MODES] / (2.0 * np.pi)
+    for number, frequency in enumerate(found.tolist(), start=1):
+        yield f"machine.natural_frequency_{number}_hz", frequency
+
+
 def _of_lines(gearbox: _Gearbox) -> Named:
     over = gearbox.over_speed
     rms = np.array([sensor_rms(one, gearbox.limit) for one in gearbox.at_speeds]).T if over is None else over.rms
@@ -298,7 +332,7 @@ def _highest(gearbox: _Gearbox, name: str, name_of_speed: str, levels: FloatArra
     place = int(np.argmax(levels))
     yield name, float(levels[place])
     if len(levels) > 1:
-        yield name_of_speed, _RPM * abs(float(gearbox.speeds[place]))
+        yield name_of_speed, RPM * abs(float(gearbox.speeds[place]))
     yield name, levels
 
 
@@ -353,13 +387,14 @@ ANALYSES: Mapping[str, Analysis] = {
     "load": Analysis(_of_load, ("rotor", "bearing", "operation")),
     "rotors": Analysis(_of_rotors, ("rotor",)),
     "mass": Analysis(_of_mass, ("rotor", "operation")),
+    "modes": Analysis(_of_modes, ("rotor", "operation")),
     "lines": Analysis(_of_lines, ("rotor", "operation", "gear_pair")),
     "sound": Analysis(_of_sound, ("housing", "rotor", "operation", "gear_pair")),
     "motion": Analysis(_of_motion, ("rotor", "operation", "transient")),
 }
 """Analyses by name, in the order of their quantities."""
 
-UNDER_LOAD = frozenset({"gears", "load", "lines", "sound", "motion"})
+UNDER_LOAD = frozenset({"gears", "load", "modes", "lines", "sound", "motion"})
 """Analyses about an operating point."""
 
 

@@ -105,25 +105,37 @@ def _solved_by_workers(
 ) -> Iterator[list[tuple[int, Outcome]]]:
     """Yield each batch as workers have solved it."""
     with called(folder, min(workers, len(batches))) as client:
-        futures = in_thread(lambda: _submitted(client, varied, points, batches))
-        yield from each_from_thread(outcomes_as_they_end(client, futures))
+        yield from solved_by_client(client, sent(client, varied), points, batches)
 
 
-def _submitted(
-    client: Client, varied: Sampled, points: FloatArray, batches: Sequence[Sequence[int]]
-) -> dict[Future[Any], Sequence[int]]:
-    """Submit every batch."""
+def sent(client: Client, varied: Sampled) -> Future[Any]:
+    """Return gearboxes as every worker has them."""
+    return in_thread(lambda: client.scatter(varied, broadcast=True, hash=False))
+
+
+def solved_by_client(
+    client: Client, everywhere: Future[Any], points: FloatArray, batches: Sequence[Sequence[int]]
+) -> Iterator[list[tuple[int, Outcome]]]:
+    """Yield the outcomes of each batch of numbers of points (n, d), as workers have solved it."""
     code = code_digest()
-    everywhere = client.scatter(varied, broadcast=True, hash=False)
-    return {
-        client.submit(
-            solve_samples, everywhere, [(number, points[number]) for number in batch], code, key=f"batch-{batch[0]}"
-        ): batch
-        for batch in batches
-    }
+
+    def submitted() -> dict[Future[Any], Sequence[int]]:
+        # A key stays that of one task for as long as the client lives, which may be asked for other points later.
+        return {
+            client.submit(
+                solve_samples,
+                everywhere,
+                [(number, points[number]) for number in batch],
+                code,
+                key=f"{batch[0]}-{points[batch[0]].tolist()}",
+            ): batch
+            for batch in batches
+        }
+
+    yield from each_from_thread(_outcomes_as_they_end(client, in_thread(submitted)))
 
 
-def outcomes_as_they_end(
+def _outcomes_as_they_end(
     client: Client, futures: dict[Future[Any], Sequence[int]]
 ) -> Iterator[list[tuple[int, Outcome]]]:
     """Yield the outcomes of each batch as it comes."""

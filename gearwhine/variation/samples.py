@@ -19,6 +19,7 @@ import numpy as np
 
 from gearwhine.case import Case, CaseSource
 from gearwhine.coupling import Machine
+from gearwhine.coupling.linear.tracked_modes import ObservedModes
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.from_case.given_housing import given_housing, housing_key
 from gearwhine.from_case.machine import describe_machine
@@ -33,7 +34,7 @@ from gearwhine.solve.housing_modes import solve_housing, with_modes_of
 from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, solve_pairs
 from gearwhine.solve.radiated_power import radiated_power_of
 from gearwhine.variation.inputs import Input, Wider, inputs_at
-from gearwhine.variation.quantities import UNDER_LOAD, Evaluation, Wanted, evaluate, evaluate_pairs
+from gearwhine.variation.quantities import UNDER_LOAD, Evaluation, Wanted, evaluate, evaluate_pairs, modes_of
 from gearwhine.workers import require_same_code
 
 if TYPE_CHECKING:  # with kernels of its own
@@ -121,7 +122,13 @@ class VariedCase:
         if "motion" in wanted.analyses:
             wanted = replace(wanted, plan=plan_of(case))
         machine = self.machine(case)
-        return evaluate(machine, wanted, self.radiated_by(machine.housing_component))
+        modes = None if point is None else lambda: self.nominal_modes
+        return evaluate(machine, wanted, self.radiated_by(machine.housing_component), modes)
+
+    @cached_property
+    def nominal_modes(self) -> ObservedModes:
+        """Modes of the case without changes."""
+        return modes_of(self.machine(self.case(None)), self.wanted)
 
     @cached_property
     def start_warnings(self) -> list[ResultWarning]:
@@ -296,7 +303,7 @@ def _line(number: int, point: FloatArray, outcome: Outcome) -> dict[str, Any]:
     begin: dict[str, Any] = {"number": number, "point": point.tolist()}
     if isinstance(outcome, Failure):
         return begin | {"failure": outcome.message, "traceback": outcome.traceback}
-    numbers = {name: value if np.isfinite(value) else None for name, value in outcome.numbers.items()}
+    numbers = {name: None if np.isnan(value) else value for name, value in outcome.numbers.items()}
     curves = {name: curve.tolist() for name, curve in outcome.curves.items()}
     return begin | {"numbers": numbers} | ({"curves": curves} if curves else {})
 

@@ -29,8 +29,8 @@ class Unbalance:
     phase: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check that position, moment and phase are finite."""
-        at, moment = Number(at_least=0.0, unit="m"), Number(unit="kg·m")
+        """Check that position, moment and phase are finite, and none of the first two negative."""
+        at, moment = Number(at_least=0.0, unit="m"), Number(at_least=0.0, unit="kg·m")
         rules = {"at": at, "moment": moment, "phase": Number(unit="rad")}
         refuse(attribute_findings(("unbalance", ""), self, **rules), RotorError)
 

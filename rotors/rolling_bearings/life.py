@@ -43,6 +43,7 @@ from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads
 from gearwhine.rotors.rolling_bearings.equilibrium import RollingState
 from gearwhine.rotors.rolling_bearings.ratings import Row, contact_ratings, dynamic_rating
 from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
+from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing
 from gearwhine.rotors.rolling_bearings.rows import FourPointRow
 
 _MILLION = 1e6
@@ -137,8 +138,12 @@ def rated_revolutions(state: RollingState, dynamic: float) -> float | None:
     load = equivalent_load(state)
     if load is None:
         return None
-    exponent = 10.0 / 3.0 if isinstance(state.bearing.rows[0], LineContactRow) else 3.0
-    return float("inf") if load == 0.0 else _MILLION * float((dynamic / load) ** exponent)
+    return float("inf") if load == 0.0 else _MILLION * float((dynamic / load) ** life_exponent(state.bearing))
+
+
+def life_exponent(bearing: RollingBearing) -> float:
+    """Return the power p by which the basic rating life falls with the load."""
+    return 10.0 / 3.0 if isinstance(bearing.rows[0], LineContactRow) else 3.0
 
 
 def reference_revolutions(state: RollingState, dynamic: float | None = None) -> float:

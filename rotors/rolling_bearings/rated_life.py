@@ -1,11 +1,22 @@
-"""Rated lives of rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281, by the maker's rating or the geometry's."""
+"""Rated lives of rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281, by the maker's rating or the geometry's.
+
+Under loads that change, each for an even part of the revolutions, parts of the life add up (Palmgren 1924, Miner 1945):
+1/L = mean(1/L_i), and the equivalent load is P = mean(P_i^p)^(1/p).
+"""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from gearwhine.rotors.rolling_bearings.equilibrium import RollingState
-from gearwhine.rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+from gearwhine.rotors.rolling_bearings.life import (
+    equivalent_load,
+    life_exponent,
+    rated_revolutions,
+    reference_revolutions,
+)
 
 _HOUR = 3600.0
 
@@ -19,10 +30,13 @@ class BearingLife:
     state : RollingState
     speed : float or None
         Speed of its shaft in operation [rad/s]; None or 0 where it has no life in hours.
+    over_turn : tuple of RollingState
+        The bearing under each of the loads that it has for even parts of the time; none where its load is constant.
     """
 
     state: RollingState
     speed: float | None
+    over_turn: tuple[RollingState, ...] = ()
 
     @property
     def rating(self) -> float:
@@ -37,7 +51,10 @@ class BearingLife:
     @property
     def equivalent_load(self) -> float | None:
         """Equivalent dynamic load P by ISO 281 [N]; None where it is not defined."""
-        return equivalent_load(self.state)
+        loads = [equivalent_load(state) for state in self._states]
+        power = life_exponent(self.state.bearing)
+        known = [load**power for load in loads if load is not None]
+        return float(np.mean(known) ** (1.0 / power)) if len(known) == len(loads) else None
 
     @property
     def life(self) -> float | None:
@@ -52,5 +69,13 @@ class BearingLife:
     def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:
         if not self.speed:
             return None
-        revolutions = life(self.state, self.rating)
-        return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
+        revolutions = [life(state, self.rating) for state in self._states]
+        known = [1.0 / of_state for of_state in revolutions if of_state is not None]
+        if len(known) < len(revolutions):
+            return None
+        used = float(np.mean(known)) * abs(self.speed) * _HOUR / (2.0 * math.pi)
+        return 1.0 / used if used > 0.0 else math.inf
+
+    @property
+    def _states(self) -> tuple[RollingState, ...]:
+        return self.over_turn or (self.state,)

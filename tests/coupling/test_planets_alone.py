@@ -1,11 +1,15 @@
 """Planets alone on their pins, and lives of their bearings: at the speed relative to the carrier, by hand."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from planetary_machines import set_parts, shaft
 
 from gearwhine.coupling import Machine, MountedBearing
 from gearwhine.coupling.analyses.shafts_alone import planet_warnings, shaft_settings, solve_shafts
 from gearwhine.coupling.load_analysis.solved_load import solve_load
+from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing
 
 SPEED = 100.0
@@ -39,6 +43,23 @@ def test_bearings_of_a_planet_live_by_its_speed_on_the_pin(machine: Machine) -> 
     lives = {bearing.load.name: bearing.rated for bearing in solved.bearings if bearing.rated is not None}
     assert sorted(lives) == ["p 0.01 2", "p 0.05 2"]
     assert [life.speed for life in lives.values()] == pytest.approx([ON_PIN] * 2)
+
+
+def test_bearings_of_a_planet_live_by_their_loads_over_a_turn(machine: Machine) -> None:
+    """Past a force on the carrier: at each angle sun and ring push both bearings with 2 F cos 20° of their meshes."""
+    solved = solve_load(replace(machine, forces=[ShaftForce("c", 0.03, (0.0, -30000.0, 0.0))]))
+    mesh = [(one.pair.driver.name, one.pair.driven.name) for one in solved.point.pairs].index(("s", "p 2"))
+    mesh_force = np.array([point.pairs[mesh].force for point in solved.point.over_turn])
+    assert np.ptp(mesh_force) > 0.2 * mesh_force.mean()
+    rated = {bearing.load.name: bearing.rated for bearing in solved.bearings if bearing.rated is not None}
+    names = [bearing.load.name for bearing in solved.bearings]
+    forces = np.array([[point.bearings[names.index(name)].force for name in rated] for point in solved.point.over_turn])
+    across = np.hypot(*forces.sum(axis=1)[:, :2].T)
+    assert across == pytest.approx(2.0 * mesh_force * np.cos(np.radians(20.0)), rel=1e-3)
+    radial = np.hypot(forces[..., 0], forces[..., 1])
+    expected = np.mean(radial**3.0, axis=0) ** (1.0 / 3.0)
+    assert np.all(np.abs(expected / radial[0] - 1.0) > 0.02)
+    assert [life.equivalent_load for life in rated.values()] == pytest.approx(expected.tolist(), rel=1e-6)
 
 
 def test_a_shaft_alone_in_another_one_lives_by_its_speed_against_that() -> None:

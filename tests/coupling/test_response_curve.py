@@ -259,3 +259,15 @@ def test_a_point_between_two_of_a_branch_is_on_it_where_it_is_as_near_as_predict
     assert not holds(2.5, 1.5)
     branch.speeds = [1.25, 1.25]
     assert holds(1.25, 0.0)
+
+
+@pytest.mark.parametrize(("climbed", "ending", "kept"), [(0.31, "steep", 0), (0.29, "points", 8)])
+def test_points_on_the_way_up_without_a_top_are_left_out(climbed: float, ending: str, kept: int) -> None:
+    """Eight points since the speed last moved: they end the branch, unless the motion has grown by 0.3 over them."""
+    flushed: list[float] = []
+    follower: Any = SimpleNamespace(speeds=[1.0] * 4, pending=[1.0] * 8, tries=0, by_arclength=False, climbed=climbed)
+    follower._flush = lambda: flushed.extend(follower.pending)
+    follower._followed = lambda *limits: _Follower._followed(follower, *limits)
+    most_points = 12 if ending == "points" else 13
+    assert _Follower.follow(follower, most_points, 10, lambda _: None) == ending
+    assert len(flushed) == kept

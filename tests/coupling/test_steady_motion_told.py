@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearwhine.coupling.analyses import steady_state
 from gearwhine.coupling.analyses.condition_record import _gears
 from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, settling_warnings
@@ -306,3 +307,54 @@ def test_steps_of_parameters_are_named(kind: str, step: float, thick: bool, word
     one = Influence("p", kind, step, "mm" in words[0], none, none, none, none, is_thickness=thick)
     assert one.words == words
     assert one.step_text == "+" + " ".join(words[0].split()[:2])
+
+
+def test_the_loudest_point_of_each_sensor_is_at_its_own_speed_and_of_its_own_mode(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two modes move two sensors; at the second of three speeds the one is loudest, at the third the other.
+
+    A mode's share in a line is its acceleration there, by the sensor's row, over that of the sensor, in phase.
+    """
+    period, samples, speeds = 0.5, 64, np.array([10.0, 20.0, 40.0])
+    modal = {
+        20.0: np.array([tone(period, samples, (4, 6.0, 0.0)), tone(period, samples, (4, 1.0, 0.0), (9, 2.0, 1.0))]),
+        40.0: np.array([tone(period, samples, (4, 1.0, 0.5)), tone(period, samples, (9, 5.0, 1.0), (4, 0.5, 0.5))]),
+    }
+    rows = {"top": np.array([2.0, -1.0, 0.0]), "side": np.array([0.5, 3.0, 0.0]), "still": np.zeros(3)}
+    stiffness = np.diag((2.0 * np.pi * np.array([300.0, 700.0, 900.0])) ** 2)
+
+    def at_speed(speed: float) -> Any:
+        return SimpleNamespace(housing=SimpleNamespace(sensors=rows, stiffness=stiffness), speed=speed)
+
+    def motion_at(machine: Any, speed: float, response: Any) -> SteadyMotion:
+        assert (machine.speed, response) == (speed, speed)
+        histories = {name: row[:2] @ modal[speed] for name, row in rows.items()}
+        moved = motion(period, 100.0, sensor_acceleration=histories, times=np.arange(samples))
+        response = SimpleNamespace(period=period, record=lambda outputs, count: (outputs, count))
+        return replace(moved, response=response)
+
+    def modal_record(machine: Any, record: Any) -> Any:
+        assert record == (machine.speed, samples)
+        return SimpleNamespace(housing_acceleration=modal[machine.speed].T)
+
+    monkeypatch.setattr(steady_state, "_motion", motion_at)
+    monkeypatch.setattr(steady_state, "transient_outputs", lambda machine: machine.speed)
+    monkeypatch.setattr(steady_state, "with_modal_rows", lambda machine, outputs: outputs)
+    monkeypatch.setattr(steady_state, "modal_record", modal_record)
+
+    def named(machine: Any, lines: list[float], within: float) -> list[Any]:
+        return [SimpleNamespace(name=f"{lines[0]:g} Hz at {machine.speed:g}")]
+
+    monkeypatch.setattr(steady_state, "line_names", named)
+    rms = {"top": np.array([1.0, 9.0, 3.0]), "side": np.array([1.0, 4.0, 11.0]), "still": np.zeros(3)}
+    machine: Any = SimpleNamespace(at_speed=at_speed)
+    curve: Any = SimpleNamespace(speeds=speeds, motion=lambda place: speeds[place])
+    top, side = steady_state._loudest(machine, curve, rms)
+    assert (top.sensor, top.speed, top.rms, top.mode) == ("top", 20.0, 9.0, 1)
+    assert (side.sensor, side.speed, side.rms, side.mode) == ("side", 40.0, 11.0, 2)
+    assert (top.mode_hz, side.mode_hz) == pytest.approx((300.0, 700.0))
+    # 2 × 6 - 1 × 1 in phase; 3 × 5 of the second mode alone.
+    assert (top.frequency, top.amplitude, top.share) == pytest.approx((8.0, 11.0, 12.0 / 11.0))
+    assert (side.frequency, side.amplitude, side.share) == pytest.approx((18.0, 15.0, 1.0))
+    assert (top.excitation, side.excitation) == ("8 Hz at 20", "18 Hz at 40")

@@ -43,9 +43,10 @@ from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction, sliding_direction_means, sliding_friction
 from gearwhine.coupling.gears.loaded.mesh_friction import mesh_friction
-from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases, polygon_phasors
 from gearwhine.coupling.machine.components import Component, rotor_component
 from gearwhine.coupling.machine.connectors import ContactConnector, Sliding
+from gearwhine.coupling.machine.tooth_friction import alike_teeth
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.transient import TransientResult
 from gearwhine.numerics.arrays import FloatArray
@@ -203,6 +204,34 @@ def test_helical_faces_turn_slice_by_slice(helix: float, even: bool, agree: floa
         for change in (-step, 0.0, step)
     )
     np.testing.assert_allclose((np.array(above[:2]) - below[:2]) / (2.0 * step), here[2:], rtol=1e-3, atol=1.0)
+
+
+def test_friction_at_mesh_harmonics_is_the_mean_of_all_pairs_of_unequal_helical_teeth() -> None:
+    """To the first order in the gaps of the pairs, whose mean is none."""
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
+
+    pairs, force = 5, 4000.0
+    pinion = replace(PINION, helix_angle=np.radians(15.0))
+    pair = GearPairGeometry(pinion, replace(WHEEL, helix_angle=-np.radians(15.0)))
+    gaps = np.random.default_rng(2).normal(0.0, 1e-6, pairs)
+    contact = replace(
+        tooth_contact(pair, PotentialEnergyStiffness(), faces=face_slices(pair)),
+        pitch_gaps=gaps - gaps.mean(),
+        tooth_counts=(pairs, pairs + 1),
+    )
+    friction = sliding_friction(pair, contact, COEFFICIENT)
+    connector = replace(small_system().contacts[0], contact=contact, sliding=Sliding(friction, RUBBING, np.ones(2)))
+    phases = np.arange(pairs * 96) / 96.0
+    mesh = loaded_transmission_error(contact, force, phases)
+    shares = friction_history(
+        phases, mesh.transmission_error, friction.shares, True, friction.pitch_point, friction.path_end
+    )
+    of_all = friction.coefficient * force * shares
+    alike, of_alike = alike_teeth(connector, force)
+    assert of_alike is not None
+    expected = polygon_phasors(phases, of_all, [1, 2], periods=pairs)
+    found = polygon_phasors(alike.phases, of_alike, [1, 2])
+    np.testing.assert_allclose(found, expected, atol=0.03 * np.abs(expected).max())
 
 
 # ------------------------------------------------------------- a small system, against an integration of another kind

@@ -93,13 +93,27 @@ def test_a_command_says_what_the_case_lacks(gearwhine, command: str, case: str, 
 
 
 @pytest.mark.parametrize(
-    "arguments", [["fly"], ["run"], ["modes", "steel-box", "--colour"], ["mesh", "a", "--format", "x"]]
+    ("arguments", "said"),
+    [
+        (["fly"], "fly"),
+        (["run"], "run: expected CASE"),
+        (["modes", BOX, "more"], "modes: expected no further argument, got 'more'"),
+        (["modes", BOX, "--colour"], "--colour"),
+        (["mesh", "a", "--format", "x"], "--format"),
+    ],
 )
-def test_wrong_usage(gearwhine, arguments: list[str]) -> None:
+def test_wrong_usage(gearwhine, arguments: list[str], said: str) -> None:
     outcome = gearwhine(*arguments)
     assert outcome.code == 2
     assert "Traceback" not in outcome.err
+    assert said in outcome.err
     assert "--help" in outcome.err
+
+
+def test_what_a_command_finds_in_the_case_has_the_file(gearwhine) -> None:
+    outcome = gearwhine("check", "small-gearbox", "-q", "--set", "acoustics.floor=0")
+    assert outcome.code == 2
+    assert "small-gearbox.toml: acoustics.floor: expected a height at or below the soles" in outcome.err
 
 
 def test_modes_to_draw_that_do_not_exist(gearwhine, tmp_path: Path) -> None:

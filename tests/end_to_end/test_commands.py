@@ -82,9 +82,7 @@ def test_modes(gearwhine, answer, tmp_path: Path) -> None:
     assert certificate["complete"] is True
     assert certificate["expected"] == certificate["found"] == len(document["modes"])
     assert certificate["max_residual"] < 1e-8
-    assert {"number", "frequency_hz", "damping_ratio", "strength"} <= set(document["modes"][0])
     assert document["mesh"]["dofs"] == 3 * document["mesh"]["nodes"]
-    assert {"mesh", "assembly", "factorisation", "eigensolver", "total"} <= set(document["seconds"])
     assert {path.name for path in (tmp_path / "out").glob("[!.]*")} == set(document["files"])
     again = answer("modes", "steel-box", "--json", "-q", *COARSE).document
     assert without_seconds({"modes": again["modes"]}) == without_seconds({"modes": document["modes"]})
@@ -99,15 +97,6 @@ def test_compare(gearwhine) -> None:
     assert document["max_error_percent"] == pytest.approx(max(errors))
     assert {"gap", "measures_agree", "rms_error_percent"} <= set(document)
     assert document["pairing"] == "dominance"
-
-
-def test_examples_copy(gearwhine, tmp_path: Path) -> None:
-    names = {example["name"] for example in gearwhine("examples", "--json").document["examples"]}
-    assert {"nasa-gear-noise-rig", "small-gearbox", "steel-box", "friswell-rotor", "gear-62-62", "spur-pair"} <= names
-    assert gearwhine("examples", "copy", "spur-pair").code == 0
-    assert gearwhine("check", "spur-pair.toml").code == 0
-    assert gearwhine("examples", "copy", "spur-pair").code == 2  # it would overwrite
-    assert [path.name for path in tmp_path.iterdir()] == ["spur-pair.toml"]
 
 
 def test_check_sums_up_in_a_dozen_lines_and_shows_all_when_asked(gearwhine) -> None:

@@ -93,6 +93,14 @@ def _halves(mesh: Mesh) -> Mesh:
     return Mesh(points, (block, ElementBlock(block.kind, block.nodes + len(mesh.points))))
 
 
+def test_half_a_file_is_an_error_that_names_it(gearwhine: Any, case: Any, tmp_path: Path) -> None:
+    path, file = case("hexahedron", ".msh"), tmp_path / "block.msh"
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    outcome = gearwhine("mesh", path, "-q")
+    assert outcome.code == 2
+    assert "housing.mesh.file: expected a mesh of solid elements; " in outcome.err
+
+
 @pytest.mark.parametrize("command", ["mesh", "modes", "check"])
 def test_unmerged_bodies_are_an_error_that_names_the_file(gearwhine: Any, case: Any, command: str) -> None:
     outcome = gearwhine(command, case("hexahedron", change=_halves), "-q")

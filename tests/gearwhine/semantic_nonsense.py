@@ -174,6 +174,7 @@ NONSENSE: dict[str, dict[str, Any]] = {
     "pitch circle inside the shaft": rolling(pitch_diameter="28 mm", element_diameter="6 mm"),
     "inner race inside the shaft": rolling(pitch_diameter="36 mm"),
     "rollers of a metre": rolling(element="roller", element_length="1 m"),
+    "interference of 3 mm": rolling(clearance="-3 mm"),
     "balls of a metre": rolling(element_diameter="1 m"),
     "rows that overlap": rolling(arrangement="back to back", spacing="2 mm", contact_angle="25 deg", preload="90 N"),
     "bearing inside the other gear": rolling(pitch_diameter="190 mm") | {

@@ -90,6 +90,7 @@ def test_a_test_that_does_not_fit_the_housing_is_refused(modes: HousingModes) ->
         study.compare([2.0 * np.pi * 2.0 * modes.trusted_limit_hz])
     with pytest.raises(gw.HousingError, match="2 sensors for 3 modes"):
         study.survey(2, 3)
+    assert len(study.survey(modes=3).document["sensors"]) == 5  # three for two modes
     with pytest.raises(
         gw.HousingError, match=r"as gearwhine\.Housing\.modes\(\) gives, or of a ReducedHousing; got 'box'"
     ):

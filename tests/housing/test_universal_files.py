@@ -42,8 +42,9 @@ def test_a_round_trip_loses_nothing_but_digits(tmp_path: Path, points: Any, comp
         )
 
 
-def test_responses_keep_every_digit(tmp_path: Path) -> None:
-    path, given = tmp_path / "survey.uff", survey().responses
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_responses_keep_every_digit(tmp_path: Path, seed: int) -> None:
+    path, given = tmp_path / "survey.uff", survey(seed=seed).responses
     write_universal(path, SurveyData(given.geometry, None, given))
     again = read_universal(path).responses
     np.testing.assert_array_equal(again.values, given.values)

@@ -27,6 +27,7 @@ from gearwhine.rotors.rolling_bearings.life import (
     reference_revolutions,
 )
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
+from gearwhine.rotors.rolling_bearings.ratings import contact_ratings
 
 BALLS = {"count": 9, "ball_diameter": 12.7e-3, "pitch_diameter": 60e-3}
 
@@ -49,6 +50,22 @@ def test_a_bearing_of_the_catalogue_lives_by_the_catalogue_s_rating() -> None:
     life = BearingLife(rolling_equilibrium(elements, [3510.0, 0.0, 0.0, 0.0, 0.0]), 1000.0 * math.pi / 30.0)
     assert life.life == pytest.approx(1e9 / 60e3)
     assert life.rating_from == "case"
+
+
+def test_loads_over_a_turn_wear_a_bearing_in_turn() -> None:
+    """3 kN and 6 kN by turns: 10⁶ (C/P)^p revolutions with P^p = (3^p + 6^p)/2 (kN); none of a load without factors."""
+    for row, power in ((BallRow(**BALLS), 3.0), (RollerRow(14, 11e-3, 11e-3, 65e-3), 10.0 / 3.0)):
+        states = tuple(under(row, load) for load in (3000.0, 6000.0))
+        life, alone = BearingLife(states[0], 1.0, states), [BearingLife(state, 1.0) for state in states]
+        mean = (0.5 * (3000.0**power + 6000.0**power)) ** (1.0 / power)
+        assert life.equivalent_load == pytest.approx(mean)
+        assert life.life == pytest.approx(1e6 * (life.rating / mean) ** power * 2.0 * math.pi / 3600.0)
+        wear = [1.0 / one.reference_life for one in alone if one.reference_life]
+        assert life.reference_life == pytest.approx(2.0 / sum(wear))
+    assert BearingLife(under(BallRow(**BALLS), 0.0), 1.0).life == math.inf
+    beyond = under(BallRow(**BALLS), 1000.0, 30000.0)
+    unlisted = BearingLife(beyond, 1.0, (under(BallRow(**BALLS), 1000.0), beyond))
+    assert unlisted.equivalent_load is unlisted.life is None
 
 
 def test_rollers_have_the_exponent_ten_thirds() -> None:
@@ -116,6 +133,11 @@ def test_two_rows_are_rated_as_one_of_2_to_the_0_7() -> None:
         assert x_two / x == pytest.approx(2.0**0.7, rel=0.02)
         for one, two in zip(y_all, y_two_all, strict=True):
             assert two / one == pytest.approx(2.0**0.7, rel=0.02)
+    # Contacts are rated alike whether their row stands alone or beside another; rows of rollers count to the 7/9.
+    for row, power in ((BallRow(9, 8e-3, 40e-3), 0.7), (RollerRow(12, 8e-3, 8e-3, 40e-3), 7.0 / 9.0)):
+        assert dynamic_rating(row, 2) == pytest.approx(2.0**power * dynamic_rating(row), rel=1e-12)
+        both = contact_ratings(row, 2.0**power * 1e4, 2)
+        assert both == pytest.approx(contact_ratings(row, 1e4), rel=1e-12)
 
 
 def test_tapered_rollers_have_the_factors_of_their_angle() -> None:

@@ -155,3 +155,8 @@ def test_the_file_is_plain_toml_of_known_classes(tmp_path: Path) -> None:
     kinds = {key.partition("_")[0] for key in document} - {"ross", "parameters"}
     assert kinds == {"ShaftElement", "DiskElement", "BearingElement"}
     assert document["parameters"] == {}
+    # Others than the arguments of its class ROSS refuses.
+    (bearing,) = (element for key, element in document.items() if key.startswith("BearingElement"))
+    coefficients = {letter + place for letter in "kc" for place in ("xx", "xy", "yx", "yy", "zz")}
+    assert set(bearing) - {"n", "tag"} == coefficients
+    assert (bearing["kyy"], bearing["kzz"]) == ([1e6], [0.0])

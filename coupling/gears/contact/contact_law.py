@@ -101,10 +101,10 @@ _TRIED = 5
 """Points of an interval of a given stiffness at which its greatest value is looked for."""
 _TILT_PHASES, _TILT_HARMONICS, _TILT_KNOTS = 128, 20, 80
 """Phases at which the tilt of the bodies is solved, number of mesh harmonics retained, and knots of their spline."""
-_TOOTH_TILT_PARTS = 16
+_TOOTH_TILT_PARTS = 32
 """Parts of a mesh period at whose ends the tilt is solved tooth by tooth."""
 _MOST_HUNTING = 4000
-"""Mesh periods of a hunting period that is solved whole: a second or two, and 2 MB."""
+"""Mesh periods of a hunting period that is solved whole: some seconds, and 4 MB."""
 
 
 @dataclass(frozen=True, eq=False)

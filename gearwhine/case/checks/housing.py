@@ -185,6 +185,10 @@ def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
         if name is not None and name not in surfaces:
             feet = "" if box.feet is not None else "; it has no feet"
             yield Finding(location, one_of(f"a surface of the box{feet}", name, surfaces))
+    for index, region in draft.raw_entries("housing", "region"):
+        name, volumes = region.get("volume"), ("housing",) if box.cover is None else ("body", "cover")
+        if isinstance(name, str) and name not in volumes:
+            yield Finding(("housing", "region", index, "volume"), one_of("a volume of the box", name, volumes))
 
 
 def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterator[Finding]:

@@ -78,7 +78,8 @@ def case_warnings(unusual: Iterable[str], findings: Iterable[Finding], document:
             continue
         key, label = key_of(finding.location), label_of(document, finding.location)
         place = f"{key} ({label})" if label else key
-        got = f", got {show_value(look_up(document, finding.location))}" if finding.value is LOOK_UP else ""
+        value = look_up(document, finding.location) if finding.value is LOOK_UP else finding.value
+        got = "" if value is UNSAID else f", got {show_value(value)}"
         accept = f"unusual = [{json.dumps(key, ensure_ascii=False)}] at the head of the case accepts it"
         sentences.append(f"{place}: expected {finding.expected}{got}; where it is meant, {accept}")
     return list(dict.fromkeys(sentences))
@@ -337,8 +338,12 @@ def _of_pairs(parts: Parts) -> Iterator[Finding]:
     rows = zip(parts.gear_pair, parts.pair_geometries, parts.pair_torques, parts.mesh_speeds, strict=True)
     for index, (pair, geometry, torque, speed) in enumerate(rows):
         for finding in _built_pair(pair).findings(geometry):
-            attribute = finding.attribute if finding.attribute in type(pair).model_fields else ""
-            yield placed(("gear_pair", index), finding, (attribute,) if attribute else ())
+            of_case = finding.attribute in type(pair).model_fields
+            found = placed(("gear_pair", index), finding, None if of_case else ())
+            if not of_case and finding.attribute:
+                expected = f"a {finding.attribute.replace('_', ' ')} of {finding.expected}"
+                found = replace(found, expected=expected, value=float(f"{finding.value:.4g}"))
+            yield found
         for finding in operation_findings(geometry, torque, speed or 0.0) if geometry.has_face else ():
             yield placed(("operation",), finding)
 

@@ -3,7 +3,9 @@
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ from gearwhine.housing.errors import RendererUnavailableError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 from gearwhine.housing.pictures.scene import find_renderer
 from gearwhine.numerics.progress import silent
+from gearwhine.whole_run import WholeRun
 
 
 def result_of(figures: Callable[[Any], Iterator[tuple[str, Figure]]], files: Callable[..., Mapping[str, Any]]) -> Any:
@@ -186,3 +189,37 @@ def test_shapes_that_are_drawn_already_stand_on_the_sheet_as_they_are(tmp_path: 
     with Image.open(tmp_path / "all.png") as sheet:
         assert sheet.size == (1040, 406)
         assert sheet.getpixel((260, 203)) == (255, 0, 0)
+
+
+def test_a_run_draws_every_figure_once_early_or_late_and_all_for_a_further_folder() -> None:
+    def drawer(*kinds: str) -> Callable[..., Iterator[str]]:
+        return lambda *given: (f"{kind} of {given[0]}" if len(given) == 2 else kind for kind in kinds)
+
+    early = SimpleNamespace(drawn=[], pictures=[], waited=[])
+    early.draw_figures = lambda figures: early.drawn.extend(figures())
+    early.wait = lambda: early.waited.append(len(early.drawn))
+    solution = SimpleNamespace(
+        housing="housing",
+        load="load",
+        comparison="comparison",
+        figures_before_motion=drawer("gears", "load"),
+        figures_of_system=drawer("system"),
+        figures_of_motion=drawer("motion", "sound"),
+        figures=drawer("gears", "load", "system", "motion", "sound"),
+    )
+    early.draw = lambda draw, housing, *of, **_: early.pictures.append((draw.__name__, housing, of[0]))
+    run: Any = SimpleNamespace(solution=solution, study=SimpleNamespace(origin=SimpleNamespace(title="T")))
+    run._early, run._has_early_figures = early, False
+    WholeRun._draw_early(run)
+    assert early.pictures == [("draw_modes", "housing", "comparison"), ("draw_load_pictures", "housing", "load")]
+    early.draw_figures(partial(solution.figures_of_system, silent))
+    left = list(WholeRun._figures_left(run, silent))
+    assert early.waited == [3]
+    every = ["gears of T", "load of T", "system", "motion of T", "sound of T"]
+    assert [*early.drawn, *left] == every
+    assert len(list(WholeRun._figures_left(run, silent))) == len(every)
+    # Without a housing there is nothing to draw beside the motion.
+    alone: Any = SimpleNamespace(solution=SimpleNamespace(**vars(solution) | {"housing": None}), study=run.study)
+    alone._early, alone._has_early_figures = early, False
+    WholeRun._draw_early(alone)
+    assert (len(early.drawn), alone._has_early_figures) == (3, False)

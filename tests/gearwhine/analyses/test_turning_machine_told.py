@@ -94,6 +94,13 @@ def test_system_tells_sidebands_exponents_and_the_error_of_frozen_carriers(tmp_p
     assert above > limits["limit_hz"]
     assert f"{meshes['harmonics'] + 1}× is left out" in told
 
+    over_speed = sections(
+        document | {"campbell": {"lines": [], "crossings": [], "speeds_rpm": [2865.0], "unsettled": []}}
+    )
+    left_out = "Lines of the meshes over speed are left out where carriers turn"
+    assert any(str(one).startswith(left_out) for section in over_speed for one in section.content)
+    assert not any(one.startswith(left_out) for one in text)
+
     (frozen,) = (one for one in document["warnings"] if one["name"] == "carrier frozen")
     listed = [mode for mode in document["modes"] if mode["turning_frequency_hz"] is not None]
     errors = [mode["frequency_hz"] / mode["turning_frequency_hz"] - 1.0 for mode in listed]

@@ -17,6 +17,12 @@ ONE_WRONG = {
     # ranges
     # keys, forms and choices
     "load of a spring": ("bearing.0.load", {"x": "5 N"}, "bearing[0].load", "only the stiffness of a rolling bearing"),
+    "no stiffness along x": (
+        "bearing.2.stiffness",
+        {"yy": "1e8 N/m"},
+        "bearing[2].stiffness.xx",
+        "a stiffness such as '1.2e8 N/m'",
+    ),
     "rollers without length": (
         "bearing.2.stiffness",
         {"rolling": {"element": "roller", "count": 7, "element_diameter": "8 mm", "pitch_diameter": "43.5 mm"}},

@@ -127,6 +127,7 @@ LEADS_NOWHERE = {
     "not a path": ("housing..box=3", "expected key.path=value"),
     "no such entry": ("rotor.inptu.mass=lumped", "one of 'input', 'output'; did you mean 'input'?, got 'inptu'"),
     "beyond the list": ("bearing.7.at=3", "expected a place from 0 to 3"),
+    "beyond the only entry": ("rotor.input.unbalance.moment=3", "expected 0, the only place, got 'moment'"),
     "into a value": ("housing.box.mesh_size.x=3", "housing.box.mesh_size is a value, not a table"),
     "nothing to take away": ("housing.frequency=", "a key to take away; did you mean 'frequency_limit'?"),
     "unknown key": ("housing.box.walls=3 mm", "housing.box.walls: expected no such key; did you mean 'wall'?"),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import tomllib
 from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
-from gearwhine.case import CaseError, load_case
+from gearwhine.case import CaseError, load_case, parse_case
+from gearwhine.case.input_files import InputFiles
 
 BAD_FILES = {
     "truncated": (b'title = "x', "line 1, column 11", "Unterminated string"),
@@ -72,6 +74,11 @@ def test_files_are_looked_for_beside_the_case(tmp_path: Path) -> None:
     assert housing is not None
     assert housing.mesh is not None
     assert housing.mesh.file == (tmp_path / "box.msh").resolve()
+    # Contents that are known from another case are taken over as they were.
+    file = str(housing.mesh.file)
+    for known in (None, InputFiles({file: "as it was"})):
+        taken = parse_case(tomllib.loads(case), folder=tmp_path, files=known).input_files.contents[file]
+        assert (taken == "as it was") is (known is not None)
     path.write_text(case.replace("box.msh", "ball.msh"), encoding="utf-8")
     with pytest.raises(CaseError, match=r"housing\.mesh\.file: expected an existing file"):
         load_case(path)

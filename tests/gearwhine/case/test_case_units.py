@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 import time
+from importlib import import_module
+from pkgutil import iter_modules
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic_core import PydanticCustomError
 
+from gearwhine import case
 from gearwhine.case import units
+from gearwhine.case.fields import Quantity
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
 
 DEFINED = [
@@ -168,3 +173,59 @@ def test_customary_units_are_used_where_nothing_is_lost() -> None:
     assert format_quantity(parse_quantity("5500 rpm", units.SPEED), units.SPEED) == "5500 rpm"
     assert format_quantity(parse_quantity("24 deg", units.ANGLE), units.ANGLE) == "24 deg"
     assert format_quantity(0.00635, units.LENGTH) == "0.00635 m"
+
+
+@pytest.mark.parametrize(
+    "dimension", [one for one in vars(units).values() if isinstance(one, Dimension)], ids=lambda one: one.name
+)
+def test_a_quantity_ends_at_its_bounds_of_either_sign(dimension: Dimension) -> None:
+    def takes(number: float, **bounds: float) -> bool:
+        try:
+            return Quantity(dimension, **bounds).validate(number) == number
+        except PydanticCustomError:
+            return False
+
+    for sign in (1.0, -1.0):
+        assert takes(sign * dimension.largest)
+        assert not takes(1.001 * sign * dimension.largest)
+    assert takes(dimension.smallest, above=0.0)
+    assert not takes(0.999 * dimension.smallest, above=0.0)
+    assert takes(-dimension.smallest)
+    assert [takes(number, at_least=-0.5, below=0.25) for number in (-0.51, -0.5, 0.24, 0.25)] == [0, 1, 1, 0]
+    assert [takes(number, above=-0.5, at_most=0.25) for number in (-0.5, -0.49, 0.25, 0.26)] == [0, 1, 1, 0]
+
+
+NEVER_NEGATIVE = (
+    "Mass",
+    "Inertia",
+    "Imbalance",
+    "Torque",
+    "TiltStiffness",
+    "TiltDamping",
+    "FrictionCoefficient",
+    "Time",
+)
+ABOVE_ZERO = ("Density", "ElasticModulus", "SpeedOfSound", "TorsionalStiffness", "Module", "ToothHeight", "Order")
+
+
+def test_quantities_keep_the_signs_that_their_names_have() -> None:
+    """What is named positive is above zero; what is named from zero, or is a sum of squares, takes zero."""
+    modules = [import_module(f"gearwhine.case.{one.name}") for one in iter_modules(case.__path__)]
+    found = {
+        name: bound
+        for module in modules
+        for name, alias in vars(module).items()
+        for bound in getattr(alias, "__metadata__", ())
+        if isinstance(bound, Quantity)
+    }
+    assert len(found) > 40
+    for name, bound in found.items():
+        positive = name.startswith("Positive") or name in ABOVE_ZERO
+        for number in (0.0, -bound.dimension.smallest) if positive else ():
+            with pytest.raises(PydanticCustomError):
+                bound.validate(number)
+        if name.endswith("FromZero") or name in NEVER_NEGATIVE:
+            assert bound.validate(0.0) == 0.0
+            with pytest.raises(PydanticCustomError):
+                bound.validate(-bound.dimension.smallest)
+    assert {*NEVER_NEGATIVE, *ABOVE_ZERO} < found.keys()

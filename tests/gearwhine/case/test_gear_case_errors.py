@@ -24,6 +24,7 @@ ONE_WRONG = {
     "misspelt key": ("gear.0.facewidth", "6 mm", "gear[0].facewidth", "did you mean 'face_width'?"),
     "word of the field": ("gear.0.crowning", "4 um", "gear[0].crowning", "did you mean 'errors.helix.crowning'?"),
     "angle of the helix": ("gear.0.helix", "28 deg", "gear[0].helix", "did you mean 'helix_angle'?"),
+    "lead by its name": ("gear.0.errors", {"lead": "4 um"}, "gear[0].errors.lead", "did you mean 'helix.slope'?"),
     "symbol of the field": ("gear.0.beta", "28 deg", "gear[0].beta", "did you mean 'helix_angle'?"),
     "unknown table": ("gaer", [], "gaer", "did you mean 'gear'?"),
     "fault without its kind": ("gear.0.fault", {"tooth": 1}, "gear[0].fault[0].kind", "missing-tooth"),

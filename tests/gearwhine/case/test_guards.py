@@ -164,6 +164,14 @@ TRAPS: dict[str, Trap] = {
         lambda: Bearing.isotropic("b", 0.1, 1e8, -500.0), "bearing 'b': damping",
         (("bearing.0.damping.xx", "-500 N*s/m"),), "bearing[0].damping.xx",
     ),
+    "damping of a bearing in seconds": Trap(
+        lambda: bearing("b", "input", 0.1, damping_time=8.0), "bearing 'b': damping_time",
+        (("bearing.0.damping", {"over_stiffness": "8 s"}),), "bearing[0].damping.over_stiffness",
+    ),
+    "negative unbalance": Trap(
+        lambda: Unbalance(0.1, -1e-5), "unbalance: moment",
+        (("rotor.0.unbalance.0.moment", "-1e-5 kg*m"),), "rotor[0].unbalance[0].moment",
+    ),
     "pedestal that pushes away": Trap(
         lambda: pedestal(-1e8), "pedestal: stiffness",
         (("bearing.0.pedestal", {"mass": "1 kg", "stiffness": {"xx": "-1e8 N/m", "yy": "1e8 N/m"}}),),

@@ -55,6 +55,12 @@ ONE_WRONG = {
     "large feet": ("housing.box.feet.size.0", "111 mm", "housing.box.feet.size[0]", "half the base along x, 110 mm"),
     "no feet": ("housing.box.feet", GONE, "housing.support[0].surface", "it has no feet"),
     "fifth foot": ("housing.support.0.surface", "foot-5", "housing.support[0].surface", "did you mean 'foot-"),
+    "no such volume": (
+        "housing.region",
+        [{"name": "r", "material": "steel", "volume": "lid"}],
+        "housing.region[0].volume",
+        "a volume of the box (housing)",
+    ),
     "sensor outside": ("housing.sensor.0.position.1", "300 mm", "housing.sensor[0].position", "140 mm outside"),
     "sensor in cavity": ("housing.sensor.0.position.1", "80 mm", "housing.sensor[0].position", "from the front face"),
     "no geometry": ("housing.box", GONE, "housing", "exactly one of [housing.box], [housing.cad]"),

@@ -372,6 +372,7 @@ def test_planets_on_elastic_pins() -> None:
     ("pin", "key", "told"),
     [
         ({"walls": ["0 mm"]}, "diameter", "'diameter' beside the others"),
+        ({"diameter": "9 mm"}, "walls", "'walls' beside the others"),
         ({"stiffness": "1e8 N/m", "at": "0 mm"}, "tilt_stiffness", "'tilt_stiffness' beside the others"),
         ({}, "at", "'walls' and 'diameter', or 'at', 'stiffness' and 'tilt_stiffness'"),
         ({"walls": ["0 mm"], "diameter": "9 mm", "stiffness": "1e8 N/m"}, "stiffness", "nothing beside walls"),

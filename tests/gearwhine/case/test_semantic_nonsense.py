@@ -55,6 +55,12 @@ def test_bundled_cases_are_neither_refused_nor_doubted(name: str) -> None:
     assert not [text for text in load_case(name).warnings if "unusual = " in text]
 
 
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_a_torque_that_no_shaft_bears_is_refused_whatever_its_sign(sign: str) -> None:
+    with pytest.raises(CaseError, match=rf"expected a torque of at most 1e\+10 N\*m, got '{sign}1e30 N\*m'"):
+        gw.load("spur-pair", [f"operation.torque={sign}1e30 N*m"])
+
+
 def test_what_is_unusual_can_be_meant() -> None:
     light = changed("steel-box", ("material.steel.density", "30 kg/m^3"))
     (text,) = [text for text in warnings_of(parse_case(light)) if "density" in text]

@@ -4,12 +4,15 @@ import io
 import logging
 import threading
 import time
+from typing import Any
 
 import pytest
 
 import gearwhine as gw
+from gearwhine.case import LoadedCase
+from gearwhine.cli.common import Common, on_case
 from gearwhine.numerics import compiled
-from gearwhine.numerics.progress import in_order
+from gearwhine.numerics.progress import Progress, in_order
 from gearwhine.progress import shown
 
 
@@ -44,11 +47,17 @@ def test_a_live_line_keeps_its_times_beside_long_words(monkeypatch: pytest.Monke
     assert "…" in line
 
 
-def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
-    with shown(quiet=True) as progress:
+@pytest.mark.parametrize("quiet", [True, False])
+def test_quiet_is_quiet_whatever_is_printed(quiet: bool, capsys: pytest.CaptureFixture[str]) -> None:
+    def work(_: LoadedCase, progress: Progress) -> dict[str, Any]:
         progress("modes")
         logging.getLogger(compiled.__name__).info("compiling one")
-    assert capsys.readouterr().err == ""
+        return {}
+
+    on_case("friswell-rotor", Common(quiet=quiet, json=not quiet), work, lambda _: None, "rotors")
+    written = capsys.readouterr()
+    assert (written.err == "", written.out == "") == (quiet, quiet)
+    assert ("modes" in written.err) is not quiet
 
 
 def test_work_on_two_threads_is_handed_back_in_order() -> None:

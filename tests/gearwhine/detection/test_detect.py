@@ -123,7 +123,7 @@ def test_the_bearing_of_a_planet_that_is_written_once_has_the_fault() -> None:
     planned = plan_detection(study._source)
     assert planned.spall is not None
     assert (planned.spall[0], planned.spall[1].on, planned.spall[1].length) == ("pin back 1", "outer", 1e-3)
-    assert planned.without == "bearing.pin back.fault="
+    assert planned.without == "bearing.'pin back'.fault="
     assert all(INDICATORS[name].of_time for name in planned.monitor.indicators)
     healthy = planned.source.changed_case([planned.without])
     assert [len(one.fault) for one in healthy.bearing if one.rotor.startswith("planet")] == [0] * 6

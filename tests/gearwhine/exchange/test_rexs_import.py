@@ -650,25 +650,39 @@ def test_teeth_that_their_tool_undercuts_are_told_and_accepted(shift: float, und
     assert any("its tool undercuts the teeth" in text for text in notes(file, "changed")) is bool(undercut)
 
 
-def test_a_coupling_between_shafts_is_one_of_their_rotor() -> None:
+@pytest.mark.parametrize(
+    ("bending", "rotational", "expected"),
+    [
+        (2e5, 6e6, (200.0, 6e3)),
+        (None, 1e12, (1e7, 1e7)),  # rigid is what is not given, and what is stiffer than that
+        (0.0, 6e6, (1e-3, 6e3)),
+    ],
+)
+def test_a_coupling_between_shafts_is_one_of_their_rotor(
+    bending: float | None, rotational: float, expected: tuple[float, float]
+) -> None:
     file = helical_stage()
     shaft = file.part("shaft", 1, "motor shaft", support_vector=([-90.0, 0.0, 0.0], "mm"))
     file.part("shaft_section", shaft, length=(60.0, "mm"), outer_diameter_begin=(22.0, "mm"))
     file.relate("reference", origin=shaft, referenced=3)
+    tilt = {} if bending is None else {"bending_stiffness": (bending, "N mm / rad")}
     coupling = file.add(
         "coupling",
         "bellows",
         radial_stiffness=(1e6, "N / m"),
         axial_stiffness=(1e5, "N / m"),
-        bending_stiffness=(2e5, "N mm / rad"),
-        rotational_stiffness=(6e6, "N mm / rad"),
+        rotational_stiffness=(rotational, "N mm / rad"),
+        **tilt,
     )
     file.relate("side", assembly=coupling, inner_part=shaft, outer_part=file.number("input"))
     rotor = case(file).rotor_named("input")
     assert rotor.start == pytest.approx(-0.090)
     assert [segment.length for segment in rotor.segments] == pytest.approx([0.060, 0.020, 0.030, 0.060, 0.030])
     between = rotor.segments[1].coupling  # type: ignore[union-attr]
-    assert (between.lateral_stiffness, between.torsional_stiffness, between.tilt_stiffness) == (1e6, 6e3, 200.0)
+    assert (between.lateral_stiffness, between.axial_stiffness) == (1e6, 1e5)
+    assert (between.tilt_stiffness, between.torsional_stiffness) == expected
+    assert any("no bending_stiffness: rigid" in text for text in notes(file, "assumed")) is (bending is None)
+    assert any("bending_stiffness of 0 N*m/rad: 0.001" in text for text in notes(file, "changed")) is (bending == 0.0)
 
 
 def test_a_bearing_between_two_shafts_stands_on_the_other_one() -> None:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import pytest
@@ -15,13 +15,17 @@ from matplotlib.figure import Figure
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.analyses.signature import SolvedSignature, solve_signature
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.gears.loaded.transmission_error import along_one_pair
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.periodic.superposition import ExcitationGroup
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
+from gearwhine.figures.machine.operating_point import draw_over_torque
+from gearwhine.figures.machine.steady_state import _motion_sheet
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.machine.transient import draw_sensor_spectra
 from gearwhine.figures.style import BLUE, GREY
@@ -107,6 +111,10 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
             if line.get_linestyle() == "--" and len(np.asarray(line.get_xdata())) == 2
         }
         assert {round(n * 1150.0, 3) for n in (1, 2)} <= marked
+        (triangles,) = (line for line in axes.get_lines() if line.get_marker() == "^")
+        modes = drawn.solved.machine.housing.frequencies_hz  # type: ignore[union-attr]
+        assert np.asarray(triangles.get_xdata()) == pytest.approx(modes[modes <= drawn.solved.trusted_limit])
+        assert modes[0] < drawn.solved.trusted_limit
         # A dot stands on each leading line, whose frequency has a name above.
         (dots,) = (line for line in axes.get_lines() if line.get_marker() == "o")
         told = drawn.signature.lines[name][: len(dots.get_xydata())]
@@ -245,6 +253,42 @@ def test_the_quietest_torque_and_the_one_of_operation_are_marked() -> None:
     assert "1.500 µm" in [text.get_text() for text in lower.texts]
 
 
+def test_each_pair_s_curve_over_torque_stands_in_the_panel_of_its_quantity() -> None:
+    """Two pairs that carry and an idle one, at three torques of a brake; every value is of its own."""
+    torques = (-30.0, -60.0, -90.0)
+
+    def pair(name: str, size: float, torque: float, force: float = 100.0) -> Any:
+        gears = SimpleNamespace(driver=SimpleNamespace(name=name), driven=SimpleNamespace(name=f"{name} wheel"))
+        errors = 1e-6 * size * torque * np.array([0.0, 0.25, 1.0])
+        given = {"mean_stiffness": 2e6 * size * torque, "k_h_beta": 3.0 * size * torque}
+        given |= {"transmission_error": errors, "misalignment": 4e-6 * size * torque}
+        return SimpleNamespace(pair=gears, force=force, **given)
+
+    def pairs(torque: float) -> Any:
+        given = pair("first", 1.0, torque), pair("idle", 10.0, torque, 0.0), pair("second", 7.0, torque)
+        return SimpleNamespace(pairs=given)
+
+    over_torque = {torque: pairs(torque) for torque in torques}
+    solved: Any = SimpleNamespace(
+        over_torque=over_torque, point=over_torque[-60.0], machine=SimpleNamespace(torque=-60.0)
+    )
+    figure = draw_over_torque("r", solved)
+    panels = {axes.get_ylabel(): axes for axes in figure.axes}
+    sizes = {"TE p-p [µm]": -1.0, "stiffness [N/µm]": 2.0, "K_Hβ": 3.0, "misalignment [µrad]": 4.0}
+    assert panels.keys() == sizes.keys()
+    for label, axes in panels.items():
+        first, second, operation, *_ = axes.get_lines()
+        for curve, name, size in ((first, "first → first wheel", 1.0), (second, "second → second wheel", 7.0)):
+            assert str(curve.get_label()).replace("\N{NO-BREAK SPACE}", " ") == name
+            assert curve.get_xdata() == pytest.approx(torques)
+            assert curve.get_ydata() == pytest.approx([sizes[label] * size * torque for torque in torques])
+        assert first.get_color() != second.get_color()
+        assert list(operation.get_xdata()) == [-60.0, -60.0]
+        assert axes.get_xlim() == (-90.0, 0.0)
+    assert [axes.get_xlabel() for axes in figure.axes if axes.get_xlabel()] == ["torque of the first driver [N·m]"]
+    assert len(figure.legends[0].get_texts()) == 2
+
+
 def test_bars_with_and_without_load_have_the_curves_colours() -> None:
     phases = np.linspace(0.0, 1.0, 50, endpoint=False)
     loaded: Any = SimpleNamespace(phases=phases, transmission_error=1e-6 * np.cos(2 * np.pi * phases), force=100.0)
@@ -289,3 +333,48 @@ def test_the_driver_slides_backwards_where_it_begins() -> None:
         roll = np.degrees(pair.geometry.driver_roll_angle(mesh.positions[number, row]))
         nearest = values[np.abs(rolls - roll) < 1e-9]
         assert np.nanmin(np.abs(nearest - 1e-6 * pressure[number, row])) < 1e-6
+
+
+def test_the_force_of_superposed_motions_is_drawn_as_their_sum_pair_by_pair() -> None:
+    """F = mean + a cos(2π 100 t) + b cos(2π 30 t + 1) of each pair; motions of 1/100 and 1/30 s both have the mean."""
+    parts = {"first": (500.0, 40.0, 9.0), "second": (800.0, 70.0, 20.0)}  # mean, a, b
+
+    def steady(name: str, hertz: float, phase: float, number: int) -> Any:
+        times = np.arange(512) / 512 / hertz
+        force = {
+            pair: given[0] + given[number] * np.cos(2.0 * np.pi * hertz * times + phase)
+            for pair, given in parts.items()
+        }
+        response: Any = SimpleNamespace(period=1.0 / hertz, stable=True)
+        histories: Any = SimpleNamespace(times=times, mesh_force=force)
+        return SteadyMotion(1.0, response, histories, 1e4, excitation=name, group=ExcitationGroup(weight=1))
+
+    contacts = [SimpleNamespace(name=name, mesh_frequency=rate) for name, rate in (("first", 100.0), ("second", -30.0))]
+    machine: Any = SimpleNamespace(
+        system=SimpleNamespace(contacts=contacts),
+        loaded_contacts=(0, 1),
+        meshes=contacts,
+        speed=100.0,
+        input_torque=45.0,
+    )
+    motions = (steady("mesh first", 100.0, 0.0, 1), steady("mesh second", 30.0, 1.0, 2))
+    figure = _motion_sheet("m", SolvedSteady(machine, motions, superposed=cast(Any, object())))
+    shown = panels(figure)
+    assert [axes.get_title(loc="left").partition(":")[0] for axes in shown] == [
+        "first",
+        "its lines",
+        "second",
+        "its lines",
+    ]
+    for (mean, fast, slow), rate, left, right in zip(
+        parts.values(), (100.0, 30.0), shown[::2], shown[1::2], strict=True
+    ):
+        (curve,) = left.get_lines()
+        times, force = 1e-3 * np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
+        assert times[-1] * rate == pytest.approx(round(times[-1] * rate))  # whole mesh periods
+        expected = mean + fast * np.cos(2.0 * np.pi * 100.0 * times) + slow * np.cos(2.0 * np.pi * 30.0 * times + 1.0)
+        np.testing.assert_allclose(force, expected, atol=1e-3 * fast)
+        tops = [float(np.nanmax(np.asarray(line.get_ydata(), dtype=float))) for line in right.get_lines()]
+        assert sorted(tops)[-2:] == pytest.approx([slow, fast], rel=1e-6)
+    names = [text.get_text().replace("\N{NO-BREAK SPACE}", " ") for text in figure.legends[0].get_texts()]
+    assert names == ["mesh first", "mesh second"]

@@ -129,21 +129,3 @@ def test_bars_of_the_causes_add_up(loaded: Result[SolvedLoad], figures: dict[str
     # Causes that there are, and no others: this machine has no housing.
     (legend,) = figures["load-misalignment"].legends
     assert [text.get_text() for text in legend.get_texts()] == ["shafts", "bearings", "bodies", "sum"]
-
-
-def test_curves_over_torque(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
-    by_name = {axes.get_ylabel(): axes for axes in figures["load-over-torque"].axes}
-    over_torque = loaded.document["over_torque"]
-    shown = {"misalignment [µrad]": ("misalignment_rad", 1e6), "K_Hβ": ("k_h_beta", 1.0)}
-    assert set(by_name) == {*shown, "stiffness [N/µm]", "TE p-p [µm]"}
-    torques = [point["torque_n_m"] for point in over_torque]
-    for name, (key, factor) in shown.items():
-        curve, operation, *_ = by_name[name].lines
-        assert np.asarray(curve.get_xdata()) == pytest.approx(torques)
-        assert np.asarray(curve.get_ydata()) == pytest.approx(
-            [factor * point["gear_pairs"][0][key] for point in over_torque]
-        )
-        assert operation.get_xdata() == pytest.approx([loaded.solved.machine.torque] * 2)
-        assert by_name[name].get_xlim() == pytest.approx((0.0, max(torques)))
-    (lowest,) = (axes.get_xlabel() for axes in by_name.values() if axes.get_xlabel())
-    assert lowest == "torque of the first driver [N·m]"

@@ -81,6 +81,18 @@ def test_a_shaft_is_drawn_to_scale(tmp_path: Path) -> None:
     assert written(figure, tmp_path)[0] == pytest.approx(160 / 25.4 * 200, abs=1)
 
 
+def test_the_centre_line_ends_beyond_what_reaches_beyond_the_shaft() -> None:
+    """A disc of 70 mm at the left end of 1.5 m, and a gear of 50 mm at the right one."""
+    rotor = rotors.Rotor("r", ROTOR.segments, [rotors.Disc.from_dimensions(0.0, 0.07, 0.28, 0.05, 7810.0)])
+    assembly = RotorAssembly(rotor, BEARINGS, gears=[DrawnGear("pinion", 1.5, 0.05, 0.11, 0.1, 0.09, teeth=28)])
+    assert assembly.reach == pytest.approx((-0.035, 1.525))
+    assert TWO_DISCS.reach == (0.0, 1.5)
+    (axes,) = draw_shaft(assembly).figure.axes
+    (line,) = lines(axes, "centre line")
+    left, right = line[0, 0] + 35.0, line[0, 1] - 1525.0
+    assert left < 0.0 < right == pytest.approx(-left)
+
+
 def test_everything_on_a_shaft_has_its_sign_and_its_name() -> None:
     wheel = rotors.Disc(0.2, 5.0, 0.02, 0.012)
     rotor = rotors.Rotor(

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from gearwhine.coupling import SpeedProfile
+from gearwhine.coupling.analyses.run_up import RunSignature
 from gearwhine.coupling.analyses.signature import Contribution, TracedLine
 from gearwhine.coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
 from gearwhine.figures.gears.transmission_error import _name
-from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_map
+from gearwhine.figures.machine.run_up import draw_order_slices, draw_run, draw_run_up_map
 from gearwhine.figures.machine.transient import (
     between_samples,
     draw_contributions,
@@ -67,6 +68,67 @@ def test_run_up(tmp_path: Path) -> None:
         rpm = axes.get_ylim()[0] + height * (axes.get_ylim()[1] - axes.get_ylim()[0])
         assert rpm == pytest.approx(60.0 * 1200.0 / (28.0 * number), rel=0.08), along
     assert level_map.axes[0].get_xlim()[1] == pytest.approx(1200.0)
+
+
+def test_each_signal_of_a_run_has_its_map_and_orders_in_its_unit() -> None:
+    """A run-down from 1800 to 600 rpm: 1 m/s² at order 28 of the sensor, 10 N at order 12 of the second pair."""
+    times = 1e-4 * np.arange(40_000)
+    turning = SpeedProfile(np.array([0.0, 4.0]), np.array([1.5, 0.5]))
+    turns = 20.0 * turning.at(times)[0]
+    of_sensor, of_pair = np.cos(2 * np.pi * 28.0 * turns), 10.0 * np.cos(2 * np.pi * 12.0 * turns)
+    signals = {"top": of_sensor, "a -> b": of_pair}
+    turned = {name: resample_by_angle(signal, times, turning, 20.0) for name, signal in signals.items()}
+    orders = {name: order_map(one, turns=2, follow=[28.0, 12.0]) for name, one in turned.items()}
+    complete = {
+        order: np.where(orders["top"].speeds * order < 700.0, course, np.nan)
+        for order, course in orders["top"].followed.items()
+    }
+    orders["top"] = replace(orders["top"], followed=complete)
+    spectra = {
+        name: spectrogram(signal, 1e-4, 1000, 2000, to_the_ends=True).up_to(1200.0) for name, signal in signals.items()
+    }
+    rates = turning.at(spectra["top"].times)[1]
+    meshes = [
+        SimpleNamespace(driver=SimpleNamespace(name=driver), driven=SimpleNamespace(name=driven))
+        for driver, driven in (("p", "w"), ("a", "b"))
+    ]
+    contacts = [SimpleNamespace(mesh_frequency=frequency) for frequency in (560.0, -240.0, 560.0, -240.0)]
+    housing = SimpleNamespace(frequencies_hz=np.array([450.0]))
+    machine = SimpleNamespace(meshes=meshes, system=SimpleNamespace(contacts=contacts), housing=housing)
+    solved: Any = SimpleNamespace(machine=machine, speed=-2.0 * np.pi * 20.0, free_run=False)
+    run = RunSignature(
+        {"top": "m/s²", "a -> b": "N"},
+        spectra,
+        60.0 * 20.0 * rates,
+        {name: np.full(rates.size, size / np.sqrt(2.0)) for name, size in (("top", 1.0), ("a -> b", 10.0))},
+        orders,
+        {"1× p -> w": 28.0, "1× a -> b": 12.0},
+        2,
+        700.0,
+    )
+    figures = dict(draw_run("Gearbox", solved, run))
+    assert list(figures) == ["run-up-map-top", "run-up-orders-top", "run-up-map-a-b", "run-up-orders-a-b"]
+    for stem, title, order, unit, level in (("top", "top", 28, "m/s²", 117.0), ("a-b", "a → b", 12, "N", 137.0)):
+        level_map, slices = figures[f"run-up-map-{stem}"], figures[f"run-up-orders-{stem}"]
+        titles = [
+            [text.get_text().replace("\N{NO-BREAK SPACE}", " ") for text in one.texts[:2]]
+            for one in (level_map, slices)
+        ]
+        assert [heading for heading, _ in titles] == [f"{title}: level over frequency and speed", f"{title}: orders"]
+        notes = [note for _, note in titles]
+        assert all(note.startswith("Gearbox; run-down, spectra from 1") for note in notes)
+        assert ["up to 700 Hz" in note for note in notes] == [False, stem == "top"]
+        assert f"level [dB re 1 µ{unit}]" in [axes.get_ylabel() for axes in level_map.axes]
+        (axes,) = slices.axes
+        assert axes.get_ylabel() == f"level [dB re 1 µ{unit}]"
+        curve, overall = axes.lines
+        assert str(curve.get_label()).replace("\N{NO-BREAK SPACE}", " ") == f"1× {'p → w' if order == 28 else 'a → b'}"
+        assert np.nanmedian(np.asarray(curve.get_ydata())) == pytest.approx(level, abs=0.3)
+        assert np.asarray(overall.get_ydata()) == pytest.approx(level, abs=0.1)
+        dashed = [np.asarray(one.get_xdata()) for one in level_map.axes[0].lines if one.get_linestyle() == "--"]
+        for mesh in (28.0, 12.0):
+            course = np.sort(20.0 * rates * mesh)
+            assert any(one.shape == course.shape and np.allclose(np.sort(one), course) for one in dashed)
 
 
 def test_an_order_below_the_axis_has_no_name_in_the_legend() -> None:

@@ -1,8 +1,11 @@
 """Optimised designs: the optimum of closed forms, the best of a grid, scatter, and what is refused."""
 
 import json
+import math
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +21,7 @@ from gearwhine.failures import MissingExtraError
 from gearwhine.figures.optimisation import draw_optimisation
 from gearwhine.numerics.distributions import Discrete, Normal, Uniform
 from gearwhine.numerics.result_warnings import warning
+from gearwhine.results.optimisation import sections
 from gearwhine.variation.samples import FOLDER, VariedCase
 from tests.machines.belted_shaft import BELTED_SHAFT
 
@@ -280,11 +284,18 @@ def test_failed_designs_are_passed_over_and_named(tmp_path: Path) -> None:
     sizes = [pair["transmission_error_m"]["peak_to_peak"] for pair in single]
     assert found.document["aims"][0]["designs"][0] == pytest.approx(min(sizes), rel=1e-9)
     assert found.dataset["aim_value"].values[:3, 0] == pytest.approx(sizes, rel=1e-9)
+    change = f"→ {1e6 * min(sizes):.5g}"
+    assert any(change in str(one) and "µm" in str(one) for one in sections(found.document)[0].content)
 
 
 BAD = {
     "unknown key": ('"operation.force[0].x"', '"operation.forze[0].x"', "did you mean 'force'"),
-    "no number": ('"operation.force[0].x"', '"title"', "a key with a quantity or a number; title is"),
+    "no number": (
+        '"operation.force[0].x"',
+        '"rotor.shaft.name"',
+        "a key with a quantity or a number; rotor.shaft.name is",
+    ),
+    "of no gearbox": ('"operation.force[0].x"', '"optimisation.seed"', "a key that a gearbox follows from"),
     "upside down": ('["800 N", "1200 N"]', '["1200 N", "800 N"]', "force[0].x'.range: expected a number above"),
     "expression": ('["800 N", "1200 N"]', '["2*400 N", "1200 N"]', "range[0]: expected"),
     "other unit": ('["800 N", "1200 N"]', '["800 N", "1200 mm"]', "numbers that measure the same"),
@@ -393,16 +404,45 @@ def test_quantities_of_your_own_are_taken_and_wrong_ones_refused() -> None:
         ({"laws": {"width": Normal(0.5, 0.1)}}, "expected Uniform"),
         ({"laws": {}}, "expected the range of one value or more"),
         ({"start": {"width": 0.5}}, "a value of each of width, height"),
-        ({"limits": {"stiffness": 0.2}}, "a least and a largest value"),
+        ({"limits": {"stiffness": 0.2}}, "'stiffness' is 0.2; expected a least value and a largest one"),
         ({"aims": {"area_m2": "least", "stiffness": Aim(sense="most", weight=1.0)}}, "expected one on all"),
         ({"analyses": ["noise"]}, "expected some of gears"),
-        ({"evaluations": 0}, "expected a whole number of 1 or more"),
+        ({"evaluations": 0}, "evaluations is 0; expected a whole number of at least 1"),
+        ({"method": "random"}, "method is 'random'; expected one of search, grid"),
     ):
         given = {"laws": ranges, "aims": {"area_m2": "least"}, **problem}
         with pytest.raises(gw.CouplingError, match=message):
             gw.optimise(beam, given.pop("laws"), given.pop("aims"), **given)
     with pytest.raises(CaseError, match="did you mean 'area_m2'"):
         gw.optimise(beam, ranges, {"area_m": "least"})
+
+
+def test_an_infinite_life_is_within_its_limit_and_a_design_without_values_is_told() -> None:
+    def strip(values: Mapping[str, float]) -> dict[str, float]:
+        return {"width_m": values["width"], "life_h": math.inf if values["width"] > 1.5 else 1.0}
+
+    def find(aim: str) -> Any:
+        ranges, limits = {"width": Uniform(1.0, 2.0)}, {"life_h": (5.0, None)}
+        return gw.optimise(strip, ranges, {aim: "least"}, limits=limits, method="grid", levels=11)
+
+    best = find("width_m").solved.best
+    assert best is not None
+    assert best.sides["width_m"][0] == pytest.approx(1.6)
+    (told,) = find("life_h").document["warnings"][:1]
+    assert told["message"].startswith("5 of 11 designs have no finite value")
+
+
+def test_a_key_whose_values_make_no_gearbox_alone_is_warned_of_before_the_search(tmp_path: Path) -> None:
+    bundled = bundled_case("helical-pair")
+    assert bundled is not None
+    helix = '"gear.pinion.helix_angle" = { values = ["12 deg", "14 deg"]'
+    aim = '}\n[optimisation.aim]\n"machine.mass_kg" = { sense = "least" }\n'
+    for step, count in (("", 1), (', with = { "gear.wheel.helix_angle" = ["-12 deg", "-14 deg"] }', 0)):
+        path = tmp_path / "pair.toml"
+        path.write_text(f"{bundled.read_text()}\n[optimisation.design]\n{helix}{step} {aim}")
+        told = [one for one in gw.load(path).check().document["warnings"] if one["name"] == "values alone"]
+        assert len(told) == count
+        assert all("gear_pair[0].driven" in one["message"] and "equal helix angle" in one["message"] for one in told)
 
 
 def test_keys_in_step_ends_of_lists_and_numbers_of_designs_are_told_as_the_case_names_them(
@@ -478,7 +518,9 @@ def test_the_command_writes_designs_that_give_their_values_again(
     assert forces[0] == pytest.approx(document["limits"][0]["designs"][0], rel=1e-9)
     assert forces[1] == pytest.approx(document["aims"][0]["designs"][0], rel=1e-9)
     assert run_command(["report", str(out)]) == 0
-    assert "Optimised design" in (out / "report.html").read_text()
+    (first, _) = (out / "report.html").read_text().split(">gearwhine optimise</h2>")
+    assert "Optimised design in short" in first
+    assert 'href="best.toml"' in first
 
 
 SMALL = """

@@ -156,6 +156,9 @@ def test_a_sound_model_is_told_in_a_line_and_what_is_not_is_shown() -> None:
     assert "what holds it" in doubtful
     assert "alike" not in doubtful
     assert "1 of 2 checks keep their bounds" in doubtful
+    (section,) = housing.sections(_modes(ok=False))
+    (checks,) = [one for one in section.tables if any("grounding" in row.values() for row in one.rows)]
+    assert [column.heading for column in checks.columns] == ["check", "value", "bound", "", "what it says"]
 
 
 def test_detail_shows_every_check_and_ends_with_the_files() -> None:

@@ -1,9 +1,15 @@
 """What the coupled system says of modes that nothing damps, and of a sum rule that its modes miss."""
 
-from typing import Any
+from typing import Any, cast
 
+import numpy as np
+import pytest
+
+from gearwhine.coupling.linear.frequency_response import BasisError
+from gearwhine.numerics.arrays import FloatArray
 from gearwhine.output.sections import Table
 from gearwhine.results.mesh_lines import line_content
+from gearwhine.results.sensor_line_estimates import add_uncertainty
 from gearwhine.results.system import sections
 
 STRAINED = {"kind": "gear_meshes", "name": "s -> p", "share": 0.62}
@@ -77,3 +83,18 @@ def test_a_line_that_pitch_errors_of_another_stage_meet_is_ranked_by_all_of_them
     assert isinstance(table, Table)
     assert "in all" not in [column.heading for column in table.filled()[0]]
     assert "In all" not in str(words)
+
+
+def test_lines_by_the_meshes_have_the_error_of_the_modal_basis_at_their_own_frequency() -> None:
+    class Error:
+        def at(self, frequencies: FloatArray) -> dict[str, FloatArray]:
+            hertz = frequencies / (2.0 * np.pi)
+            return {"top": 1e-5 * hertz, "side": 2e-5 * hertz}
+
+    lines: list[dict[str, Any]] = [{"frequency_hz": hertz} for hertz in (1400.0, 700.0)]
+    peak: dict[str, Any] = {"frequency_hz": 900.0}
+    document = {"mesh_lines": lines, "sensors": [{"name": "side", "peaks": [peak]}]}
+    add_uncertainty(document, cast("BasisError", Error()), None)
+    assert [line["uncertainty"]["top"] for line in lines] == pytest.approx([0.014, 0.007])
+    assert [line["uncertainty"]["side"] for line in lines] == pytest.approx([0.028, 0.014])
+    assert peak["uncertainty"] == pytest.approx(0.018)

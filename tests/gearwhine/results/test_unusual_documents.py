@@ -7,7 +7,7 @@ from numbers_of_texts import foreign_numbers
 
 from gearwhine.output.sections import Section, Table
 from gearwhine.results.mesh_lines import line_content
-from gearwhine.results.optimisation import _change
+from gearwhine.results.optimisation import _answer, _change, _limit
 from gearwhine.results.system import _crossings
 
 Document = dict[str, Any]
@@ -43,6 +43,19 @@ def test_an_aim_changes_by_decibels_or_by_a_part_of_its_start(
 ) -> None:
     assert _change({"start": start, "designs": [design, 0.5 * design], "unit": unit}) == words
     assert _change({"start": start, "designs": [], "unit": unit}) == ""
+
+
+def test_what_the_best_design_wins_is_said_in_the_units_that_are_shown() -> None:
+    """A transmission error of 2.5 µm that becomes 1.25 µm, and a force in newtons, of the first of two designs."""
+    error = {"name": "gear_pairs.a -> b.peak_to_peak_m", "start": 2.5e-6, "designs": [1.25e-6, 3e-6], "unit": "m"}
+    force = {"name": "bearings.left.force_n", "start": 810.0, "designs": [640.0, 12.0], "unit": "N"}
+    chosen = [{"number": number, "design": name} for number, name in ((7, "best"), (9, "quietest"))]
+    document = {"chosen": chosen, "aims": [error, force], "limits": [error], "missed": True, "designs": 64}
+    (said,) = _answer(document)
+    assert said.startswith("Design 7 (best of 64): peak to peak [µm] of ")
+    assert " 2.5 → 1.25, force [N] of " in said
+    assert said.endswith(" 810 → 640; limits are missed.")
+    assert [_limit(error | {key: 2e-6}) for key in ("at_most", "at_least")] == ["≤ 2", "≥ 2"]
 
 
 def test_crossings_that_the_table_has_no_room_for_are_counted() -> None:

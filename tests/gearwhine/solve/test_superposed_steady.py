@@ -1,8 +1,11 @@
 """Steady motion of a two-stage train: each mesh's own motion, superposed, against the whole common period."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,16 +15,21 @@ from sounding_gearbox import sounding_housing
 
 from gearwhine.case import load_case
 from gearwhine.cli import run_command
-from gearwhine.coupling import CoupledMachine, CouplingError, PeriodicError, amplitude_spectrum
+from gearwhine.coupling import CoupledMachine, CoupledSystem, CouplingError, PeriodicError, amplitude_spectrum
+from gearwhine.coupling.analyses import steady_state
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion, solve_steady, spectra_of_sum
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
+from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.sound.motion_lines import lines_of_steady
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.housing import HousingModes
+from gearwhine.numerics.arrays import ComplexArray, FloatArray
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
@@ -133,6 +141,61 @@ def test_a_linear_machine_is_superposed_without_error(machine: CoupledMachine) -
     found = superposed_response(system, groups)
     assert found.neglected_force.max() < 1e-6 * found.mean_force.max()
     assert len(found.motions) == 2
+
+
+def test_runout_of_shafts_that_turn_either_way_has_a_part_in_the_sum() -> None:
+    """A mass m on teeth of stiffness k follows e = Σ a cos(w t): compressions of amplitude a m w² / |k - m w² + i w c|.
+
+    The frequency of a shaft that turns backwards is negative.
+    """
+    mass, stiffness, damping = 0.4, 2e8, 900.0
+    contact = ToothContact(1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0), damping=damping)
+    errors = np.array([[3e-6, 4e3, 0.3], [2e-6, -9e3 * np.sqrt(2.0), 1.0]])
+    direction, none = np.array([1.0 / np.sqrt(mass)]), np.zeros((1, 1))
+    system = CoupledSystem(
+        components=(Component("mass", ("torsion",), none, none, none),),
+        speeds=(0.0,),
+        contacts=(ContactConnector("teeth", direction, contact, 0.0, 0.0, errors),),
+        load=2000.0 * direction,
+    )
+    found = superposed_response(system, excitation_groups(system))
+    amplitudes, w = errors[:, 0], errors[:, 1]
+    expected = amplitudes * mass * w**2 / np.abs(stiffness - mass * w**2 + 1j * w * damping)
+    parts = sorted(float(one.response.rms_compression[0]) for one in found.motions)
+    assert parts == pytest.approx(sorted(expected / np.sqrt(2.0)), rel=1e-4)
+    assert found.rms_compression[0] == pytest.approx(np.sqrt(np.sum(expected**2) / 2.0), rel=1e-2)
+
+
+def test_neglected_forces_move_the_sensors_by_the_machine_s_matrices(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two meshes on three masses: a = w² s (K - w² + i w C)⁻¹ D f, as the force of a mesh acts against its line."""
+    generator = np.random.default_rng(8)
+    directions, rows = generator.normal(size=(2, 3)), generator.normal(size=(2, 3))
+    own = np.diag([1e6, 4e6, 9e6])
+    contact = ToothContact(1.0, piecewise.constant(1.0, 1.0), piecewise.constant(0.0, 1.0), damping=30.0)
+    connectors = [ContactConnector(str(i), d, contact, 0.0, 100.0, np.zeros((0, 3))) for i, d in enumerate(directions)]
+    part = Component("masses", ("torsion",) * 3, own, 20.0 * np.eye(3), np.zeros((3, 3)))
+    system = CoupledSystem((part,), (0.0,), contacts=tuple(connectors))
+    frequencies = np.array([0.0, 100.0, 250.0, 400.0])
+    forces = Spectrum(frequencies, generator.uniform(1.0, 2.0, (2, 4)), generator.uniform(-3.0, 3.0, (2, 4)), "uniform")
+    stiffness, w = np.array([2e6, 5e6]), 2.0 * np.pi * frequencies
+    total = own + (directions.T * stiffness) @ directions
+    damped = 20.0 * np.eye(3) + 30.0 * directions.T @ directions
+    answers = np.array([np.linalg.solve(total - v**2 * np.eye(3) + 1j * v * damped, directions.T) for v in w])
+
+    def neglected_spectrum(receptance: Callable[[FloatArray], ComplexArray]) -> tuple[Spectrum, bool]:
+        np.testing.assert_allclose(receptance(w[1:]), np.moveaxis(directions @ answers[1:], 0, 2), rtol=1e-8)
+        return forces, True
+
+    monkeypatch.setattr(steady_state, "transient_outputs", lambda _: SimpleNamespace(acceleration=rows))
+    machine: Any = SimpleNamespace(system=system, sensor_rows={"top": rows[0], "side": rows[1]})
+    means = [SimpleNamespace(stiffness=value) for value in stiffness]
+    superposed: Any = SimpleNamespace(means=means, neglected_spectrum=neglected_spectrum)
+    found, settled = steady_state._neglected_acceleration(machine, superposed, 300.0)
+    assert settled
+    for number, name in enumerate(("top", "side")):
+        assert found[name].frequencies.tolist() == [100.0, 250.0]
+        expected = [v**2 * rows[number] @ answers[i] @ forces.lines[:, i] for i, v in enumerate(w)]
+        np.testing.assert_allclose(found[name].lines, expected[1:3], rtol=1e-8)
 
 
 def test_groups_of_hunting_teeth(tmp_path: Path) -> None:

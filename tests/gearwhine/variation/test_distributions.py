@@ -75,8 +75,10 @@ def test_measured_values_are_never_left_and_keep_their_order() -> None:
     [
         (lambda: Normal(0.0, 0.0), "above 0"),
         (lambda: Normal(math.nan, 1.0), "finite"),
+        (lambda: Normal("1 mm", 1.0), "mean is '1 mm'; expected a finite number"),  # type: ignore[arg-type]
+        (lambda: Normal(0.0, 1.0, high=math.nan), "high is nan; expected a finite number"),
         (lambda: Normal(0.0, 1.0, 2.0, 1.0), "above the low end 2"),
-        (lambda: Normal(0.0, 1.0, 40.0, 41.0), "beyond the distribution"),
+        (lambda: Normal(0.0, 1.0, 40.0, 41.0), "near the mean 0"),
         (lambda: Uniform(2.0, 2.0), "above the low end 2"),
         (lambda: Triangular(0.0, 3.0, 2.0), "from 0 to 2"),
         (lambda: Rayleigh(-1.0), "above 0"),

@@ -71,7 +71,7 @@ def test_the_study_begins_with_the_gearboxes_beyond_each_limit_and_the_worst() -
     document = {"command": "vary"} | varied_document(told(TEN, limit=97.5))
     sentences, tables = shown(document)
     # Levels 92, 92, 93, ..., 100: of ten three are above 97.5. Interval of 7 of 10 by Clopper and Pearson.
-    assert sentences[0] == "Yield: 7 of 10 gearboxes are within all limits, 70.0 % (34.8 to 93.3 %)."
+    assert sentences[0] == "Yield: 7 of 10 gearboxes are within all limits, 70.0 % (95 % interval 34.8 to 93.3 %)."
     (row,) = tables["Gearboxes beyond"]
     assert (row["of"], row["limit"], row["beyond"]) == ("sensor top", "≤ 97.5", "3 of 10")
     worst = tables["Worst gearboxes"]
@@ -180,7 +180,7 @@ def test_a_rank_correlation_beyond_chance_is_told_and_drawn_where_no_part_is_exp
     assert top.rank_chances["gear.pinion.errors.e1"] == pytest.approx(reference.pvalue, rel=1e-9)
     sentences, tables = shown(varied_document(study))
     (row,) = tables["What matters:"]
-    assert row["rank correlation (p: by chance)"] == f"{reference.statistic:+.2f} (p={reference.pvalue:.0e})"
+    assert row["rank correlation (p: by chance)"] == f"{reference.statistic:+.2f} (p = {reference.pvalue:.0e})"
     assert not [one for one in sentences if one.startswith("No input alone")]
     figures = dict(draw_variation("By hand", study))
     (axes,) = figures["vary-importance"].axes
@@ -212,16 +212,24 @@ def test_pitch_deviations_are_said_to_be_judged_by_their_range() -> None:
 
 def test_what_has_no_mean_is_left_out_and_lives_are_shown_to_their_bound() -> None:
     study = told(TEN)
-    words = Input("bearing.*.clearance", Discrete([0.0, 1.0]), "", ("C2", "C3"), (), "C2, C3")
+    both = (("bearing.a.clearance", 1.0), ("bearing.b.clearance", 1.0))
+    words = Input("bearing.*.clearance", Discrete([0.0, 1.0]), "", ("C2", "C3"), both, "C2, C3")
     document = varied_document(replace(study, inputs=(words,)))
     (key,) = shown(document)[1]["Varied keys"]
-    assert (key["tolerance"], key.get("mean", ""), key.get("std", "")) == ("C2, C3", "", "")
+    tolerance = "C2, C3; one value for 2 entries"
+    assert (key["tolerance"], key.get("mean", ""), key.get("std", "")) == (tolerance, "", "")
     # Of pitches the file holds the range of the cumulative deviations, whose mean says nothing of the tolerance.
-    pitches = document["inputs"][0] | {"unit": "m", "distribution": "pitches", "mean": 1.8e-5, "tolerance": "class 7"}
+    pitches = document["inputs"][0] | {
+        "unit": "m",
+        "distribution": "pitches",
+        "mean": 1.8e-5,
+        "tolerance": "class 7",
+        "entries": 1,
+    }
     (key,) = shown(document | {"inputs": [pitches]})[1]["Varied keys"]
     assert (key["tolerance"], key.get("mean", "")) == ("class 7", "")
     document["quantities"].append(document["quantities"][0] | {"name": "bearing.left.life_h", "mean": 4.5764e6})
-    rows = shown(document)[1]["Distributions"]
+    rows = shown(document)[1]["Distributions; nominal:"]
     assert rows[-1]["mean"] == "> 1e6"
 
 

@@ -9,12 +9,13 @@ import pytest
 from scipy import stats
 
 import gearwhine as gw
+from gearwhine.analyses import optimisation_result, variation_result
 from gearwhine.analyses.variation_result import name_problems, parts_of, wanted_of
 from gearwhine.case import CaseError
 from gearwhine.case.load import bundled_case, load_case
 from gearwhine.case.variation import Variation, Varied
 from gearwhine.results.check import summary
-from gearwhine.variation.inputs import Input, varied_inputs
+from gearwhine.variation.inputs import Input, correlation_matrix, varied_inputs
 from gearwhine.variation.named_quantities import analysis_of, possible_quantities
 from gearwhine.variation.quantities import Wanted
 from gearwhine.variation.samples import VariedCase
@@ -30,7 +31,9 @@ def _inputs(tmp_path: Path, text: str, case: str = "helical-pair", changes: Sequ
     study = gw.load(path, list(changes))
     variation = study.case.variation
     assert variation is not None
-    return varied_inputs(study._source, variation)
+    inputs = varied_inputs(study._source, variation)
+    correlation_matrix(inputs, variation)
+    return inputs
 
 
 def test_tied_keys_have_one_value_times_their_factor(tmp_path: Path) -> None:
@@ -116,6 +119,22 @@ def test_fits_of_one_size_may_be_one_value(tmp_path: Path) -> None:
     assert len(one.keys) == 2
 
 
+def test_entries_of_an_independent_key_are_correlated_by_their_names(tmp_path: Path) -> None:
+    keys = [f"gear.{name}.{HELIX}" for name in ("pinion", "wheel")]
+    varied = {f"gear.*.{HELIX}": Varied.model_validate({"class": 5, "independent": True})}
+    pair = {"keys": keys, "coefficient": 0.5}
+    variation = Variation.model_validate({"vary": varied, "correlation": [pair]})
+    inputs = varied_inputs(load_case("helical-pair").source, variation)
+    matrix = correlation_matrix(inputs, variation)
+    assert matrix is not None
+    assert matrix.tolist() == [[1.0, 0.5], [0.5, 1.0]]
+    of_all = Variation.model_validate({"vary": varied, "correlation": [{**pair, "keys": [f"gear.*.{HELIX}", keys[0]]}]})
+    with pytest.raises(
+        CaseError, match=r"correlation\[0\].keys\[0\]: expected a key .* with one value, or an entry of"
+    ):
+        correlation_matrix(inputs, of_all)
+
+
 def test_a_fit_lies_about_the_length_of_the_case(tmp_path: Path) -> None:
     """40 mm H7 is 0 to 25 µm; six standard deviations fill it."""
     (one,) = _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { fit = "H7" } }')
@@ -187,12 +206,14 @@ def test_measured_values_come_from_a_column_with_its_unit(tmp_path: Path) -> Non
             "each key once",
         ),
         ('vary = { "a b[" = { uniform = [1, 2] } }', "a key path"),
+        ('vary = { "title" = { values = ["a", "b"] } }', "a key that a gearbox follows from"),
+        ('vary = { "gear.pinion.bore" = { values = [0.03, 0.04], weights = [1] } }', "weights: expected one weight"),
         ('samples = 0\nvary = { "gear.pinion.bore" = { uniform = [0.03, 0.04] } }', "a whole number from 1"),
         ("limit = { x = { } }", "'at_most', 'at_least' or both"),
         ("limit = { x = { at_least = 2, at_most = 1 } }", "of at least 2"),
         (
             'correlation = [{ keys = ["gear.pinion.bore", "gear.wheel.bore"], coefficient = 0.5 }]',
-            "as it stands there",
+            "a key of [variation.vary] with one value, or an entry of an independent one",
         ),
     ],
 )
@@ -206,14 +227,18 @@ def test_what_cannot_be_varied_is_refused_by_name(tmp_path: Path, text: str, sai
 @pytest.mark.parametrize(
     ("content", "said"),
     [
+        ("", "a name in the first line of measured.csv, and two values or more below"),
         ("bore\n40\n", "two values"),
+        ("40\n41\n42\n", "names of the columns in the first line of measured.csv, which has 40"),
+        ("bore\n\n40\nnan\n", "a finite number in line 4 of measured.csv, column 'bore'"),
+        ("bore\n40\n\xff\n", "a table of text in UTF-8; measured.csv is none"),
         ("bore [blorp]\n40\n41\n", "a known unit"),
         ("bore\n40\nwide\n", "line 3"),
         ("a,b\n1,2\n3,4\n", "one of the 2 columns"),
     ],
 )
 def test_tables_that_hold_no_distribution_are_refused(tmp_path: Path, content: str, said: str) -> None:
-    (tmp_path / "measured.csv").write_text(content)
+    (tmp_path / "measured.csv").write_text(content, encoding="latin-1")
     with pytest.raises(CaseError, match=said):
         _inputs(tmp_path, 'vary = { "gear.pinion.bore" = { file = "measured.csv" } }')
 
@@ -233,6 +258,8 @@ def test_names_of_quantities_are_refused_before_the_housing_is_solved(
         "gear_pair.*.contact_pressure_mpa": "did you mean 'contact_pressure_pa'?",
         "machine.mas_kg": "'mass_kg'",
         "boring.x": "a quantity of this case",
+        "planetary.set.mesh_load_factor": "a planetary in the case, which has none",
+        "quantile 2 of sensor.top.level_db": "'quantile 0.95 of', and the name of a quantity",
     }
     right = ["sensor.top.level_db", "quantile 0.95 of sensor.top.level_db", "sensor.*.level_db", "bearing.*.force_n"]
     case = load_case("small-gearbox").case
@@ -244,8 +271,8 @@ def test_names_of_quantities_are_refused_before_the_housing_is_solved(
     (left_out,) = name_problems(case, few, ("variation", "limit"), ["bearing.input-back.force_n"])
     assert "among the quantities" in left_out.expected
 
-    for module in ("variation_result", "optimisation_result"):
-        monkeypatch.setattr(f"gearwhine.analyses.{module}.in_solved_housing", lambda *_: pytest.fail("solved"))
+    for module in (variation_result, optimisation_result):
+        monkeypatch.setattr(module, "in_solved_housing", lambda *_: pytest.fail("solved"))
     varied = {"operation.torque": {"uniform": ["40 N*m", "60 N*m"]}}
     designed = {"operation.torque": {"range": ["40 N*m", "60 N*m"]}}
     limits = {"sensor.tpo.level_db": {"at_most": 150}}

@@ -1,8 +1,9 @@
 """Varied gearboxes: each equals the single calculation, known distributions come out, and nothing found is lost."""
 
 import json
+import math
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -336,13 +337,44 @@ def test_machines_of_python_are_varied_by_the_same_statistics() -> None:
     assert found.document["yield"]["share"] == 1.0
     with pytest.raises(gw.CouplingError, match="expected some of gears, load"):
         gw.vary(made, laws, 4, analyses=["noise"])
-    for given in ({"laws": {}}, {"samples": 0}, {"samples": "16"}):
-        with pytest.raises(gw.CouplingError, match="one value or more, and one sample or more"):
+    for given, said in (
+        ({"laws": {}}, "a distribution of one value or more"),
+        ({"samples": 0}, "samples is 0; expected a whole number of at least 1"),
+        ({"samples": "16"}, "samples is '16'"),
+        ({"seed": -1}, "seed is -1; expected a whole number of at least 0"),
+        ({"workers": 0}, "workers is 0"),
+    ):
+        with pytest.raises(ValueError, match=said):
             gw.vary(made, **{"laws": laws, "samples": 4, **given})
     with pytest.raises(gw.CouplingError, match="no quantity of gears"):
         gw.vary(made, laws, 4, analyses=["gears"])
-    with pytest.raises(gw.CouplingError, match="a least and a largest value"):
+    with pytest.raises(
+        gw.CouplingError, match=r"critical_speed_1_rpm' is \(2.0, 1.0\); expected a least value and a largest one"
+    ):
         gw.vary(made, laws, 4, limits={name: (2.0, 1.0)})
+
+
+def test_quantities_of_your_own_scatter_by_their_closed_form_and_infinite_ones_stay_such(tmp_path: Path) -> None:
+    """Of a width from 1 to 2 m: the area has the moments of the uniform law; a strip above 1.5 m lasts for ever."""
+
+    def strip(values: Mapping[str, float]) -> dict[str, float]:
+        return {"area_m2": 2.0 * values["width"], "life_h": math.inf if values["width"] > 1.5 else 1.0}
+
+    for _ in range(2):  # the second time from the folder
+        found = gw.vary(strip, {"width": Uniform(1.0, 2.0)}, 64, limits={"life_h": (5.0, None)}, folder=tmp_path)
+        area, _ = found.solved.quantities
+        assert (area.mean, area.deviation) == pytest.approx((3.0, 2.0 / math.sqrt(12.0)), rel=0.01)
+        assert found.document["yield"]["share"] == 0.5
+    assert found.document["resumed"] == 64
+    ranges = {name: Normal(1.0, size) for name, size in (("a", 0.1), ("b", 0.2))}
+    pair = {("b", "a"): -0.5}
+    (total,) = gw.vary(lambda v: {"sum_m": v["a"] + v["b"]}, ranges, 512, correlations=pair).solved.quantities
+    assert total.deviation == pytest.approx(math.sqrt(0.1**2 + 0.2**2 - 2.0 * 0.5 * 0.1 * 0.2), rel=0.02)
+    for pair, said in (({("a", "c"): 0.5}, r"\('a', 'c'\); expected two of a, b"), ({("a", "b"): 1.5}, "from -1 to 1")):
+        with pytest.raises(gw.CouplingError, match=said):
+            gw.vary(lambda v: {"sum_m": v["a"] + v["b"]}, ranges, 4, correlations=pair)
+    with pytest.raises(gw.CouplingError, match="returned 'wide' as 'width_m'; expected a number"):
+        gw.vary(lambda _: {"width_m": "wide"}, {"width": Uniform(1.0, 2.0)}, 4)
 
 
 def test_lives_of_varied_bearings_are_those_of_iso_281_and_of_the_operating_point() -> None:

@@ -129,14 +129,14 @@ def test_the_interval_of_a_difference_holds_it_as_often_as_it_says() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"widen": 1.0}, "a factor above 1"),
+        ({"widen": 1.0}, "widen is 1; expected a finite number above 1"),
         ({"widen": 99.0}, "at most 10"),
         ({"widen": 2.0, "indices": True}, "one of indices and widen"),
     ],
 )
 def test_impossible_wider_studies_are_refused(tmp_path: Path, options: dict[str, object], said: str) -> None:
     (tmp_path / "shaft.toml").write_text(SHAFT)
-    with pytest.raises(CaseError, match=said):
+    with pytest.raises(ValueError, match=said):
         gw.load(tmp_path / "shaft.toml").vary(8, folder=tmp_path / "out", workers=1, **options)
 
 
