@@ -451,12 +451,14 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
         return []
     units = ((1.0, "W"), (1e3, "mW"), (1e6, "µW"), (1e9, "nW"))
     factor, unit = next((scale for scale in units if scale[0] * ends[0] >= 1.0), units[-1])
+    # The estimate ρ c v² is nowhere negative.
+    takes_in = "the estimate absorbs nowhere" if solved.radiation.method == "erp" else "blue absorbs"
     beyond = f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
     return [
         DrawnShape(
             name,
             title,
-            f"{power_level(power):.1f} dB re 1 pW; red radiates, blue absorbs. {beyond}",
+            f"{power_level(power):.1f} dB re 1 pW; red radiates, {takes_in}. {beyond}",
             np.zeros_like(surface.rest),
             f"Intensity [{unit}/m²]",
             factor * end,

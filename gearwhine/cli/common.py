@@ -81,6 +81,7 @@ def on_case(
         Whether it writes without ``--output``, too.
     """
     from gearwhine.case import CaseError, load_case
+    from gearwhine.numerics.findings import RefusedPartError
     from gearwhine.output.quantity import add_warnings
     from gearwhine.output.terminal import say_warning
     from gearwhine.progress import shown
@@ -98,6 +99,10 @@ def on_case(
             document = work(loaded, progress)
         except CaseError as error:
             error.problems = tuple(_in_file(problem, loaded.source.name) for problem in error.problems)
+            raise
+        except RefusedPartError as error:
+            # Parts that do not fit each other, such as bearings that let the thrust of gears through, know no file.
+            error.args = (f"{loaded.source.name}: {error}",)
             raise
     add_warnings(document)
     for warning in document["warnings"]:

@@ -20,12 +20,13 @@ from gearwhine.results.motion import damping_lines, gear_body_lines
 from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.results.planetary import PLANETARY, set_lines, set_summary
 from gearwhine.rotors import Coupling
+from gearwhine.rotors.rolling_bearings import static_rating
 from gearwhine.solve.case_summary import check_case
 from gearwhine.solve.damping import damping_document, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
-    from gearwhine.case import Bearing, Joint, Mount
+    from gearwhine.case import Joint, Mount
     from gearwhine.case.rotors import Rotor as CaseRotor
     from gearwhine.coupling.machine.loads import Torque
     from gearwhine.housing import Joint as BuiltJoint
@@ -184,14 +185,28 @@ ANALYSIS = (
 )
 """Quantities of the analyses that ``gearwhine rotors`` makes of a rotor."""
 
-BEARING = (
-    Quantity("name"),
-    Quantity("rotor"),
-    Quantity("seat"),
-    Quantity("table_rpm", lambda bearing: _ends(bearing.speeds)),
-    Quantity("pedestal_kg", "pedestal.mass"),
+ROLLING = (
+    Quantity("elements", lambda bearing: [row.count for row in bearing.rows]),
+    Quantity("element_diameter_m", "rows.0.element_diameter"),
+    Quantity("pitch_diameter_m", "rows.0.pitch_diameter"),
+    Quantity("contact_angle_rad", lambda bearing: bearing.rows[0].contact_angle),
+    Quantity("clearance_m", "rows.0.clearance"),
+    Quantity("dynamic_rating_n"),
+    Quantity("dynamic_rating_from", lambda bearing: "geometry" if bearing.catalogue_rating is None else "case"),
+    Quantity("static_rating_n", lambda bearing: sum(map(static_rating, bearing.rows))),
+    Quantity("estimated"),
 )
-"""Quantities of a bearing of the case."""
+"""Quantities of the inside of a rolling bearing; those of one row are of the first, the static rating by ISO 76."""
+
+BEARING = (
+    Quantity("name", "bearing.name"),
+    Quantity("rotor"),
+    Quantity("seat", lambda mounted: mounted.seat or "ground"),
+    Quantity("table_rpm", lambda mounted: _ends(mounted.bearing.speeds)),
+    Quantity("pedestal_kg", "bearing.pedestal.mass"),
+    Part("rolling", "rolling", ROLLING, optional=True),
+)
+"""Quantities of a bearing in its seat."""
 
 LOCATION = (
     Quantity("rotor", "shaft"),
@@ -376,17 +391,7 @@ _TORQUE = (Quantity("rotor"), Quantity("at_m", "at"), Quantity("torque_n_m", "va
 CHECKED_MACHINE = (
     Quantity("title", "settings.title"),
     _ROTORS,
-    Rows(
-        "bearings",
-        lambda checked: checked.machine.bearings or ABSENT,
-        (
-            Quantity("name", "bearing.name"),
-            Quantity("rotor"),
-            Quantity("seat", lambda mounted: mounted.seat or "ground"),
-            Quantity("table_rpm", lambda mounted: _ends(mounted.bearing.speeds)),
-            Quantity("pedestal_kg", "bearing.pedestal.mass"),
-        ),
-    ),
+    Rows("bearings", lambda checked: checked.machine.bearings or ABSENT, BEARING),
     *_TRAIN,
     Part(
         "operation",
@@ -425,7 +430,7 @@ CHECK = (
         lambda checked: [_Analysis(checked.case, rotor) for rotor in checked.case.rotor] or ABSENT,
         ANALYSIS,
     ),
-    Quantity("bearings", lambda checked: _bearings(checked.case.bearing, checked.case.rotor) or None, optional=True),
+    Rows("bearings", lambda checked: checked.case.parts.bearings or ABSENT, BEARING),
     *_TRAIN,
     Part("operation", lambda checked: ABSENT if checked.case.operation is None else checked.case, OPERATION),
     Part("transient", "case.transient", TRANSIENT, optional=True),
@@ -445,17 +450,6 @@ CHECK = (
     Quantity("warnings", lambda checked: checked.warnings or None, optional=True),
 )
 """Quantities of a checked case."""
-
-
-def _bearings(bearings: Sequence["Bearing"], rotors: Iterable["CaseRotor"]) -> list[dict[str, Any]]:
-    """Return every bearing as a document; those of the rotors' own files are on the ground."""
-    in_case = {(bearing.rotor, bearing.name) for bearing in bearings}
-    return [document_of(BEARING, bearing) for bearing in bearings] + [
-        {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
-        for rotor in rotors
-        for bearing in (rotor.saved.bearings if rotor.saved else ())
-        if (rotor.name, bearing.name) not in in_case
-    ]
 
 
 def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
@@ -589,7 +583,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "imported": imported_lines(document["imported"]) if "imported" in document else [],
         "housing": _housing_lines(document["housing"]) if "housing" in document else reduced_lines(document),
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
-        "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
+        "bearings": [line for bearing in document.get("bearings", ()) for line in _bearing_lines(bearing)],
         "thrust": [_location_line(location) for location in document.get("axial_location", ())],
         "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in _listed_pairs(document) for line in _pair_lines(pair, on_bearings)],
@@ -766,13 +760,29 @@ def _rotor_line(rotor: Document) -> str:
     return f"{rotor['name']}: {length}{parts}, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"
 
 
-def _bearing_line(bearing: Document) -> str:
+def _bearing_lines(bearing: Document) -> Iterator[str]:
     line = f"{bearing['name']}: {bearing['rotor']} on {bearing['seat']}"
     if bearing["pedestal_kg"] is not None:
         line += f", by a pedestal of {bearing['pedestal_kg']:g} kg"
     if bearing["table_rpm"] is not None:
         line += ", tables over {:.6g} to {:.6g} rpm".format(*bearing["table_rpm"])
-    return line
+    yield line
+    if "rolling" in bearing:
+        yield f"  {_rolling_words(bearing['rolling'])}"
+
+
+def _rolling_words(rolling: Document) -> str:
+    """Return the inside of a rolling bearing, its clearance and ratings."""
+    estimated = "estimated inside: " if rolling["estimated"] else ""
+    elements = " + ".join(map(str, rolling["elements"]))
+    angle = math.degrees(rolling["contact_angle_rad"])
+    source = "given" if rolling["dynamic_rating_from"] == "case" else "ISO 281"
+    return (
+        f"{estimated}{elements} elements of {1e3 * rolling['element_diameter_m']:.4g} mm "
+        f"on {1e3 * rolling['pitch_diameter_m']:.4g} mm{f' at {angle:.3g}°' if angle else ''}, "
+        f"clearance {1e6 * rolling['clearance_m']:.3g} µm; C {1e-3 * rolling['dynamic_rating_n']:.4g} kN ({source}), "
+        f"C₀ {1e-3 * rolling['static_rating_n']:.4g} kN (ISO 76, of this inside)"
+    )
 
 
 def _location_line(location: Document) -> str:

@@ -941,7 +941,10 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield _LEVELS
         yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
         if any(order["unit"] == "m/s²" for order in run["orders"]) and "trusted_below_hz" in run:
-            yield f"Orders of sensors up to {run['trusted_below_hz']:.0f} Hz, where the model is complete"
+            yield (
+                f"Orders of sensors up to {run['trusted_below_hz']:.0f} Hz, where the model is complete; those of mesh "
+                "forces go on beyond it"
+            )
         if "window_turns" in run:
             yield (
                 f"Orders are fitted to windows of {run['window_turns']} turns of the leading shaft: a resonance passed "

@@ -634,7 +634,8 @@ _PICTURES = (
     ),
     Picture(
         "sound-faces-all",
-        "Mean sound intensity out of the housing over all lines, from two sides: red radiates, blue absorbs.",
+        "Mean sound intensity out of the housing over all lines, from two sides: red radiates, blue absorbs, where the "
+        "pressure from other places works against the wall's own motion. The estimate by ERP absorbs nowhere.",
     ),
     Picture("sound-faces", "The same at one of the loudest lines.", small=True),
     Picture(

@@ -17,7 +17,6 @@ from gearwhine.rotors.rolling_bearings.life import (
     rated_revolutions,
     reference_revolutions,
 )
-from gearwhine.rotors.rolling_bearings.ratings import dynamic_rating
 
 _HOUR = 3600.0
 
@@ -42,10 +41,7 @@ class BearingLife:
     @property
     def rating(self) -> float:
         """Dynamic rating C [N]: by its maker, else of the geometry by ISO 281."""
-        bearing = self.state.bearing
-        if bearing.catalogue_rating is not None:
-            return bearing.catalogue_rating
-        return dynamic_rating(bearing.rows[0], len(bearing.rows))
+        return self.state.bearing.dynamic_rating
 
     @property
     def rating_from(self) -> str:

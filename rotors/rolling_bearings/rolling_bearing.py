@@ -21,7 +21,7 @@ from typing import Literal
 from scipy.optimize import brentq
 
 from gearwhine.rotors.errors import RotorError, require, require_finite
-from gearwhine.rotors.rolling_bearings.ratings import Row
+from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating
 from gearwhine.rotors.rolling_bearings.roller_rows import SphericalRollerRow
 
 _CLOSEST_ROW_DISTANCE = 0.7  # distance of two rows over the width of their elements, which may be staggered
@@ -110,6 +110,13 @@ class RollingBearing:
     def estimated(self) -> bool:
         """Whether the inside of any row is an estimate."""
         return any(row.estimated for row in self.rows)
+
+    @property
+    def dynamic_rating(self) -> float:
+        """Dynamic rating C [N]: by its maker, else of the geometry by ISO 281."""
+        if self.catalogue_rating is not None:
+            return self.catalogue_rating
+        return dynamic_rating(self.rows[0], len(self.rows))
 
     @cached_property
     def force_scale(self) -> float:

@@ -18,6 +18,7 @@ def test_thrust_that_no_bearing_carries_is_refused_by_every_command(
     changes = [part for text in (RADIAL, UNDAMPED) for i in (0, 2) for part in ("--set", text.format(i))]
     assert run_command([command, "helical-pair", "-q", "-o", str(tmp_path / "out"), *changes]) == 2
     told = capsys.readouterr().err
+    assert told.startswith("gearwhine: helical-pair.toml: rotor ")
     assert "'pinion' push it along its axis with 1125 N" in told
     assert "'wheel' push it along its axis with 1125 N" in told
     assert "Traceback" not in told

@@ -264,3 +264,21 @@ def test_rows_of_a_pair_share_its_static_rating() -> None:
     pair = rows(static_rating="40 kN", arrangement="back to back", spacing="18 mm")
     assert [static_rating(row) for row in pair] == pytest.approx([20e3, 20e3])
     assert [row.element_diameter for row in pair] == pytest.approx([single.element_diameter] * 2)
+
+
+def test_check_shows_the_inside_of_a_catalogue_bearing() -> None:
+    """A 6306 has eight balls of 12.3 mm (NSK) and C₀ = 16.0 kN (SKF); C is the one that the case gives."""
+    size = {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "72 mm", "width": "19 mm"}
+    rolling = {"catalogue": size, "clearance": "8 um", "dynamic_rating": "29.6 kN"}
+    study = gw.load(
+        "helical-pair", {"bearing.0.stiffness": {"rolling": rolling}, "bearing.0.damping": {"xx": "8e2 N*s/m"}}
+    )
+    first, second, *_ = study.check().document["bearings"]
+    inside = first["rolling"]
+    assert (inside["elements"], inside["clearance_m"], inside["dynamic_rating_n"]) == ([8], 8e-6, 29.6e3)
+    assert inside["element_diameter_m"] == pytest.approx(12.3e-3, rel=0.03)
+    assert inside["static_rating_n"] == pytest.approx(16.0e3, rel=0.03)
+    assert "rolling" not in second
+    words = lines_of(study)
+    assert "estimated inside: 8 elements of 12." in words
+    assert ", clearance 8 µm; C 29.6 kN (given), C₀ 16.3" in words

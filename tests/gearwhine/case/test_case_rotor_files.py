@@ -9,6 +9,7 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.cli import run_command
+from gearwhine.results.check import check_document, sections
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, read_ross, write_ross
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -35,6 +36,8 @@ def test_shaft_discs_and_bearings_are_those_of_the_file(folder: Path) -> None:
     assert rotor.discs == (*ROTOR.discs, Disc(0.25, 2.0))
     assert bearings == BEARINGS
     assert case.rotor[0].length == pytest.approx(1.0)
+    notes = [section.note.strip() for section in sections(check_document(case)) if section.title == "bearings"]
+    assert notes == ["left: input on ground"]
 
 
 def test_a_bearing_of_the_same_name_and_rotor_takes_the_place_of_the_files(folder: Path) -> None:

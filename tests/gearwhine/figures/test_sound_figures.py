@@ -144,6 +144,9 @@ def test_an_estimate_has_neither_directivity_nor_efficiency(solved: SolvedSound)
     case = sound_of_modes().case
     figures = dict(draw_sound(case.title, replace(solved, radiation=estimate, lines=lines)))
     assert list(figures) == ["sound-power"]
+    shapes = _intensity_shapes(replace(solved, radiation=estimate, lines=lines))
+    assert all(shape.values is not None and shape.values.min() >= 0.0 for shape in shapes)
+    assert all("red radiates, the estimate absorbs nowhere." in shape.note for shape in shapes)
     assert "ERP, an estimate" not in {text.get_text() for text in figures["sound-power"].legends[0].get_texts()}
 
 
